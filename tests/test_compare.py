@@ -258,7 +258,7 @@ def test_where_the_phase_is_lost_agreement_says_nothing():
     found = kv.compare(given, data, per_length="50 /mm")
     assert failed(found) == ["phase of the cycle"]
     assert found.verdict == "cannot tell"
-    assert "Theory cannot say where the cycle" in found.diagnosis
+    assert "Theory cannot predict the phase of the cycle" in found.diagnosis
     assert kv.compare(given, data, per_length="1000 /mm").verdict == "agrees"
 
 

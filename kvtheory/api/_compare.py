@@ -26,13 +26,13 @@ EVEN, DENSE = 401, 60
 SOONEST, SOON = 1e-4, 0.1
 """First and last of the additional times after a change, as fractions of the duration."""
 MAXIMUM_STEPS = 1e8
-"""Time steps of our simulation, at most: an hour or two."""
+"""Largest number of time steps of our simulation: an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
 """Elements per static half length where theory is a simulation: on a Prony series, and for a ball."""
 COARSENING = 4.0
-"""Trials of a diagnosis have so many times fewer elements, as only their differences count."""
+"""Factor by which trials of a diagnosis have fewer elements, as only their differences count."""
 MINIMUM_TIMES = 16
-"""Output times at least, even if the time step has to be shortened for them."""
+"""Smallest number of output times, even if the time step has to be shortened for them."""
 
 
 def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
@@ -73,7 +73,7 @@ def _rates(scene: Scene) -> NDArray[np.complex128]:
 
 
 METHODS = Methods(_theory, steady, _rates, _faulty_simulation)
-"""What computes theory, and what simulates a fault."""
+"""The functions that compute theory and simulate a fault."""
 
 
 @checked(
@@ -169,7 +169,7 @@ def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress:
     """
     given = {"per_length": per_length, "scheme": scheme}
     chosen = {key: value for key, value in given.items() if value is not None}
-    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
+    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # no step is taken
     end = scene.run.duration
     if end > MAXIMUM_STEPS * step:
         raise ValueError(

@@ -32,8 +32,8 @@ def stability(
     the least stable ones are returned, as many as on Kelvin-Voigt, a fixed indenter may be unstable too, and
     between the lower and the upper critical stiffness there may be stable ranges.
 
-    Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
-    end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.
+    Stable means stable against small disturbances. After a large one, such as a sudden start, the motion may
+    end in stick-slip all the same (hard excitation): `transient` and `sweep` compute it.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def steady(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. A history counts by its final
+        What is modelled; without it, the paper's Table 1 with a dead weight. A history is taken at its final
         velocity; for a drive that is a function, `over` must give the velocity.
     over
         Values that replace those of the scene, by dotted key as in the scene file, such as
@@ -50,7 +50,7 @@ def steady(
     method
         ``"exact"`` (parabola and ball on any foundation, power law and wedge on Kelvin-Voigt; the default for
         them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line contacts that are convex where they
-        touch, the ball, and shapes of this package turned around their lowest point; the default for the
+        touch, the ball, and shapes of this package revolved about their lowest point; the default for the
         others) or ``"asymptote"`` (of the regime of the velocity; shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns

@@ -1,6 +1,6 @@
 """Error budget of a correct simulation: by how much it may differ from theory.
 
-Four effects make a difference without a mistake, each known from theory or from the data:
+Four effects cause a difference although nothing is wrong; each is known from theory or from the data:
 
 - an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
   b = p dx/2, p the pressure at that edge, the motion by the linear response to b (F12), and on a spring
@@ -28,34 +28,34 @@ from kvtheory.scene.model import Fixed, Scene
 
 STANDARD = 200e3
 FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
-"""Elements per m where the density is not known: the paper's 200 /mm, but at least and at most so many in
-the static half length as here, the most being those of Table 1."""
+"""Element density (1/m) assumed if none is given: the paper's 200 /mm, limited to these numbers of elements
+in the static half length; the upper one is that of Table 1."""
 UNKNOWN_STEP = 0.25
-"""Of the fast time constant: the longest time step that is assumed, unless the data are sampled more
-coarsely than that."""
+"""Longest time step assumed if none is given, as a fraction of the fast time constant; or the sampling
+interval, if that is longer."""
 MOST_STEPS, FEWEST_STEPS = 1000.0, 20.0
-"""Steps assumed for a base that never moves; and for any run at least, so that not all of it is smeared."""
+"""Steps assumed for a base that never moves; and fewest for any run, so that not all of it is smeared."""
 STEPS_SMEARED = 2.0
-"""Steps within which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
+"""Steps by which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
 ELEMENTS_AT_AN_EDGE = 2.0
-"""An edge is reported to the element, and two enter in a step of the paper's scheme."""
+"""Error of an edge in elements: two enter in a step of the paper's scheme, and edges lie on elements."""
 LARGEST_NOISE = 0.1
-"""Of a curve or its scale: the part of louder noise that is allowed for."""
+"""Upper bound of the noise that is allowed for, as a fraction of the curve or its scale."""
 WHOLE_EDGE = 2.0
-"""Half an element is the mean error of an edge, a whole one the largest."""
+"""Ratio of the largest error of an edge, one element, to the mean error, half an element."""
 AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
-"""Of the band: the lag of a first-order scheme, and what is allowed of the rate, for long steps add terms of
-the next order in h/T."""
+"""Fractions of the width of the band: the lag of a first-order scheme, and the lag allowed for the rate, as
+long steps add terms of the next order in h/T."""
 OVERSHOOT = 2.0
-"""An oscillation overshoots at most by this factor, and so does a spring that is loaded suddenly."""
+"""Largest overshoot factor of an oscillation, and of a spring that is loaded suddenly."""
 INITIAL = 1e-3
-"""Of the static depth: an initial depth may have been typed in with three digits."""
+"""Error of the initial depth, relative to the static depth: it may have been typed in with three digits."""
 INPUT = 1e-6
-"""Relative: what is given, not computed, agrees to the digits of a file."""
+"""Relative error of given, not computed, quantities: they agree to the digits of a file."""
 EXACT = {"velocity": 3, "sliding_velocity": 3}
-"""Fewest significant digits that are taken for rounding: a velocity of 0.1 m/s is exact."""
+"""Fewest significant digits of a column that count as rounded; a velocity of 0.1 m/s is exact."""
 QUARTER = 0.5 * math.pi
-"""Of a period, in radians: a disturbed oscillation is far off so much after it crosses the other one."""
+"""Quarter period, in radians: the difference of two oscillations is largest so long after they cross."""
 
 
 class Resolution(NamedTuple):
@@ -85,7 +85,7 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
 
 
 class Band(NamedTuple):
-    """Theory of a curve within the smear, and the errors that are allowed outside of it.
+    """Range of a curve of theory within the time smear, and the errors allowed outside of it.
 
     `systematic` bounds a smooth error, of which `rounding` is the part that comes from the digits; `noise`
     is the standard deviation of a random one.
@@ -158,7 +158,7 @@ def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curve
 
 
 def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
-    """Return by how much the rate of a first-order scheme still lags after the band of a fast change.
+    """Return the remaining lag of the rate of a first-order scheme, after the band of a fast change.
 
     Euler's method errs in exp(-t/T) by (h/2T)(t/T) exp(-t/T): an eighth of the width of the band, times
     t/T, and the rate soon turns, where the band is narrow. T = M/(C L) is that of the contact at the time;
@@ -177,14 +177,14 @@ def _contact_length(curves: Mapping[str, Array]) -> Array:
 
 
 def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
-    """Return what the damping of the foundation acts over: a length in m, for a ball an area in m^2."""
+    """Return the extent of the contact: a length in m, for a ball an area in m^2."""
     return np.asarray(theory.width(curves["depth"]) * _contact_length(curves))
 
 
 def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     """Return b = p dx/2 at the edge of larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
-    For a ball it is that of the middle plane times the mean width, an upper bound if all strips agree. At
+    For a ball it is that of the middle plane times the mean width, an upper bound, if all strips agree. At
     rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
     """
     R, foundation = theory.radius, theory.scene.foundation
@@ -202,7 +202,7 @@ def _systematic(
     theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array], late: Array,
     fine: Resolution,
 ) -> dict[str, Array]:  # fmt: skip
-    """Return what follows from the force b at the edge, by the linear response of F12, and from a lag.
+    """Return the smooth error of each curve due to the force b at the edge (by F12) and to a lag.
 
     `forces` are b and the lag of the force, `late` is the lag of the rate.
 
@@ -242,11 +242,11 @@ def _systematic(
 def _response(
     theory: Theory, curves: Curves, time: Array, force: Array, a: Array, fine: Resolution
 ) -> tuple[Array, Array]:
-    """Return by how much b moves the depth and its rate.
+    """Return the errors of the depth and of its rate due to b.
 
     The rate answers C L d' + (K A + k_s) d = b at once, and by b h/M in a step; the depth with the time
-    constant T = C L/(K A + k_s) of the contact at the time. In flight nothing relaxes: the rate keeps what
-    it had when the contact was lost, and the depth drifts with it.
+    constant T = C L/(K A + k_s) of the contact at the time. In flight nothing relaxes: the error of the rate
+    stays as it was at take-off, and that of the depth grows with it.
     """
     foundation, static = theory.scene.foundation, theory.static
     length = _contact_length(curves)
@@ -276,7 +276,7 @@ def _response(
 def _spring_response(
     theory: Theory, now: Curves, time: Array, force: Array, step: float, rtol: float
 ) -> Curves:
-    """Return by how much the force b (N/m) at an edge, and steps of `step` s, move each curve on a spring.
+    """Return the error of each curve on a spring due to the force b (N/m) at an edge and to the step (s).
 
     Motions along x last long, and grow if steady sliding is unstable (F22), up to a cycle in which a
     disturbance shifts the phase more and more. No linear response covers that, but theory of a disturbed
@@ -306,8 +306,8 @@ def _spring_response(
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
     """Yield the scene with a load that is larger by a share, and with the damping of first-order steps.
 
-    On a fixed indenter, whose forces are in proportion to the stiffness of the foundation, b acts as one that
-    is stiffer. A first-order step h damps an oscillation, or excites it, as a damper c_x = h k_x.
+    On a fixed indenter, whose forces are in proportion to the stiffness of the foundation, b acts like a
+    stiffer foundation. A first-order step h damps an oscillation, or excites it, as a damper c_x = h k_x.
     """
     support = scene.support
     if isinstance(support, Fixed):

@@ -22,12 +22,12 @@ EQUATIONS = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14"
 """The equation behind each curve."""
 RELATIVE = "relative to the static state"
 TRANSIENT = 3.0
-"""Slow time constants after the last change of the drive: three samples in them show the transient."""
+"""Length of a transient after a change of the drive, in slow time constants: three samples show it."""
 SAMPLING = "sampling"
 """The check whose failure alone is no evidence against the data."""
 SHORTEST_WINDOW, LONGEST_WINDOWS, OVERLAP = 16, 6, 2
-"""Samples in a window of the impulse balance, for phi'' has to be resolved; the number of lengths tried, each
-half the one before, from the whole series down; and the windows of a length that cover a sample."""
+"""Fewest samples in a window of the impulse balance, to resolve phi''; the number of lengths tried, each half
+the one before, from the whole series down; and the number of windows of a length that cover a sample."""
 
 Measured = tuple[float, float, str]
 """What a check measures, what is allowed (with the tolerance), and a note."""
@@ -73,7 +73,7 @@ def jump(case: Case) -> Measured:
 
 
 def sampling(case: Case) -> Measured:
-    """Compare the mean distance of the samples during the transient with the slow time constant."""
+    """Compare the mean sampling interval during the transient with the slow time constant."""
     rates, time, changed = case.theory.rates, case.time, case.theory.last_change
     if rates is None:
         raise NotMade("a fixed indenter has no transient of its own")
@@ -102,7 +102,7 @@ class Window(NamedTuple):
 def windows(time: Array) -> Iterator[Window]:
     """Yield windows of falling lengths with phi = (1 - s^2)^3, s from -1 to 1.
 
-    The weights of the inertia give exactly nothing for a uniform motion, as the integral does.
+    For a uniform motion the weights of the inertia give exactly zero, as the integral does.
     """
     for length in (time.size >> halving for halving in range(LONGEST_WINDOWS)):
         if length < SHORTEST_WINDOW:
@@ -159,7 +159,7 @@ def balance(case: Case) -> Measured:
 
 
 def largest(case: Case, name: str) -> Measured:
-    """Compare the value of a curve that is worst for what is allowed."""
+    """Compare the value of a curve that is worst relative to its allowance."""
     excess, limit, time = case.excess(name), case.limit(name), case.time * 1e3
     ratio = excess / limit
     k, wrong = int(np.argmax(ratio)), np.flatnonzero(ratio > 1.0)
@@ -176,7 +176,7 @@ def rows_of(case: Case) -> Iterator[Row]:
     """Yield the checks for a case in the order in which they are shown."""
     scene = case.theory.scene
     theorem = "F12" if scene.drive.rigid else "F22"
-    yield Row(SAMPLING, theorem, "s, mean distance of samples", sampling)
+    yield Row(SAMPLING, theorem, "s, mean sampling interval", sampling)
     rest = "depth, relative to the static depth"
     yield Row("initial rest state", "Eq. 40", rest, initial_rest, ("depth",))
     yield Row("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}", jump)
@@ -192,7 +192,7 @@ def rows_of(case: Case) -> Iterator[Row]:
     limit = "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
     yield Row("steady limit", limit, RELATIVE, steady_limit)
     if not scene.drive.rigid:
-        error = "error that elements and steps may make in the sliding velocity, relative to it"
+        error = "possible error of the sliding velocity by elements and steps, relative to it"
         yield Row(PHASE, "F22", error, phase)
     sigma = "standard deviation, relative to the load"
     yield Row(case_of.NOISE, "F15", sigma, case_of.sawtooth, ("normal_force",))
@@ -201,7 +201,7 @@ def rows_of(case: Case) -> Iterator[Row]:
 
 
 def judge(case: Case) -> tuple[Check, ...]:
-    """Make every check."""
+    """Run every check."""
     checks = []
     for name, equation, unit, measure, columns in rows_of(case):
         try:

@@ -25,26 +25,26 @@ FAMILIES: tuple[tuple[Family, float], ...] = (
     (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """Families in the order in which they are tried, and the part of the difference that a fault must explain to
-end the search: a sign or a unit is not fitted, so that little is enough."""
+end the search: signs and units are not fitted, so that a small part suffices."""
 BY_ELEMENTS: tuple[tuple[Family, float], ...] = (
     (faults.signs_and_units, 0.5), (faults.other_scenes, 0.9), (faults.scales_and_offsets, 0.97),
     (faults.parameters, 0.9),
 )  # fmt: skip
-"""Those where each theory is a run of many elements."""
+"""The families that are tried where each theory is a run of many elements."""
 NOT_TRIED = (
     "; units and offsets of the time, and contact rules, are not tried where theory is by elements"
 )
 NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
-"""Explanations that are kept."""
+"""Largest number of explanations that are kept."""
 MOST_NAMED = 20
-"""Unused columns that are named in the diagnosis."""
+"""Largest number of unused columns that are named in the diagnosis."""
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
-    PHASE: "Theory cannot say where the cycle of this motion is by now, for such elements and steps",
+    PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
-"""Checks whose failure is no evidence against the data, and what it does say."""
+"""Checks whose failure is no evidence against the data, and what the failure means."""
 MEMORY_UNUSED = (
     " The sliding never reverses, so that the memory of the free surface was not tested."
 )
@@ -123,7 +123,7 @@ def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanatio
 
 
 def explanations(case: Case) -> list[Explanation]:
-    """Try every fault and order them: those that explain the data first, then by what they leave."""
+    """Try every fault and order them: those that explain the data first, then by the remaining difference."""
     rows = bench(case)
     trials: list[Trial] = []
     families = BY_ELEMENTS if case.theory.by_elements else FAMILIES

@@ -1,4 +1,4 @@
-"""A series beside theory: what all checks have in common, and what its elements and time steps do (F15)."""
+"""A series and its theory, as all checks use them, and the effects of elements and time steps (F15)."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -16,34 +16,34 @@ from kvtheory.results.schemes import SCHEME_ROWS
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
-"""Of a scale: smaller differences are ignored."""
+"""Fraction of a scale: smaller differences are ignored."""
 LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
-"""Of the load: if half an element at the edge matters more, the contact is not resolved; if it would have to
-matter more than the second, the data are wrong rather than coarse."""
+"""Fractions of the load: if half an element at the edge contributes more, the contact is not resolved; if it
+would have to contribute more than the second, the data are wrong rather than coarse."""
 MARGIN, IN_STEP = 1.4, 1.75
-"""Factors by which the spacing may exceed the one assumed or that of an even sawtooth; and that of an uneven
-one, of which samples nearly in step with the elements see little."""
+"""Factors by which the spacing may exceed the one assumed or estimated from an even sawtooth; and from an
+uneven one, of which samples nearly in step with the elements show little."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
-"""Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
+"""Median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random, in units of b."""
 EVEN = 0.6
-"""Of the ratio of both that is expected: below it, a part of the samples is in step."""
+"""Fraction of the expected ratio of both, below which a part of the samples is in step with the elements."""
 FINEST = 0.1
-"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, or of rounding."""
+"""Fraction of the assumed spacing: a smaller sawtooth is due to samples all in step, or to rounding."""
 ROUNDED = 1.64
-"""Of half the last digit: how far rounding takes a value from its neighbours, in the units of `gaps`."""
+"""Gap due to rounding, as `gaps` measures it, in units of half the last digit."""
 COMMON = 0.5
-"""Squared correlation of the noise of both forces, from which on it is taken for the sawtooth of F15."""
+"""Squared correlation of the noise of both forces, from which it counts as the sawtooth of F15."""
 LOUD = 4.0
-"""Times the median: larger differences are jumps, and are clipped to this."""
+"""Multiple of the median: larger differences are jumps, and are clipped to it."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
-"""Of the load: smaller noise is none; and a little below where noise ceases to be allowed for."""
+"""Fractions of the load: noise that is negligible; and a little less than the largest noise allowed for."""
 LIKELY, READ = 0.8, 0.75
-"""Ranks of what is seen but cannot be tried: a step that is not known, and a spacing that is estimated from
+"""Ranks of faults that show but cannot be tried: an unknown time step, and a spacing that is estimated from
 the sawtooth."""
 LARGE, MANY = 10.0, 30.0
-"""Of a scale, and of what it was at first: a difference beyond both has grown."""
+"""Multiples of a scale, and of the initial difference: a difference beyond both has grown."""
 UNSTABLE, FEW = "unstable time step", "too few elements"
 """The names of the faults."""
 
@@ -108,8 +108,8 @@ def make_case(
 ) -> Case:
     """Compare a series with theory.
 
-    Where the element density is not known, and the noise is that of elements, it is estimated from that:
-    up to a force of half an element of `coarsest`, relative to the load.
+    An unknown element density is estimated from the noise, if that is due to elements: up to a force of half
+    an element of `coarsest`, relative to the load.
     """
     names = tuple(name for name in CURVES if name in series.columns)
 
@@ -128,7 +128,7 @@ def make_case(
 
 
 def _coarser(case: Case) -> float:
-    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15)."""
+    """Return the spacing over the assumed one, from the sawtooth of +-b in the normal force (F15)."""
     force = "normal_force"
     gap, rows = gaps(case.time, case.columns[force] - case.now[force])
     b, digits = case.edge_force[rows], case.bands[force].rounding[rows]
@@ -143,7 +143,7 @@ def _coarser(case: Case) -> float:
 def common_noise(case: Case) -> float | None:
     """Return the squared correlation of the noise of both forces, if both are there.
 
-    An element that enters at the leading edge adds to both; what a file or a sensor adds does not.
+    An element that enters at the leading edge changes both; noise of a file or a sensor does not.
     """
     if not {"normal_force", "friction_force"} <= set(case.columns):
         return None
@@ -219,7 +219,7 @@ def stability(case: Case) -> tuple[float, float, str]:
 
 
 def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
-    """Yield the faults that show by themselves: in a failed check of elements or steps, or in growth."""
+    """Yield the faults that show without a trial: by a failed check of elements or steps, or by growth."""
     known, density = case.resolution.spacing_known, 1e-3 / case.resolution.spacing
     if not known:
         density *= IN_STEP
@@ -258,9 +258,9 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
 
 
 def _grows(case: Case) -> bool:
-    """Whether the difference to theory becomes large, and began small.
+    """Whether the difference to theory is small at first and becomes large.
 
-    A depth may come back, for an indenter that was thrown off falls; a force jumps without growing.
+    A depth may return, as an indenter that was thrown off falls back; a force may jump without growing.
     """
     quarter = max(case.time.size // 4, 1)
     for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):

@@ -1,6 +1,6 @@
-"""Mistakes in a simulation itself, as data: a wrong contact rule, or a wrong start.
+"""Faults of a simulator as hypotheses: a wrong contact rule, or a wrong initial state.
 
-The paper's scheme makes the mistake, and what that changes is added to theory.
+The paper's scheme runs with and without the fault, and the difference is added to theory.
 """
 
 import math
@@ -19,8 +19,8 @@ class Mistake(NamedTuple):
     """What a simulator does wrong: the name of the fault, its description, and the fields of the rule.
 
     `comes_back` says that it shows only where the indenter re-enters deformed foundation, as where the drive
-    does not keep its velocity, or has a spring. `by_step` says that what it does depends on the time step,
-    which is searched for where it is not known.
+    does not keep its velocity, or has a spring. `by_step` says that its effect depends on the time step,
+    which is searched for if it is not known.
     """
 
     name: str
@@ -66,18 +66,18 @@ in which most discretization errors cancel."""
 LONGEST_RUN = 1500
 """Steps of such a simulation; its later curves are taken as constant."""
 SPAN, LONGEST_SEARCHED = 8.0, 5000
-"""A time step that is not known is searched for up to so many times longer and shorter than the one assumed,
-with at most so many steps."""
+"""Factor above and below the assumed time step within which an unknown one is searched for, and the largest
+number of steps then."""
 INSTANTS = 400
-"""Output times, about."""
+"""Approximate number of output times."""
 STABLE = 0.5
-"""Of the largest stable step of the paper's scheme."""
+"""Time step used, as a fraction of the largest stable one of the paper's scheme."""
 PASSED = 1.618
 """Elements that pass in a step: about as in the paper, but never in step with those that enter."""
 
 
 def mistakes(bench: Bench) -> Iterator[Hypothesis]:
-    """Let a simulator make each mistake, and add to theory what that changes."""
+    """Yield each mistake: what it changes in a simulation is added to theory."""
     right = _simulated(bench, {})
     if right is None:
         return
@@ -114,7 +114,7 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def _simulated(bench: Bench, does: Mapping[str, Any], step: float | None = None) -> Curves | None:
-    """Return the curves of elements that make a mistake, or None where they have none.
+    """Return the curves of a simulation with a mistake, or None if it fails.
 
     With a `step` (s), all time steps are that long, or the longest that is stable; without, the outputs
     are at the times of the rows, for which steps may be shortened.

@@ -1,7 +1,7 @@
-"""The faults that the diagnosis knows and that are not contact rules, as hypotheses.
+"""Faults other than contact rules, as hypotheses.
 
-A fault is a parameter of the scene that the data were not made with, another scene, a column that has to be
-changed back (its sign, unit, scale, offset, or the point that a force acts about), or times that are off.
+A fault is a wrong parameter of the scene, another scene, a column with a wrong sign, unit, scale, offset or
+lever arm, or wrong times.
 """
 
 import math
@@ -18,7 +18,7 @@ from kvtheory.scene.foundations import Foundation
 
 
 class Parameter(NamedTuple):
-    """A quantity of a scene: its symbol, the keys that it scales with their powers, how it is shown."""
+    """A quantity of a scene: its symbol, the keys that it scales with their powers, and how it is shown."""
 
     symbol: str
     powers: Mapping[str, float]
@@ -42,11 +42,11 @@ PARAMETERS = (
     Parameter("M_x", {"drive.mass": 1.0}, "kg/mm", 1e-3, " (what moves along x)"),
     Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
 )  # fmt: skip
-"""What may be wrong in a scene; those that the scene does not have are left out."""
+"""The parameters that may be wrong; those that the scene does not have are left out."""
 PER_WIDTH = {"kg/mm": ("kg", 1.0), "MN/m^2": ("MN/m", 1e-6), "N s/m^2": ("N s/m", 1.0)}
 """Units of a line contact, and those of a ball in their place."""
 WRONG = "wrong "
-"""How the names of faults begin that are a parameter."""
+"""Prefix of the names of faults that are a wrong parameter."""
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
     "both forces": ("normal_force", "friction_force"),
@@ -63,25 +63,25 @@ SIGNS = {
 }
 """What fixes the sign of a column."""
 MEASURED = "normal_force", "friction_force", "spring_force", "depth"
-"""Columns that a sensor measures, and whose zero may be off."""
+"""Columns measured by a sensor, whose zero may be off."""
 FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
-"""Factors of a parameter from which the fit may start: near 1, where mistakes are, and wrong units."""
+"""Initial guesses for the factor of a parameter: near 1, and those of wrong units."""
 LARGEST_FACTOR = 2e3
-"""Factor up and down beyond which a fitted parameter explains nothing: it is farther than a wrong unit."""
+"""Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
 DAMPING_SHARES = (0.01, 0.1, 1.0)
-"""Of critical damping: from where the fit of a damper may start."""
+"""Initial guesses for a damper, as fractions of critical damping."""
 POWER_OF_TEN = 0.02
-"""In the decadic logarithm: nearer to a whole number, a factor is a power of ten."""
+"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 LONGEST = 30.0
-"""Times the run of the scene, or the data: a motion on a spring is followed no longer to try a unit."""
+"""Longest motion on a spring that is computed to try a unit, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
-"""Of the span of the data: offsets of the time from which the fit may start, in both directions."""
+"""Initial guesses for an offset of the time, in both directions, as fractions of the span of the data."""
 HUNDREDTH = 0.01
-"""Of the span: the unit in which an offset of the time is fitted."""
+"""Unit in which an offset of the time is fitted, as a fraction of the span."""
 ONSET = 0.1
-"""Of the range of a force: once it has changed by as much, the drive has started."""
+"""Fraction of the range of a force: once the force has changed by this much, the drive has started."""
 
 
 def _power_of_ten(factor: float) -> int | None:
@@ -91,7 +91,7 @@ def _power_of_ten(factor: float) -> int | None:
 
 
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
-    """Fit each parameter of the scene; from near 1 alone where each theory is a run of many elements."""
+    """Fit each parameter of the scene; from 1 only where each theory is a run of many elements."""
     theory, scene = bench.theory, bench.theory.scene
     values = {"drive.velocity": theory.final_velocity, **scene.values()}
     starts = [0.0] if theory.by_elements else np.log(FACTORS).tolist()
@@ -159,7 +159,7 @@ def damper(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
-    """Change signs and units back, exchange the edges, and reverse the drive."""
+    """Try wrong signs and units, exchanged edges, and a reversed drive."""
     for title, factor, exact, pair in _factors(bench):
         power, names = _power_of_ten(factor), title.replace("_", " ")
         if power == 0 and exact < 0.0:
@@ -180,7 +180,7 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
-    """Multiply columns by what fits best, shift them, and shift the point that friction acts about."""
+    """Fit the scale and the offset of columns, and the lever arm of the friction force."""
     theory, columns = bench.theory, bench.columns
     for title, factor, exact, pair in _factors(bench):
         if _power_of_ten(factor) is None:
@@ -230,7 +230,7 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
 
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:
-    """Multiply the times by powers of ten; a cycle on a spring goes on, and is not followed for too long."""
+    """Multiply the times by powers of ten; a cycle on a spring is not computed for too long."""
     scene, end = bench.theory.scene, float(bench.time[-1])
     longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
     for power in (power for power in DECADES if end * 10.0**power <= longest):
@@ -240,7 +240,7 @@ def time_units(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def time_offset(bench: Bench) -> Iterator[Hypothesis]:
-    """Shift the times: from none, from the start of the data, and from where the force changes first."""
+    """Fit an offset of the time, first from zero, the start of the data, and the first change of a force."""
     scene, unit = bench.theory.scene, HUNDREDTH * float(bench.time[-1] - bench.time[0])
     values = bench.columns[next(name for name in MEASURED if name in bench.columns)]
     change = np.abs(values - values[0])

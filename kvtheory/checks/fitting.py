@@ -20,26 +20,26 @@ Pair = tuple[Curves, Curves]
 ROWS = 160
 """Rows of the data on which faults are tried: half of them spread evenly, half right after the start."""
 LARGEST = 1e3
-"""A single value counts at most this many times what it is allowed."""
+"""Upper bound of the difference of a single value, in units of its allowance."""
 SHARE_OF_VALUES = 0.98
-"""Fraction of the values that must be as allowed for a fault to explain the data; the rest are at jumps."""
+"""Fraction of the values that must be allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
-"""Times what is allowed: a fitted fault reproduces the method's own errors only about so well."""
+"""Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP = 1e-5, 1e-3
-"""Of a fitted unknown, and its difference for slopes: the theory of trials is smooth far below that."""
+"""Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
 MAXIMUM_TRIALS, BY_ELEMENTS = 30, 8
-"""Of one unknown; from a near start, five are enough. Fewer where theory is a run of many elements."""
+"""Most evaluations to fit one unknown; a good guess needs five. Fewer if theory is a run of many elements."""
 WORTH_SEARCHING, SEARCH_PRECISION = 0.3, 0.01
-"""Part of the difference that x = 0 must explain for a search to begin, and its precision."""
+"""Part of the difference that x = 0 must explain for a search to begin, and the precision of x."""
 VELOCITY = "drive.velocity"
-"""Of a drive, the velocity stands for all its velocities."""
+"""The key that stands for all velocities of a drive."""
 
 
 class Hypothesis(NamedTuple):
     """A possible fault: its name, its description, and the data and theory that it compares.
 
     With `starts` it has an unknown x, fitted by least squares from the best of them. With `span`, x is
-    searched for from -span to span, for what is not smooth in x. Otherwise x is 0. `factor` is the number
+    searched for from -span to span, if the fit is not smooth in x. Otherwise x is 0. `factor` is the number
     that is reported for x. `powers` are those of the quantities of the scene that scale with e^x, if any.
     """
 
@@ -60,8 +60,8 @@ def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) 
 class Trial(NamedTuple):
     """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
 
-    `enough` says whether what is left is allowed, `value` is the unknown, and `alike` are the parameters
-    that the data cannot distinguish from the one that it names.
+    `enough` says whether the remaining difference is allowed, `value` is the unknown, and `alike` are the
+    parameters that the data cannot distinguish from the one that it names.
     """
 
     hypothesis: Hypothesis
@@ -77,7 +77,7 @@ class Bench(Case):
 
     @cached_property
     def _units(self) -> tuple[Array, Array]:
-        """By curve: the width of theory's band, and what is allowed outside of it."""
+        """The width of theory's band and the allowance outside of it, by curve."""
         bands = [np.nan_to_num(self.bands[n].high - self.bands[n].low) for n in self.names]
         return np.array(bands), np.array([self.allowed(name) for name in self.names])
 
@@ -108,7 +108,7 @@ class Bench(Case):
         return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
 
     def tried(self, hypothesis: Hypothesis, best: float) -> Trial:
-        """Return how a hypothesis fits; a search is made only where it begins below the score `best`."""
+        """Return how a hypothesis fits; a search is made only if its first score is below `best`."""
         make = cache(hypothesis.make)
         if not hypothesis.starts:
             trials = [self._rated(hypothesis, make(0.0))]
@@ -132,7 +132,7 @@ class Bench(Case):
         first = hypothesis.starts[0]
         if len(hypothesis.starts) > 1:
             first = min(hypothesis.starts, key=lambda x: float(np.sum(np.log1p(ratios(x) ** 2))))
-        # Without a bound on what one value counts, what a fault cannot explain would bend the fit.
+        # With a plain sum of squares, values that a fault cannot explain would distort the fit.
         found = least_squares(
             lambda x: ratios(float(x[0])), [first], jac=slope, loss="soft_l1", xtol=PRECISION,
             max_nfev=BY_ELEMENTS if self.theory.by_elements else MAXIMUM_TRIALS,
@@ -155,7 +155,7 @@ class Bench(Case):
     def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
         """Return the names of the parameters that the data cannot distinguish from the best one.
 
-        With such a one free beside it, the fit leaves the unknown uncertain by more than it is off: the
+        With such a parameter free too, the uncertainty of the best fault's unknown exceeds its value: the
         data do not need it. The slopes are those of theory at the best fit.
         """
         at = best.hypothesis

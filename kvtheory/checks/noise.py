@@ -14,9 +14,9 @@ NORMAL_MAD = 0.6745
 FEWEST = 5
 """Values needed to estimate noise from neighbours."""
 MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
-"""Parts of the noise that may be in proportion to the value, the rest being the same everywhere."""
+"""Fractions of the noise that are proportional to the value, to be tried; the rest is constant."""
 DOUBT = 5.0
-"""Difference of log-likelihoods: the less likely is not ruled out."""
+"""Difference of log-likelihoods up to which the less likely model is not ruled out."""
 RARE, FROM_FEW = 2.0, 2.0
 """Standard deviations allowed beyond sqrt(2 ln n), where the largest of n normal errors is expected: with
 them fewer than one run of twenty checks in a thousand raises a false alarm. And the relative uncertainty, in
@@ -26,12 +26,12 @@ SURE = 4.5
 FEW_DIGITS = (2, 3, 4, 5)
 """Significant digits to which a column may be rounded; more do not matter."""
 SEVERAL, ON_GRID = 10, 1e-3
-"""Distinct values whose smallest distance shows how finely they were written, and how near to its multiples,
-relative to it, all values have to be."""
+"""Fewest distinct values whose smallest step shows the rounding, and how close to its multiples, relative to
+the step, all values must be."""
 SAME = 1e-6
-"""Of the last digit: a value so near to it is on it."""
+"""Fraction of the last digit within which a value counts as rounded to it."""
 REPEATED = 0.1
-"""Of the rows: where as many have the time of the row before them, times are rounded."""
+"""Fraction of rows with the time of the row before, from which times count as rounded."""
 
 
 def extreme(count: int) -> float:
@@ -41,7 +41,7 @@ def extreme(count: int) -> float:
 
 
 def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Return how far values are from the line between their neighbours, and which values these are.
+    """Return how far values are from the line between their neighbours, and the indices of these values.
 
     For white noise this has the variance sigma^2 (1 + w^2 + (1 - w)^2), w the weight of the earlier
     neighbour; it is scaled to sigma^2, and its magnitude returned.
@@ -58,9 +58,9 @@ def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
 def noise(time: Array, residual: Array, curve: Array) -> Array:
     """Return sigma of the random part of a residual for each value, from its differences to its neighbours.
 
-    The median of magnitudes is robust against jumps. Of sigmas that are constant, in proportion to the curve,
-    or mixed, the most likely by Laplace's law counts, or the largest of those that are hardly less likely,
-    for few values show what the noise is where the curve is large.
+    The median of magnitudes is robust against jumps. Sigma is modelled as constant, proportional to the
+    curve, or mixed; the largest of the most likely (by Laplace's law) and those hardly less likely is used,
+    as few values show the noise where the curve is large.
     """
     gap, rows = gaps(time, residual)
     size = np.nan_to_num(np.abs(curve))
@@ -83,7 +83,7 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
 def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     """Return the rounding error: half the smallest step between values, or half their last digit.
 
-    With fewer digits than `fewest` they are taken for exact.
+    Values with fewer digits than `fewest` count as exact.
     """
     distinct = np.unique(values[np.isfinite(values)])
     step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0

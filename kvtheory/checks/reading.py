@@ -1,4 +1,4 @@
-"""A time series from anybody's program: a CSV, a result with our names, or a mapping of arrays.
+"""Reads a time series from any program: a CSV, a result with our names, or a mapping of arrays.
 
 Columns are recognised by name and unit, as people write them: ``t [ms]``, ``Time (s)``, ``t/ms``,
 ``z_A [mm]``, ``F_z in N/mm``, ``Zeit [ms]``; a height of the indenter, z_A = -depth (Eq. 18), becomes a
@@ -21,9 +21,9 @@ from kvtheory.scene.tables import numbers, parts, plain, read_table
 from kvtheory.scene.units import bare, to_si
 
 PRESSURE = {"peak_pressure": "N/m^2"}
-"""As `kvtheory.scene.units` spells its unit."""
+"""The unit as `kvtheory.scene.units` spells it."""
 SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **PRESSURE}
-"""The units of the series of a line contact as they are spelt there."""
+"""The units of the series of a line contact, in that spelling."""
 
 SPELLINGS = {
     "time": "time, t, Zeit",
@@ -54,14 +54,14 @@ SHOWN = (
     "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
 )
 MISSPELT = 0.8
-"""Likeness of a name to a known one from which on it is taken for misspelt, and not for something else."""
+"""Similarity to a known name from which a name counts as misspelt, not as something else."""
 SHORTEST, MOST_ROWS = 8, 2000
-"""Rows: fewer cannot show a jump, a transient of two time constants and a limit; longer series are thinned to
-about the most, for more of them would not change a verdict."""
+"""Fewest rows that can show a jump, a transient of two time constants and a limit; and about how many rows
+are kept of a longer series, as more would not change a verdict."""
 BRIEFEST = 1e-30
-"""Seconds: no contact changes in a shorter time, of which squares and cubes would be zero."""
+"""Shortest span in s: no contact changes in a shorter time, whose powers would underflow."""
 MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
-"""What does not exist in flight, so that some of its cells may be empty or NaN."""
+"""Quantities that do not exist in flight: some of their cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""
 
@@ -75,9 +75,9 @@ class Column(NamedTuple):
 
 
 def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
-    """Return what a column holds; None if its name is of no quantity, nor nearly.
+    """Return what a column holds; None if its name is not similar to that of any quantity.
 
-    `units` are those of the scene: the forces of a ball are whole. `ValueError` names the column, what it
+    `units` are those of the scene: the forces of a ball are totals. `ValueError` names the column, what it
     lacks or which unit is expected, and the nearest known name.
     """
     header = header.strip()

@@ -15,21 +15,21 @@ from kvtheory.checks.noise import SURE
 from kvtheory.checks.theory import Array, Rates
 
 SETTLED = 7.0
-"""Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
+"""Slow time constants from the last change of the drive to steady sliding: e^-7 is below a thousandth."""
 NEAR, FAR, FAST_SPAN = 0.3, 1e-3, 4.0
-"""The slow time constant is fitted while the depth is so far from the steady one, relative to it, and the
-fast one within so many of it after the start."""
+"""The slow time constant is fitted while the relative distance of the depth from the steady one is in this
+range, the fast one within this many of it after the start."""
 LAST_PART, FEWEST_LATE = 0.75, 3
-"""Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
+"""Fraction of the time after which the mean is taken for the limit, and the fewest samples for it."""
 FITTED = 0.5
-"""A time constant that is less certain than this, relative, is not judged."""
+"""Largest relative uncertainty of a time constant that is judged."""
 PHASE = "phase of the cycle"
 """The check whose failure alone is no evidence against the data: theory cannot predict the phase."""
 LOST = 0.25
-"""Of the sliding velocity: where so much is allowed, the phase is lost."""
+"""Allowance, relative to the sliding velocity, from which the phase is lost."""
 FEWEST, RANGE, LOG_PRECISE = 6, 5.0, 1e-6
-"""Samples for the three unknowns of a fit, the factor up and down from the expected time constant in which to
-look, and the precision of its logarithm, far finer than any data fix it."""
+"""Fewest samples to fit three unknowns, the factor above and below the expected time constant to search, and
+the precision of its logarithm, far finer than any data determine it."""
 
 
 def slow_constant(case: Case) -> tuple[float, float, str]:
@@ -148,10 +148,10 @@ def steady_limit(case: Case) -> tuple[float, float, str]:
 
 
 def phase(case: Case) -> tuple[float, float, str]:
-    """Compare what is allowed of the sliding velocity with itself, where steady sliding is unstable.
+    """Compare the allowance for the sliding velocity with that velocity, where steady sliding is unstable.
 
-    A disturbance shifts the phase of a cycle for good: if that may be half of an oscillation whose amplitude
-    is half of the mean, agreement proves nothing.
+    A disturbance shifts the phase of a cycle permanently: once the allowance is half of an oscillation whose
+    amplitude is half of the mean, agreement proves nothing.
     """
     theory, curve = case.theory, "sliding_velocity"
     if theory.rates is not None and math.isfinite(theory.rates.settling):

@@ -1,6 +1,6 @@
 """Theory at the times of a series, including the rest before t = 0.
 
-The solvers come in as functions (`Methods`), so that this package depends on none of them.
+The solvers are passed in as functions (`Methods`), so that this package depends on none of them.
 """
 
 import math
@@ -86,7 +86,7 @@ class Theory:
 
     `static` is the scene at rest, `radius` is R in m, `units` are the SI units of the curves, and
     `last_change` is the time in s after which the drive keeps its velocity, infinite if it need not.
-    `by_elements` says whether the transient is that of many elements: of a ball, and on arms.
+    `by_elements` says whether the transient is computed with elements: for a ball, and on arms.
     """
 
     def __init__(self, scene: Scene, methods: Methods) -> None:
@@ -184,7 +184,7 @@ class Theory:
     def _settled(self, end: float) -> float:
         """Return a time in s after which nothing changes, or `end` if that is sooner.
 
-        On a spring that need never be: beside steady sliding there may be a cycle.
+        On a spring there may be none: the motion may end in a cycle.
         """
         foundation = self.scene.foundation
         slow = foundation.retardation_time

@@ -47,7 +47,7 @@ class Explanation:
 
 
 MOST_SHOWN = 6
-"""Failed checks in the text of a comparison, at most."""
+"""Largest number of failed checks in the text of a comparison."""
 MARKS = {True: "ok", False: "NO", None: "not made"}
 HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 

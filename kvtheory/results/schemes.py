@@ -45,4 +45,4 @@ _ROWS = (
 SCHEME_ROWS = {row.name: row for row in _ROWS}
 """The rows by name."""
 SIMULATED = tuple(name for name in SCHEME_ROWS if name != "rk4")
-"""Those that `elements` runs; the other one is met in series of other simulators."""
+"""Those that `elements` runs; the other one occurs in series of other simulators."""

@@ -70,7 +70,7 @@ class SteadyState(Presented):
 class Stability(Recorded):
     """Stability of steady sliding: each quantity a value, or an array where the input was an array.
 
-    `stable` is meant against small disturbances: the real parts of all rates are negative. `rates` holds,
+    `stable` means stable against small disturbances: the real parts of all rates are negative. `rates` holds,
     along its last axis but one, the rates of small motions in 1/s as pairs (real, imaginary), fastest growth
     first, and `time_constants` -1/real of each in s: negative for a growing motion. Steady sliding is stable
     if the spring in the drive is stiffer than `critical_stiffness` (N/m^2, of a ball N/m), or softer than

@@ -48,8 +48,8 @@ class Sweep(Recorded):
     series; `events` is an array of JSON texts. The arrays of a sweep in a file (`path`) are read on access.
     `units` covers swept keys and quantities. `computed` counts the points that this call solved; the others
     were in the file already. `failed` counts the scenes that failed; `failures` lists them, for a file the
-    first hundred. The errors in the certificate are the largest over the sweep. `plan` and `read` belong to
-    the package: the request, and what reads the arrays.
+    first hundred. The errors in the certificate are the largest over the sweep. `plan` (the request) and
+    `read` (reads the arrays) are internal.
     """
 
     scene: Scene

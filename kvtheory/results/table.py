@@ -1,4 +1,4 @@
-"""The quantities of results: one table, which everything that names or shows a quantity reads."""
+"""The quantities of results: the only table of their names, symbols, units, descriptions and scales."""
 
 from collections.abc import Mapping
 from typing import NamedTuple

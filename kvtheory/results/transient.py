@@ -131,7 +131,7 @@ class Simulation(TimeSeries):
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class SprungSimulation(Simulation):
-    """A run of the elements on a spring, with the two series more of a `SprungTransient`."""
+    """A run of the elements on a spring, with the two additional series of a `SprungTransient`."""
 
     sliding_velocity: Value
     spring_force: Value

@@ -1,4 +1,4 @@
-"""What is modelled: scenes, their files, and units at the edge."""
+"""Scenes: the model, its files, and units on input."""
 
 from kvtheory.scene.files import load_scene, template, to_toml
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell

@@ -1,6 +1,6 @@
-"""Arguments of the public functions: each function declares once what its arguments are.
+"""Checks of the arguments of public functions; each function declares its arguments once.
 
-`checked` reads and checks them before the function runs, so that a message names the wrong one.
+`checked` converts and checks them before the function runs, so that a message names the wrong one.
 """
 
 import inspect
@@ -38,9 +38,9 @@ Kind = Callable[[Any], Any]
 
 
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
-    """Decorate a function whose named arguments are read by their kinds; an argument may be its default.
+    """Decorate a function: convert and check arguments by their kinds; a default is passed as it is.
 
-    While the function runs, its `progress` also learns that kernels are being compiled.
+    While the function runs, its `progress` also reports that kernels are being compiled.
 
     >>> @checked(jobs=count)
     ... def run(jobs=None):
@@ -90,7 +90,7 @@ def a_scene(value: Any) -> Scene:
 
 
 def number(low: float, high: float = math.inf) -> Kind:
-    """Return the kind of a finite number from `low` to `high`; an infinite `high` excludes `low`."""
+    """Return the kind of a finite number from `low` to `high`; if `high` is infinite, `low` is excluded."""
     said = f"a number from {low} to {high}" if math.isfinite(high) else f"a number above {low:g}"
 
     def read(value: Any) -> float:

@@ -16,19 +16,19 @@ from numpy.polynomial import Chebyshev, Polynomial, polynomial
 from numpy.typing import NDArray
 
 DEGREE = 8
-"""Polynomial degree of a piece that represents a function: a period of a sine takes a few pieces."""
+"""Degree of the polynomials that approximate a function: a period of a sine takes a few pieces."""
 CHECKS = 2 * DEGREE + 3
 """Number of points at which a piece is compared with its function, most of them between the nodes."""
 SHORTEST = 1e-12
-"""Shortest piece, as a share of the whole motion; one that would have to be shorter has a jump or a kink."""
+"""Shortest piece, as a fraction of the motion; if a shorter one is needed, there is a jump or a kink."""
 PIECE_LIMIT = 100_000
 EARLY, LOOKS, WIDER = 500, 16, 4.0
 """A function is refused early if `EARLY` pieces show that too many would be needed, and a piece `WIDER` times
 as long represents it at none of `LOOKS` places."""
 SAME_TIME = 1024.0
-"""Times that differ by this many units in the last place are equal but for rounding."""
+"""Times that differ by at most this many units in the last place count as equal."""
 ON_REST = 16.0 * 2.0**-52
-"""Rounding of a velocity whose terms cancel, relative to these terms."""
+"""Rounding error of a velocity whose terms cancel, relative to these terms."""
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
 """Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
 
@@ -39,12 +39,12 @@ Span = tuple[float, float, tuple[float, ...]]
 
 @dataclass(frozen=True)
 class BaseMotion:
-    """V(t) in pieces, between which it may jump, and within which it does not pass through zero.
+    """V(t) in pieces; it may jump between pieces, and does not change sign within one.
 
-    Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length. On a
-    piece the base moves one way: a model whose steps end with the pieces misses no reversal, however brief.
-    A last piece without length gives V just after a jump at the end. `changes` are the times at which V may
-    jump or have a kink. Before t = 0 the base rests.
+    Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length. Within
+    a piece the base moves one way: a model whose steps end with the pieces misses no reversal, however brief.
+    A last piece of zero length gives V just after a jump at the end. `changes` are the times at which V may
+    jump or have a kink. Before t = 0 the base is at rest.
     """
 
     pieces: tuple[tuple[float, ...], ...]
@@ -113,7 +113,7 @@ class BaseMotion:
             a, b = todo.pop()
             coefficients, error = _fit(value, a, b, least)
             if error <= tolerance:
-                # The exact value of the function at the start, so that what rests stays at rest.
+                # The exact value of the function at the start, so that a base at rest stays at rest.
                 found.append((a, b, (value(a), *coefficients[1:])))
                 if len(found) != EARLY or end - b <= PIECE_LIMIT * (b - a):
                     continue
@@ -151,7 +151,7 @@ class BaseMotion:
         return BaseMotion(_joined(found))
 
     def kept(self, end: float) -> "BaseMotion":
-        """Return the motion with its last velocity from its end to `end`."""
+        """Return the motion, extended at its last velocity from its end to `end`."""
         if end <= self.end:
             return self
         last = (self.velocity(self.end), *(0.0 for _ in self.pieces[-1][POWERS + 1 :]))
@@ -199,7 +199,7 @@ class BaseMotion:
         return evaluate(self._piece(t), t)[0]
 
     def forward(self, t: float) -> bool:
-        """Whether the base moves, or moved last, with V >= 0."""
+        """Whether V > 0, or was when the base last moved; true if it has not moved yet."""
         for piece in reversed(self.pieces[: bisect_right(self.starts, t)]):
             V = evaluate(piece, 0.5 * (piece[START] + t))[1]
             if V != 0.0:
@@ -208,7 +208,7 @@ class BaseMotion:
         return True
 
     def extremes(self, start: float, end: float) -> tuple[float, float]:
-        """Return the smallest and the largest Y between two times; Y turns where pieces meet.
+        """Return the smallest and the largest Y between two times; Y reverses only where pieces meet.
 
         >>> BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], 3.0).extremes(0.0, 3.0)
         (-1.0, 1.0)
@@ -263,7 +263,7 @@ def _one_way(found: Iterable[Span]) -> Iterator[Span]:
 
 
 def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]:
-    """Return the times within a piece at which V changes its sign, by more than rounding."""
+    """Return the times within a piece at which V changes sign by more than rounding errors."""
     powers = [c * (b - a) ** k for k, c in enumerate(coefficients)]
     size = sum(map(abs, powers))
     if 2.0 * abs(powers[0]) >= size:
@@ -281,7 +281,7 @@ def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]
 
 
 def _beside(t: float, breaks: Iterable[float]) -> float:
-    """Return `t`, moved away from a break that it equals but for rounding, to the side on which it is."""
+    """Return `t`; if it equals a break up to rounding, move it clear of the break, on its own side."""
     near = next((b for b in breaks if abs(t - b) <= SAME_TIME * math.ulp(b)), None)
     return t if near is None else near + math.copysign(SAME_TIME * math.ulp(near), t - near)
 
@@ -290,7 +290,7 @@ def _fit(
     function: Callable[[float], float], a: float, b: float, least: float
 ) -> tuple[tuple[float, ...], float]:
     """Interpolate on [a, b]; return powers of t - a, and the error relative to max(`least`, |V|)."""
-    open_end = math.nextafter(b, a)  # at a jump the value before it counts
+    open_end = math.nextafter(b, a)  # at a jump, use the value before it
 
     def values_at(times: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.array([function(t) for t in np.minimum(times, open_end).tolist()])
@@ -306,7 +306,7 @@ def _fit(
 
 
 def _joined(found: Iterable[Span]) -> tuple[tuple[float, ...], ...]:
-    """Give each piece (a, b, coefficients) the displacement at which the one before it ends."""
+    """Add to each piece (a, b, coefficients) its initial displacement, where the previous one ended."""
     pieces: list[tuple[float, ...]] = []
     displacement = 0.0
     for a, b, coefficients in found:

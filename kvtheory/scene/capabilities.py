@@ -1,7 +1,7 @@
-"""What works with what: the scenes for which each question is answered, and what is said of the others.
+"""Capabilities: the scenes for which each question is answered, and the messages about the others.
 
-A scene has a shape, a law of the foundation, a support and a drive. A question is answered for sets of these;
-messages, tests and a page of the documentation are made from the table `QUESTIONS`.
+A scene has a shape, a foundation law, a support and a drive. A question is answered for certain sets of
+these; messages, tests and a page of the documentation are made from the table `QUESTIONS`.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ class Scenes:
     why: str = ""
 
     def lacking(self, shape: str, law: str, support: str, drive: str) -> list[str]:
-        """Return what keeps a scene from being one of these, in words."""
+        """Return the conditions that a scene does not meet, in words."""
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
@@ -61,8 +61,8 @@ Kind = tuple[str, str, str, str]
 class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
-    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks of the
-    nearest set.
+    Called with a scene, it returns an empty text if the scene meets it; else the first condition of the
+    nearest set that it does not meet.
 
     >>> lacks_parabola(Scene())
     ''
@@ -81,7 +81,7 @@ class Needs:
         return self.told[kind]
 
     def laws(self, shape: str, support: str, drive: str) -> list[str]:
-        """Return the laws on which a shape, on a support and a drive, meets the requirement."""
+        """Return the foundation laws for which a shape, support and drive meet the requirement."""
         met = [s.laws for s in self.sets if not s.lacking(shape, s.laws[0], support, drive)]
         return [law for law in LAWS if any(law in laws for laws in met)]
 
@@ -108,7 +108,7 @@ lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIG
 
 @dataclass(frozen=True)
 class Question:
-    """A question about a scene: its name, how it is asked, what it needs, and what theory is missing."""
+    """A question about a scene: its name, the call, the requirement, and what theory is missing."""
 
     what: str
     call: str
@@ -116,7 +116,7 @@ class Question:
     missing: str = ""
 
 
-_NO_ELEMENTS = "A springpot has no finite state; a Prony series that comes near it has one."
+_NO_ELEMENTS = "A springpot has no finite state; a Prony series that approximates it has one."
 QUESTIONS = {
     "exact": Question(
         "steady sliding in closed form", 'steady(scene, method="exact")', lacks_closed_form,
@@ -129,7 +129,7 @@ QUESTIONS = {
     ),
     "asymptote": Question(
         "steady sliding by asymptotes", 'steady(scene, method="asymptote")', lacks_asymptotes,
-        "Other laws have other limits, which `asymptotes` gives without errors that are proved.",
+        "Other laws have other limits, which `asymptotes` gives without proved errors.",
     ),
     "limits": Question(
         "limits of steady sliding", "asymptotes(scene)", lacks_limits,
@@ -173,7 +173,7 @@ QUESTIONS = {
         "The derivations are of Kelvin-Voigt closed forms.",
     ),
 }  # fmt: skip
-"""What works with what: the one table. For scenes that are not covered, theory is missing."""
+"""The only table of capabilities. For scenes that are not covered, theory is missing."""
 
 IN_MOTION = (
     lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
@@ -183,7 +183,7 @@ IN_MOTION = (
 
 
 def lacks_one_scene(scene: Scene) -> str:
-    """Return why what is made for one scene does not take arrays of them, or an empty text."""
+    """Return why a function for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
     return f"is for one scene, not for arrays ({keys}); use `sweep`, or one value" if keys else ""
 
@@ -194,7 +194,7 @@ def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
         return
     instead = ""
     if lacks in IN_MOTION and lacks_arms(scene):
-        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that comes near it'
+        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that approximates it'
         instead = f"; `steady` holds for it, and `elements` follows {prony}"
     elif lacks in IN_MOTION:
         instead = "; `elements`, or `solve` with `at`, follows any shape and any Prony series"

@@ -38,7 +38,7 @@ SPRING = "stiffness", "damping", "mass"
 LEAST_TOLERANCE = 1e-13
 """Smallest tolerance of a drive that is a function; below it rounding limits the polynomials."""
 MOST_CYCLES = 10_000
-"""Most periods of a waveform in a run, which follows them one by one."""
+"""Largest number of periods of a waveform in a run, which computes them one by one."""
 SMOOTH = 1e-9
 """Largest relative change of a function across a break that is not a jump."""
 ON_LINE = 4.0 * 2.0**-52
@@ -142,9 +142,9 @@ class Drive(Part):
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
-        """The points (time, velocity) that matter, in SI; a drive that is a function raises SceneError.
+        """The necessary points (time, velocity), in SI; a drive that is a function raises SceneError.
 
-        A velocity has one; points of a history are left out if they lie on the line between their
+        A constant velocity has one; points of a history are left out if they lie on the line between their
         neighbours, or repeat the final velocity.
 
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.1), (1.0, 0.2), (2.0, 0.2)]).points
@@ -158,7 +158,7 @@ class Drive(Part):
             return ((0.0, self.velocity),)  # type: ignore[return-value]
         history = self.history
         if len(history) > 1 and history[1][0] == history[0][0]:
-            history = history[1:]  # a jump at t = 0 is one from rest
+            history = history[1:]  # a jump at t = 0 starts from rest
         kept = [history[0]]
         for point, (later, next_velocity) in pairwise(history[1:]):
             (before, last), (time, velocity) = kept[-1], point
@@ -184,7 +184,7 @@ class Drive(Part):
 
     @property
     def ends(self) -> bool:
-        """Whether the drive ends with one velocity."""
+        """Whether the drive has a final velocity."""
         return self.function is None or getattr(self.waveform, "final_velocity", None) is not None
 
     @property
@@ -224,7 +224,7 @@ class Drive(Part):
         return self.points[-1][0]
 
     def faster(self, times: float) -> "Drive":
-        """Return the drive with every velocity multiplied.
+        """Return the drive with every velocity multiplied by `times`.
 
         >>> Drive(history=[(0.0, 0.1), (1.0, -0.2)]).faster(2.0).points
         ((0.0, 0.2), (1.0, -0.4))
@@ -255,8 +255,8 @@ class Drive(Part):
     def motion(self, end: float, least: float) -> BaseMotion:
         """Return V(t) and Y(t) as polynomials, up to the time `end` (s) or the end of a longer history.
 
-        A function need not be followed relative to its own value below the speed `least` in m/s: a_0/tau. It
-        raises ValueError if it is not smooth between its breaks, or not finite, or changes too often.
+        The error of a function is relative to |V|, or to the speed `least` (m/s), a_0/tau, if that is larger.
+        It raises ValueError if it is not smooth between its breaks, or not finite, or changes too often.
         """
         wave = self.waveform
         if self.function is None:
@@ -277,7 +277,7 @@ class Drive(Part):
         return motion.repeated(end) if isinstance(wave, Sine) else motion.kept(end)
 
     def called(self, time: float) -> float:
-        """Return what `function` gives at `time` (s), in m/s; it must be one finite number."""
+        """Return the value of `function` at `time` (s), in m/s; it must be one finite number."""
         try:
             with np.errstate(all="ignore"):  # an infinity is reported below
                 given = self.function(time)  # type: ignore[misc]

@@ -50,10 +50,10 @@ LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
 }
-"""Keys of a support that are masses, loads and springs."""
+"""Keys of a support that are per unit width: masses, loads and springs."""
 BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
 LARGEST = 10**400
-"""Larger integers of a file are infinite."""
+"""Larger integers in a file are read as infinite."""
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
 
@@ -201,7 +201,7 @@ def _read(path: Path) -> dict[str, Any]:
         told = "it is not text in UTF-8, UTF-16 or Windows-1252"
     except RecursionError:
         told = "its brackets are nested too deep"
-    except ValueError as error:  # of TOML, or an endless integer
+    except ValueError as error:  # invalid TOML, or too long an integer
         number = re.search(r"at line (\d+)", str(error))
         line = f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
         told = f'{error}{line}; a quantity is text in quotes, such as radius = "10 mm"'
@@ -209,7 +209,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], list[str]]:
-    """Return the tables of a scene file, or of Table 1, with overrides, and the mistakes in these."""
+    """Return the tables of a scene file, or of Table 1, with overrides, and the mistakes in the overrides."""
     tables: dict[str, Any] = _tables(Scene.table1()) if path is None else _read(Path(path))
     drive = tables.get("drive")
     if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
@@ -232,7 +232,7 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
     for (section, name), value in new.items():
         if section in CHOOSERS and name == CHOOSERS[section]:
             tables[section] = _switched(tables.get(section), section, value, path is None)
-    if path is None and not _is_per_width(tables):  # what Table 1 gives does not fit a ball
+    if path is None and not _is_per_width(tables):  # Table 1 is per unit width
         for key in PER_WIDTH & tables["support"].keys():
             del tables["support"][key]
     for (section, name), value in new.items():
@@ -251,7 +251,7 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
 
 
 def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
-    """Return the keys of a table that give way to a new one."""
+    """Return the keys of a table that a new one replaces."""
     if section == "foundation" and name == "wlf":
         return ["activation_energy"]
     if section == "foundation" and name in (specs := quantities(Foundation)):
@@ -276,7 +276,7 @@ def _switched(old: Any, section: str, choice: str, table1: bool) -> dict[str, An
 
 
 def _is_per_width(tables: Mapping[str, Any]) -> bool:
-    """Whether the forces on the indenter are per unit width: on any but a ball."""
+    """Whether the forces on the indenter are per unit width: for every shape except a ball."""
     indenter = tables.get("indenter")
     shape = indenter.get("shape") if isinstance(indenter, dict) else None
     return not isinstance(shape, str) or getattr(SHAPES.get(shape), "per_width", True)
@@ -317,7 +317,7 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
 
 
 def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str) -> Any:
-    """Make a part of a scene from the keys of its model; a waveform has those of a spring beside its own."""
+    """Make a part of a scene from the keys of its model; a waveform also takes those of a spring."""
     specs, valid, of = quantities(cls), _keys(cls), f" for {choice}" if choice else ""
     unknown = [key for key in table if key not in valid]
     misspelt = {closest(key, valid) for key in unknown}
@@ -362,7 +362,7 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
 
 
 def _hint(section: str, key: str, valid: list[str]) -> str:
-    """Return which other models of a section have a key of this name or meaning, or a similar one."""
+    """Return which other models of a section have this key or a synonym, or else a similar key."""
     known = [CHOOSERS[section], *valid] if section in CHOOSERS else valid
     keys = {name: _keys(model) for name, model in MODELS[section].items()}
     meant = key if any(key in own for own in keys.values()) else MEANT.get(key, "")
@@ -373,7 +373,7 @@ def _hint(section: str, key: str, valid: list[str]) -> str:
 
 
 def _unitless(value: Any) -> Any:
-    """Return the value of a key with its bare numbers as texts, which lack a unit unless they need none."""
+    """Return the value of a key with its numbers as texts, so that a missing unit is reported."""
     if isinstance(value, list):
         return [_unitless(item) for item in value]
     if isinstance(value, bool) or not isinstance(value, int | float):

@@ -1,4 +1,4 @@
-"""Foundations: rows of independent viscoelastic elements, each known by its relaxation function G(t).
+"""Foundations: rows of independent viscoelastic elements, each defined by its relaxation function G(t).
 
 An element compressed by u exerts the pressure p(t) = int G(t - t') du/dt' dt'. Every
 foundation has its `kind`; the relaxed `stiffness` K; the `arms` of a Prony series, in addition to
@@ -108,8 +108,8 @@ class _Relaxed(Part):
     """What all foundations have in common: a stiffness, or the layer it follows from; and temperature.
 
     At a `temperature` every time of the foundation is a_T times that at the `reference_temperature`
-    (`shift_factor`); the moduli stay (fact F25). The times that are given are those at the reference
-    temperature, the attributes those at the temperature.
+    (`shift_factor`); the moduli stay (fact F25). Times are given at the reference temperature; the attributes
+    are those at the temperature.
     """
 
     stiffness: Value = quantity(
@@ -149,7 +149,7 @@ class _Relaxed(Part):
         held: list[Any] = [self, *self._read_arms(problems)]
         lawless = self.wlf is None and self.activation_energy is None
         if self.modulus is None and is_derived(self.stiffness):
-            object.__setattr__(self, "stiffness", +self.stiffness)  # that of another foundation
+            object.__setattr__(self, "stiffness", +self.stiffness)  # derived for another foundation
         times = [(part, name) for part in held for name in TIMES if name in vars(part)]
         for part, name in times:  # without a law, a time that was shifted stays as it is
             time = getattr(part, name)
@@ -198,7 +198,7 @@ class _Relaxed(Part):
             return np.power(10.0, -self.wlf.c_1 * (T - T_ref) / (self.wlf.c_2 + T - T_ref))[()]
 
     def _shift(self, times: Iterable[tuple[Any, str]]) -> None:
-        """Multiply every time by a_T, and keep beside it what was given."""
+        """Multiply every time by a_T, and keep the given value in `Derived.given`."""
         T, key = self.temperature, "foundation.temperature"
         shown = f"{T:.10g} K" if isinstance(T, float) else T
         law = "activation_energy" if self.wlf is None else "wlf"
@@ -291,7 +291,7 @@ class Arm(Part):
     def __post_init__(self) -> None:
         time = self.relaxation_time
         validate(self, "arm")
-        if as_given(time) is not time:  # for the foundation to unshift, or to keep
+        if as_given(time) is not time:  # the foundation undoes its shift, or keeps it
             object.__setattr__(self, "relaxation_time", time)
 
 

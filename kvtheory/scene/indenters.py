@@ -180,7 +180,7 @@ class Profile(Part):
 
 
 def beside(x: float, to: float) -> float:
-    """Return the next number towards another; next to 0, the smallest that no processor flushes to 0."""
+    """Return the next float from x towards `to`; from 0, the smallest that no processor flushes to 0."""
     return math.nextafter(x, to) if x else math.copysign(float(np.finfo(float).tiny), to)
 
 

@@ -1,4 +1,4 @@
-"""What is modelled: an indenter on a viscoelastic foundation, its support and its drive.
+"""The model: an indenter on a viscoelastic foundation, its support and its drive.
 
 Every quantity accepts SI numbers, text with a unit (``"10 mm"``), pint quantities, and arrays of these; it
 holds an SI float or an array of them afterwards. The arrays of a scene broadcast against each other.
@@ -61,7 +61,7 @@ class Fixed(_Support):
 
 
 class _Loaded(_Support):
-    """What supports with a load have in common: mass times gravity, or a load that is given."""
+    """Common base of supports with a load: mass times gravity, or a given load."""
 
     depth: ClassVar[Value] = None
     mass: Value
@@ -142,7 +142,7 @@ class Run(Part):
 class Scene(Part):
     """An indenter, a foundation, a support and a drive; without arguments, the paper's Table 1.
 
-    Arrays make many scenes of one.
+    With arrays it stands for many scenes.
 
     >>> Scene(drive=Drive(velocity="50 mm/s")).drive.velocity, Scene().foundation.stiffness
     (0.05, 10000000000.0)
@@ -192,7 +192,7 @@ class Scene(Part):
         return found
 
     def rows(self, part: Any) -> "Scene":
-        """Return some of the scenes of a flat one, by a slice or by their indices."""
+        """Return a selection of the scenes of a flat one, by a slice or by indices."""
         found = self.mapped(lambda array: array[part])
         vars(found)["shape"] = np.broadcast_to(0.0, self.shape)[part].shape
         return found
@@ -254,8 +254,8 @@ class Scene(Part):
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
-        The stiffness of a layer and the mass of a load are there too, the times of a foundation at its
-        reference temperature. A drive that is a function has no velocity to give.
+        The stiffness of a layer and the mass of a load are included; times of a foundation are those at its
+        reference temperature. A drive that is a function has no velocity.
         """
         flat = {
             f"{section}.{name}": as_given(getattr(part, name))
@@ -288,7 +288,7 @@ class Scene(Part):
         return {key: spec.fitting(per_width) for key, spec in found.items()}
 
     def replace(self, over: Mapping[str, Any]) -> "Scene":
-        """Return the scene with some quantities replaced; what follows from them follows.
+        """Return the scene with some quantities replaced; derived quantities are computed again.
 
         A velocity replaces a history, a waveform or a function. Unknown keys and values that are out of range
         raise SceneError, which lists them all.
@@ -339,7 +339,7 @@ PARTS: dict[str, tuple[Any, ...]] = {
 
 
 def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
-    """Report where the parts of a scene, those that there are, do not fit each other.
+    """Report where the parts of a scene, as far as given, are inconsistent.
 
     The values of a ball are totals, those of a line contact are per unit width; and on a spring a fixed
     indenter needs a mass, as its support has none.

@@ -24,7 +24,7 @@ LONGEST_SHOWN = 60
 SHORT = reprlib.Repr()
 SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
 MOST = 10**8
-"""Most values of a range; more would be a typing error, and fill the memory."""
+"""Largest number of values in a range; more would be a typing error, and fill the memory."""
 
 Value = Any
 """A float, or an array of floats."""
@@ -94,10 +94,10 @@ def as_given(value: Any) -> Any:
 
 
 class Part:
-    """A frozen part of a scene, whose quantities are floats or arrays: equality, hash, and a map."""
+    """A frozen part of a scene, whose quantities are floats or arrays, with equality, hash and `mapped`."""
 
     arrayed: ClassVar[bool] = False
-    """Whether a quantity is an array; set on instances by `validate`, to be cheap to ask."""
+    """Whether a quantity is an array; set on instances by `validate`, so that the test is cheap."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and _content(self) == _content(other)
@@ -124,13 +124,13 @@ class Part:
         return copy
 
     def changed(self, **values: Any) -> Any:
-        """Return a copy with some quantities replaced; what these exclude is left out."""
+        """Return a copy with some quantities replaced; quantities that these exclude are dropped."""
         specs = quantities(self)
         dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
         return dataclasses.replace(self, **{**dropped, **values})  # type: ignore[type-var]
 
     def nested(self) -> Iterator[tuple[str, "Part"]]:
-        """Yield the parts within it and the ends of their dotted names, such as "arms[0]"."""
+        """Yield the nested parts with their names within this one, such as "arms[0]"."""
         for name in _names(self.__class__):
             value = getattr(self, name)
             if isinstance(value, Part):
@@ -149,7 +149,7 @@ class Part:
         return found
 
     def mark(self, parts: Iterable["Part"]) -> None:
-        """Mark that it holds arrays, if one of its parts does."""
+        """Set `arrayed` if one of its parts holds arrays."""
         if any(part.arrayed for part in parts):
             object.__setattr__(self, "arrayed", True)
 
@@ -167,9 +167,9 @@ _names: Any = cache(lambda cls: tuple(f.name for f in dataclasses.fields(cls)))
 class Quantity:
     """A quantity: its SI unit, its meaning, and its range, from `minimum` to `maximum` and below `below`.
 
-    An `exclusive` range is above its minimum. A `needed` quantity must be given, unless the one named by
+    An `exclusive` range excludes its minimum. A `needed` quantity must be given, unless the one named by
     `instead` is; it must be given with those in `beside`, and not with those in `excludes`. A `per_width`
-    quantity is a total for a ball. A `difference` is one of temperatures.
+    quantity is a total for a ball. A `difference` is a temperature difference.
     """
 
     unit: str
@@ -186,7 +186,7 @@ class Quantity:
     difference: bool = False
 
     def fitting(self, per_width: bool) -> "Quantity":
-        """Return this quantity of a line contact, per unit width, or of a ball, a total."""
+        """Return this quantity per unit width, for a line contact, or as a total, for a ball."""
         if per_width or not self.per_width:
             return self
         return dataclasses.replace(self, unit=WHOLE[self.unit], per_width=False)
@@ -259,9 +259,9 @@ def free(instance: Any) -> dict[str, Quantity]:
 
 @cache
 def required(cls: Any, given: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the quantities that must be given beside those that are.
+    """Return the quantities that must be given in addition to the `given` ones.
 
-    One that another excludes requires nothing more: that is a separate mistake.
+    A quantity that another one excludes adds no requirement: it is reported as a separate mistake.
     """
     specs, names = quantities(cls), set(given)
     for name in specs:
@@ -411,7 +411,7 @@ def written_sample(value: Any) -> Any:
 
 
 def _written_as(value: Any, spec: Quantity) -> Quantity:
-    """Return the quantity that the unit of a value tells: per unit width, or that of a ball."""
+    """Return the quantity that the unit of a value indicates: per unit width, or that of a ball."""
     kinds = spec, spec.fitting(False)
     for kind in kinds:
         if is_usual(value, kind.unit):  # without importing pint

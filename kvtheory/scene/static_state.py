@@ -157,7 +157,7 @@ FAR = 10.0
 
 
 def out_of_range(scene: Scene, why: str = "") -> str:
-    """Return that a scene leaves the range of double precision, naming values far from those of Table 1."""
+    """Return the message that a scene leaves double precision; it names values far from those of Table 1."""
     usual: dict[str, float] = {}
     for support in TABLE1_SUPPORTS:
         usual |= {key: size for key, size, _ in _sizes(Scene.table1(support))}

@@ -22,9 +22,9 @@ MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-"""Byte order marks, by which a file tells its encoding."""
+"""Byte order marks, and the encodings that they indicate."""
 MOST = 2**28
-"""Most bytes of a text; a million rows of ten columns are fewer."""
+"""Largest size of a file in bytes; a million rows of ten columns are smaller."""
 SEPARATORS = "\t;,"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
@@ -120,7 +120,7 @@ def number(cell: str, decimal: str) -> float | None:
 
 
 def plain(name: str) -> str:
-    """Return a name without differences of spelling: case, spaces, underscores, TeX."""
+    """Return a name without its case, spaces, underscores and TeX marks, to compare it."""
     return re.sub(r"[\s_{}$\\^-]", "", name).casefold()
 
 

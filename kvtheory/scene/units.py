@@ -35,7 +35,7 @@ EXAMPLES = {
     "J/mol": ("80 kJ/mol", "8e4 J/mol"),
 }
 """Ways to write a quantity of each SI unit that a scene uses; messages show the first one. Differences of
-temperatures have the unit "delta K", as "20 degC" is none."""
+temperatures have the unit "delta K": "20 degC" is not a difference."""
 
 WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
 """For each unit of a quantity per unit width, the unit of the total quantity of a ball."""
@@ -87,7 +87,7 @@ LONGEST_UNIT = 60
 _NUMBER = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)(?![0-9.])", re.I
 )
-# One exponent digit and no tower of powers: "mm^9^9^9" must not keep the reader busy.
+# One exponent digit and no nested powers: "mm^9^9^9" would take too long to evaluate.
 _UNIT = re.compile(r"(?:[a-zµμ_ ]|[*/()]|(?:\^|\*\*)-?[0-9](?![0-9^*])|[²³])+", re.I)
 
 
@@ -211,7 +211,7 @@ def _factor(written: str, unit: str) -> Fraction:
         factor = Fraction(quantity.to(si).magnitude) if fits else None
         if fits and registry.Quantity(Fraction(0), written).to(si).magnitude:
             raise ValueError("a unit with another zero")
-    except Exception:  # pint raises many kinds, none of them documented as the only one
+    except Exception:  # pint raises many kinds, not all of them documented
         known = {example.split(" ", 1)[1].lower(): example for example in EXAMPLES[unit]}
         near = difflib.get_close_matches(written.lower(), known, n=1, cutoff=0.5)
         hint = f', did you mean "{known[near[0]].split(" ", 1)[1]}"?' if near else ""

@@ -1,1 +1,1 @@
-"""Many scenes: what is swept, the blocks it is cut into, who computes them, and where they last."""
+"""Parameter sweeps: their plan, blocks, execution, and files."""

@@ -17,7 +17,7 @@ from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import FAILS, STABLE, Array, Measured, Plan, Table
 
 INTERPRETED = 1.5
-"""Steps interpreted before the first block is compiled, over those from which compiling pays."""
+"""Multiple of the steps from which compiling pays that each worker must have for compiling ahead."""
 
 
 class Task(NamedTuple):
@@ -85,7 +85,7 @@ def compute(given: Task) -> Block:
 
 
 def _steady(given: Task) -> Measured:
-    """Solve steady sliding; a part that fails is halved until the scene at fault is alone."""
+    """Solve steady sliding; a part that fails is bisected until the failing scene is isolated."""
     plan, names, found = given.plan, given.plan.needed(steady=True), Measured()
     found.values = {name: np.full(given.points, np.nan) for name in names}
     found.errors = {name: np.zeros(given.points) for name in names}
@@ -140,9 +140,9 @@ def _transients(given: Task, steady: Measured) -> Measured:
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
-    """Compile the kernels here, if `points` are so many that each of the workers would do it otherwise.
+    """Compile the kernels in this process, if each worker would otherwise do it for so many `points`.
 
-    Workers load what is compiled from the disk, if they share it and have processors of the same kind.
+    Workers load the compiled kernels from the disk, if they share it and the kind of processor.
     """
     if not plan.transient or lacks_paper_model(plan.scene):
         return

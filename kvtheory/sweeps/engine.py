@@ -1,4 +1,4 @@
-"""Runs a sweep: gives blocks to an executor, a bounded number at a time, and keeps what returns."""
+"""Runs a sweep: submits blocks to an executor, a bounded number at a time, and keeps the results."""
 
 import logging
 import multiprocessing
@@ -26,23 +26,23 @@ from kvtheory.sweeps.store import WorkFile
 WORK = ".part"
 """Suffix of a work file, after the name of the result."""
 VECTORISED_BLOCK = 65536
-"""Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
+"""Steady states in a block: 5 MB of results in 20 ms; half as many reduce the speed by a third."""
 QUADRATURE_BLOCK = 512
 """Scenes integrated in a block: as many as go through one column of nodes; 64 cost half the speed."""
 SINGLE_BLOCK, COMPILED_BLOCK = 64, 512
-"""Motions in a block, one by one or in one call: 0.1 s to 1 s, of which the transfer takes a percent."""
+"""Transients in a block, one by one or in one call: 0.1 s to 1 s, of which the transfer takes a percent."""
 LEAST_BLOCKS = 16
-"""Blocks of a sweep of motions, at least, so that a few workers share even a small one."""
+"""Fewest blocks in a sweep of transients, so that a few workers share even a small one."""
 AHEAD = 2
-"""Blocks in flight per worker: one that is computed and one that waits."""
+"""Blocks in flight per worker: one that is running and one that waits."""
 UNKNOWN_WORKERS = 16
-"""Assumed where an executor does not say; on a larger cluster give `in_flight`."""
+"""Number of workers assumed where an executor does not tell; on a larger cluster give `in_flight`."""
 TRIES = 3
-"""How often a block is given out, in case its worker dies."""
+"""Largest number of times that a block is submitted, in case its worker dies."""
 REFRESH = 0.5
-"""Seconds after which progress is shown again, and an interrupt is noticed, if no block returns."""
+"""Interval in s at which progress is shown and an interrupt is noticed while no block returns."""
 HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
-"""Without it, each process runs the script again, and ends at once."""
+"""Without that line, each process runs the script again, and ends at once."""
 log = logging.getLogger(__name__)
 
 
@@ -113,10 +113,10 @@ def _give_out(
     executor: Executor, tasks: Iterator[Task], keep: Callable[[Block], None], in_flight: int,
     show: Callable[[], None],
 ) -> None:  # fmt: skip
-    """Have the blocks computed, `in_flight` of them at a time.
+    """Submit the blocks, `in_flight` of them at a time.
 
-    A block that is lost with its worker is given out again, `TRIES` times in all. After an error or an
-    interrupt, waiting blocks are withdrawn, and those returned are kept.
+    A block that is lost with its worker is submitted again, `TRIES` times in all. After an error or an
+    interrupt, waiting blocks are cancelled, and those returned are kept.
     """
     flying: dict[Future[Block], Task] = {}
     again: list[Task] = []
@@ -144,7 +144,7 @@ def _give_out(
 
 
 def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
-    """Keep a block that has returned, or give its task back if it was lost with its worker."""
+    """Keep a block that has returned, or return its task if it was lost with its worker."""
     try:
         lost = future.exception()
     except futures.CancelledError as error:  # by the executor of a cluster
@@ -180,7 +180,7 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
 
 
 class _Workers(Executor):
-    """Our workers: this thread if one is enough, threads for NumPy, else processes, anew if one dies."""
+    """Default executor: this thread for one job, threads for NumPy, else processes; replaced if one dies."""
 
     def __init__(self, jobs: int, plan: Plan) -> None:
         self.here, self.jobs, self.threads = jobs == 1, jobs, plan.vectorised

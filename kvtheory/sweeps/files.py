@@ -2,7 +2,7 @@
 
 CSV (RFC 4180) has a row for each point, or each point and time, below lines of ``#`` that describe it; NetCDF
 a dimension for each axis. Either holds the SHA-256 of its other bytes, so that a changed file is noticed: in
-the second line, or behind what readers of NetCDF reach.
+the second line of a CSV, after the end of the data in NetCDF.
 """
 
 import csv
@@ -26,7 +26,7 @@ from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, is_csv
 
 Blocks = Callable[..., Iterable[Block]]
-"""Gives the blocks in the order of their points, with `tables=False` without their tables."""
+"""Returns the blocks in the order of their points, with `tables=False` without their tables."""
 FAILURES_LISTED = 100
 """Failures that a result lists when it stays in a file; the file itself has them all."""
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
@@ -81,7 +81,7 @@ def finished(path: Path, plan: Plan) -> bool:
 
 
 def _digest(path: Path) -> tuple[int, bytes, bytes]:
-    """Return where the digest of a file stands, that of all its other bytes, and what stands there."""
+    """Return the position of the digest in a file, the digest of all other bytes, and the stored one."""
     size, digest = path.stat().st_size, hashlib.sha256()
     place = len(DIGEST) if is_csv(path) else max(0, size - DIGITS)
     with path.open("rb") as file:

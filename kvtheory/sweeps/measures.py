@@ -1,7 +1,7 @@
 """Transients of a sweep by the solver: series, extremes, settling time, hops and events of many scenes.
 
-The compiled kernel follows all scenes of a block in one call. Those that it leaves unfinished, and all of
-them where nothing is compiled or events are asked for, are followed one by one, into the same arrays.
+The compiled kernel solves all scenes of a block in one call. Those that it leaves unfinished, and all of them
+where nothing is compiled or events are requested, are solved one by one, into the same arrays.
 """
 
 import json
@@ -32,13 +32,13 @@ CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "fric
 SETTLED = 0.01
 """Share of the steady friction force within which the motion counts as settled."""
 STEPS = 40
-"""Steps of a certified scene, about; they decide whether compiling pays."""
+"""Approximate number of steps of a certified scene, to decide whether compiling pays."""
 DOUBLINGS = 2
-"""Doublings of the room of a single motion: few scenes need more, and are followed alone."""
+"""Doublings of the workspace of a single run: few scenes need more, and are solved alone."""
 
 
 def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
-    """Follow scenes, by their index in a block; return the columns of transients, with rows for all indices.
+    """Solve scenes, by their index in a block; return the columns of transients, with rows for all indices.
 
     The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
     (N/m) at each index. The errors are those of the series; a maximum has that of the quantity itself.
@@ -56,7 +56,7 @@ def relative(statement: str) -> str:
 
 
 class _Motions:
-    """The motions of a block: what is asked, and arrays with a row for each index."""
+    """The transients of a block: the request, and arrays of results with a row for each index."""
 
     def __init__(self, plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> None:
         size, measures = len(friction), {c.measure for c in plan.columns}
@@ -89,7 +89,7 @@ class _Motions:
                 self.reasons[index] = error
 
     def follow(self) -> None:
-        """Follow the scenes, in one call if they are rigid drives without texts and compiling pays."""
+        """Solve the scenes, in one call if all drives are rigid, no text is requested and compiling pays."""
         rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
         worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
         together = rigid and not self.plan.texts and worthwhile and compiled.available()
@@ -103,7 +103,7 @@ class _Motions:
                     self.reasons[index] = error
 
     def follow_together(self) -> None:
-        """Follow all scenes in one call of the compiled kernel."""
+        """Solve all scenes in one call of the compiled kernel."""
         indices, kept = list(self.scenes), list(self.scenes.values())
         units, drives = [u for _, u, _ in kept], [drive for _, _, drive in kept]
         numbers = float(units[0].inertia_number), float(units[0].support_number)
@@ -144,7 +144,7 @@ class _Motions:
         self.statements.add(relative(estimate.STATEMENT))
 
     def follow_alone(self, index: int) -> None:
-        """Follow one scene."""
+        """Solve one scene."""
         scene, units, _ = self.scenes[index]
         solution, _, errors = certified(scene, None, self.plan.rtol)
         motion, found = solution.motion, self.found

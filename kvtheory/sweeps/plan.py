@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 Table = NDArray[np.void]
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
-"""Errors of a scene without an answer; any other is a defect of the program."""
+"""Errors that mean a scene has no solution; any other is a bug."""
 
 MEASURES = ("end", "max", "min", "time_of_max")
 OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
@@ -69,7 +69,7 @@ CELL = 21
 """Bytes of a number in a CSV, with its comma or end of line."""
 GB = 1e9
 ANNOUNCED = 10.0
-"""Seconds from which a sweep is announced."""
+"""Expected duration in s from which a sweep is announced."""
 
 
 class Column(NamedTuple):
@@ -177,7 +177,7 @@ class Plan:
 
     @property
     def texts(self) -> bool:
-        """Whether the column of text is asked for."""
+        """Whether the column of text is requested."""
         return len(self.numeric) < len(self.columns)
 
     @property

@@ -22,11 +22,11 @@ PER_HALF_LENGTH = 200
 STEPS_APART = 2.0
 """Time steps between samples: no step is shortened then, and four elements pass."""
 MOST_SAMPLES = 1000
-"""Samples in a run, about: more improve little."""
+"""Approximate largest number of samples in a run: more improve little."""
 SOON = np.geomspace(1e-3, 1.0, 13)[:-1]
 """Additional samples after a change of the drive, as fractions of the distance between samples."""
 BETWEEN = 0.25
-"""Of the difference to the next sample: twice what a parabola may rise between two samples."""
+"""Fraction of the difference to the next sample: twice what a parabola may rise between both."""
 SAMPLED = f"; of largest and smallest values, and {BETWEEN:g} times what they differ from the next sample by"
 EXTREMES: Mapping[str, tuple[Callable[[Array], Array], float]] = {
     "max": (np.positive, 1.0),

@@ -23,7 +23,7 @@ APPLICATION = 0x6B765358
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
-"""Bytes of the log after which it is written back to the file: only then is the disk waited for."""
+"""Size of the log in bytes at which it is written back to the file: only this waits for the disk."""
 NOT_OURS = "is not a work file of a sweep; it is left as it is: remove it or choose another name"
 
 
