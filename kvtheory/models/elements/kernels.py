@@ -39,7 +39,7 @@ SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
 """Limits that are never reached: the iterations end after two or three."""
 SLIDE_RTOL = 1e-9
-"""Of the static half length: a smaller Newton step along x is the last one."""
+"""Newton's method along x has converged when its step is below this share of the static half length."""
 ROOM, MORE_ROOM = 0.25, 4.0
 """Of the static depth: how far the indenter is first assumed to sink in a step at most, and the factor by
 which that grows where it sinks farther."""
@@ -159,7 +159,7 @@ def slope_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
 
 
 def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
-    """Return how far to one side, -1 or 1, h = depth is, or the surface ends."""
+    """Return the distance to one side, -1 or 1, at which h = depth or the surface ends."""
     if profile is not None:
         return float(profile.extent(depth, side))
     if not depth > 0.0:
@@ -172,7 +172,7 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
 
 
 def weights_across(dy: float, count: int, rim: float) -> Array:
-    """Return the width for which each strip counts, on both sides, in m; corrected at a `rim` above zero."""
+    """Return the quadrature weight of each strip, both sides together, in m; corrected at a `rim` > 0."""
     weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
     weights[0], s = dy, rim / dy - last
     if 1 <= last <= count:
@@ -284,12 +284,12 @@ def ramp_functions(z: Array) -> tuple[Array, Array]:
 
 
 def entered(gap: float, rise: float) -> float:
-    """Return for which share of the step an element was on the indenter that has risen so far above it."""
+    """Return the share of a step in which an element was in contact, from its overlap at start and end."""
     return rise / (rise - min(gap, 0.0)) if rise > 0.0 else 0.0
 
 
 def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> Array:
-    """Return u of elements at the end of a step, had they been left alone from its start."""
+    """Return u at the end of a step for elements that are detached throughout it."""
     if not e.arms.shape[0]:
         u: Array = step.fall[0] * e.u[j, low:high]
         return u
@@ -302,7 +302,7 @@ def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> A
 def finish(
     e: Elements, step: ElementStep, runs: Runs, before: float, depths: tuple[float, float]
 ) -> None:
-    """Let a step pass: elements in `runs` end on the indenter, all others were left alone.
+    """Complete a step: elements in `runs` end on the indenter, all others relax freely.
 
     `before` is where the base was under the indenter at its start.
     """
@@ -329,7 +329,7 @@ def finish(
 def _pass_arms(
     e: Elements, step: ElementStep, j: int, before: float, depths: tuple[float, float]
 ) -> None:
-    """Let a step pass for the arms of a strip: held ones are loaded, those of free elements are modes."""
+    """Complete a step for the arms of a strip: held ones are loaded, those of free elements are modes."""
     low, law = e.low[j], e.law
     high, u = e.high[j], e.u[j, low : e.high[j]]
     pressed, touched = e.pressed[j, low:high], e.touched[j, low:high]
@@ -373,12 +373,12 @@ def exponential_fit(z: float) -> float:
 
 
 def _velocity(way: float, before: float, h: float, theta: float) -> float:
-    """Return the velocity at the end of a step in which the mean (1-θ) v_0 + θ v_1 goes this way."""
+    """Return v_1, the velocity at the end of a step with the mean velocity (1-θ) v_0 + θ v_1 = way/h."""
     return (way / h - (1.0 - theta) * before) / theta
 
 
 def kink_area(overlap: Any) -> Any:
-    """Return what trapezoids leave out of the area of u at an edge by dx, and its d/dδ and d²/dδ².
+    """Return the area of u at an edge that the trapezoidal rule omits, by dx, and its d/dδ and d²/dδ².
 
     `overlap` is w at the three nearest elements outside. Between the first of them and the next inside, u
     is the larger of two nearly straight lines, which cross where w = 0; the trapezoid takes the chord
@@ -442,7 +442,7 @@ def implicit_step(
             runs, sunk = _sink(e, law, step, runs, sums, state)
             if not sunk > sinks or sinks == most:
                 break
-            # Elements may have been missed, without which it sinks too deep, never too little.
+            # If elements were missed, it sinks too deep, never too little.
             sinks = min(most, MORE_ROOM * sinks)
             falling[:] = False
         if not sprung:
@@ -551,9 +551,9 @@ def _extent(runs: Runs, weights: Array) -> float:
 
 
 def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Array, bool]:
-    """Move the ends of runs to where elements begin and cease to be pressed; tell whether any moved.
+    """Move the ends of runs to their first and last pressed elements; return whether any moved.
 
-    If runs met, or others appeared, they are all found anew.
+    If runs merged, or new ones appeared, all runs are found again.
     """
     meets, moved, count = e.meets, False, 0
     for r in range(runs.shape[0]):
@@ -586,9 +586,9 @@ def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Arra
 def _late(
     e: Elements, law: ElementStep, runs: Runs, weights: Array, place: float, depth: float, first: float
 ) -> tuple[Runs, Array]:  # fmt: skip
-    """Return the elements that are entered within the step, and what they lack of their weight.
+    """Return the elements that come into contact within the step, and the deficits of their weights.
 
-    Their arms are loaded for a part of it only.
+    Their arms are loaded during part of the step only.
     """
     count = 0
     for r in range(runs.shape[0] if e.arms.shape[0] else 0):
@@ -650,11 +650,11 @@ def _kinks(
     A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts
     where the edge stands or moves outward over the free surface, that is, where the overlap w = g - u
     just outside does not fall. Where the edge moves inward, the surface has no kink, or one that is left
-    behind and relaxes like all that is free. Each side of each strip is asked for itself.
+    behind and relaxes like all free surface. Each side of each strip is decided separately.
     """
     falling, place = step.falling, step.place - step.travel
     met = np.zeros(e.u.shape[0], dtype=np.bool_)
-    known = falling[0, 2]  # decided once in a step, so that no iteration can go to and fro
+    known = falling[0, 2]  # decided once in a step, so that the iteration cannot oscillate
     falling[0, 2] = True
     area = wider = bent = push = 0.0
     for r in range(runs.shape[0]):
@@ -742,7 +742,7 @@ def explicit_step(
     e: Elements, laws: tuple[ElementStep, ElementStep, ElementStep], state: Array, now: float,
     Y: Array, V: Array,
 ) -> int:  # fmt: skip
-    """Take a step of Runge and Kutta; which elements are in contact is decided at its end.
+    """Take a Runge-Kutta step; which elements are in contact is decided at its end.
 
     `laws` are those of no time, half the step and all of it; Y and V are at these times, V just before the
     end. F_z = dx Σ (K g + C g'). An element in contact detaches where its pressure would be negative, relaxes
@@ -890,8 +890,8 @@ def _behind(e: Elements, V: float) -> float:
 def _pressure(e: Elements, state: Array, law: ElementStep, j: int, place: float, V: float) -> Array:
     """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12); set `slope`.
 
-    Of one that is not in contact, it is what it would be had it followed the indenter in the last step: it
-    is brought down by the gap at the start of that time, and then moves with the indenter.
+    For a detached element, it is the pressure it would have had it followed the indenter in the last step:
+    brought down by the gap at the start of the step, and then moving with the indenter.
     """
     low, high, y = e.low[j], e.high[j], j * e.across
     x, u = positions(e, low, high, place), e.u[j, low:high]
@@ -990,11 +990,11 @@ def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array
 
 
 def _peak(e: Elements, p: Array, k: int, reach: Array, low: int, high: int) -> tuple[float, float]:
-    """Return the peak near element k, of the parabola through three, and its doubt.
+    """Return the peak near element k, from the parabola through three, and its uncertainty.
 
-    A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
-    where contact began, so that the pressure itself may have a kink between two elements: then the better
-    of a parabola and a ridge counts.
+    A shape with kinks has no such parabola: there the peak is known to within one element. Arms remember
+    where contact began, so that the pressure itself may have a kink between two elements: then the more
+    certain of a parabola and a ridge counts.
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
     doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
