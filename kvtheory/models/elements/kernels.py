@@ -50,9 +50,9 @@ STRAIGHT = 0.25
 NEAR = 1e-9
 """Of the spacing: the distance inside an edge at which the slope is taken, which may jump at the edge."""
 TIE = 1e-9
-"""Relative: an element in contact is on the surface, up to rounding."""
+"""Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
-"""Of a_0/tau: an indenter on a spring that slides slower stands, and its edges are named by the drive."""
+"""Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -482,8 +482,8 @@ def _lay(
 ) -> tuple[Step, Runs, Array]:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
-    That is to where the mean pressure would vanish: where a free element is then, and above where one in
-    contact is now. An element that passes a kink of the shape is pressed as far as that pressed it. Return
+    There the mean pressure would vanish: at the place of a free element then, and above that of one in
+    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. Return
     the step, the runs that are pressed if the indenter sinks by `first`, and the sums of `meets` over them.
     """
     depth, (place, travel) = state[DEPTH], way
@@ -611,7 +611,7 @@ def _sink(
 ) -> tuple[Runs, float]:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
-    While no element is met or let go, F_z is of the second order in the depth: one step of Newton's
+    While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
     method with the second derivative is exact.
     """
     h, theta, k, sunk = law.h, step.theta, law.stiffness * e.spacing, step.first
@@ -721,7 +721,7 @@ def _slide(
         area -= step.lack[i] * max(sunk - e.meets[place], 0.0) * e.slope[place]
     if e.parts:
         area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
-    # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
+    # Oscillations too fast for the step are damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
     theta = exponential_fit(z) if e.fitted else 1.0

@@ -41,8 +41,8 @@ time since the jump, up to the step of the run."""
 JUMP = 1e-6
 """Share of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
 MOST_STEPS = 20_000
-"""In a run, for the sake of these two: where the foundation or the spring is far faster than the run
-lasts, no more is resolved than this; the implicit schemes stay stable, and the certificate tells."""
+"""Most steps of a run for these two: where the foundation or the spring is far faster than the run lasts,
+it is resolved no further; the implicit schemes stay stable, and the certificate states the error."""
 STABLE_SHARE = 0.5
 """Default step of an explicit scheme, as a share of the largest stable step."""
 COARSE = 0.25
@@ -54,7 +54,7 @@ MORE_ROOM = 16.0
 PAUSE = {True: 3e7, False: 1e5}
 """Elements times steps between two reports of progress, compiled and interpreted."""
 MOST_OF_ALL = 2e9
-"""Elements under the contact at rest, times steps: so many take from some minutes to hours."""
+"""Upper bound on elements in the contact at rest times steps: so many take from minutes to hours."""
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
