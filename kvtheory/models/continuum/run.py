@@ -22,7 +22,7 @@ PER_STEP, EVENTS_PER_STEP = 8, 8
 """Nodes and events that one step may add; a landing may also double the nodes."""
 
 EVENT_SHARE, EVENT_FLOOR = 1e-4, 1e-12
-"""Violation that toggles the state of an edge, as a share of the tolerance and at least: above rounding."""
+"""Violation that toggles the state of an edge: a share of the tolerance, and a floor well above rounding."""
 
 
 def _record(**fields: Any) -> np.dtype[Any]:

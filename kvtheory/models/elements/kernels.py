@@ -41,14 +41,14 @@ NEWTON_STEPS, SLIDE_STEPS = 60, 30
 SLIDE_RTOL = 1e-9
 """Newton's method along x has converged when its step is below this share of the static half length."""
 ROOM, MORE_ROOM = 0.25, 4.0
-"""Of the static depth: how far the indenter is first assumed to sink in a step at most, and the factor by
-which that grows where it sinks farther."""
+"""Initial bound on how far the indenter sinks in a step, as a share of the static depth, and the factor by
+which it grows if the indenter sinks farther."""
 STANDS = 1e-12
-"""Of the static depth: an edge whose overlap falls by less in a step does not move inward."""
+"""Share of the static depth: an edge whose overlap falls by less in a step does not move inward."""
 STRAIGHT = 0.25
 """Share of w'^2 below which w'^2 - 2 w w'' is that of a square (0), above which that of a line (1)."""
 NEAR = 1e-9
-"""Of the spacing: the distance inside an edge at which the slope is taken, which may jump at the edge."""
+"""Share of the spacing: distance inside an edge at which the slope is taken, since it may jump there."""
 TIE = 1e-9
 """Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
@@ -397,10 +397,10 @@ def kink_area(overlap: Any) -> Any:
 class Step(NamedTuple):
     """An implicit step: where the base is under the indenter at its end, and how far it moved there.
 
-    `first` is the first guess of how far the indenter sinks; `begun` are the runs in contact at the start,
+    `first` is an initial guess of how far the indenter sinks; `begun` are the runs in contact at the start,
     `relaxed` the area of the kinks at their edges less what relaxes of it, NaN where that was not needed yet;
     `falling` says at which sides of each strip the overlap falls; `late` are the elements (strip, element)
-    that are entered within the step, and `lack` what their weight lacks of that of the others.
+    that come into contact within the step, and `lack` the deficits of their weights.
     """
 
     place: float
@@ -514,7 +514,7 @@ def _lay(
         e.meets[j, low : low + UNMET] = math.inf
         e.meets[j, high - UNMET : high] = math.inf
     runs = begun.copy()
-    for r in range(runs.shape[0]):  # none is outside but where a caller changed the depth
+    for r in range(runs.shape[0]):  # outside only if a caller changed the depth
         low, high = e.low[runs[r, 0]] + UNMET, e.high[runs[r, 0]] - UNMET
         runs[r, 1] = min(max(runs[r, 1], low), high)
         runs[r, 2] = max(min(runs[r, 2], high), low)
@@ -823,7 +823,7 @@ def _press(
 def report(
     e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
 ) -> int:
-    """Put what is reported at an instant into `found`, in the order of `error_estimate.COLUMNS`.
+    """Write the report at an instant into `found`, in the order of `error_estimate.COLUMNS`.
 
     `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
     last with V >= 0, Y). An element is in contact if the indenter touches its surface and its pressure
@@ -968,7 +968,7 @@ def touching(overlap: Any) -> tuple[float, bool]:
 
 
 def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array) -> None:
-    """Split the element in which a kink of the shape is: h' jumps there, and p by -C V times as much.
+    """Split the element that contains a kink of the shape: h' jumps there, and p by -C V times as much.
 
     Without this, the forces under a wedge are of the first order in the spacing.
     """
@@ -1035,8 +1035,8 @@ class Course(NamedTuple):
 
     `times` are those before the first step and after each, `steps` their lengths, `Y` and `V` at the start of
     each, halfway and at its end, V just before that. `after` says after which step an instant is
-    reported, `about` what `report` wants to know of it. `limits` are the speeds, upward and along, that no
-    stable run reaches, and the imbalance of the forces that it stays below. `law` is that of an element over
+    reported, `about` is that argument of `report`. `limits` are upper bounds, in a stable run, of the speeds
+    upward and along, and of the imbalance of the forces. `law` is that of an element over
     steps of no length, and over half and all of each length, numbered by `which`.
     """
 

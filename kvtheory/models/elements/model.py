@@ -22,7 +22,7 @@ from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Array, Element
 
 LEVEL = 1.1
-"""Ratio of the depths at which the span of a Python function is found; between, a power of the depth."""
+"""Ratio of the depths at which the span of a Python profile is found; a power law interpolates it."""
 PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
 FEWEST_STRIPS = 16
@@ -171,7 +171,7 @@ class Model:
         return kernels.slope_at(self.surface, self.profile, x, y)
 
     def strips(self, depth: float) -> int:
-        """Return how many strips can be met at this depth."""
+        """Return the number of strips that can be in contact at this depth."""
         return 1 + int(self.half_width(depth) / self.across) if self.across else 1
 
     def static_load(self, depth: float) -> float:
@@ -287,7 +287,7 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
 
 
 class PythonProfile(NamedTuple):
-    """A profile of Python functions; how far out it has a height is found at some depths only."""
+    """A profile given by Python functions; its extent is found at some depths and interpolated."""
 
     line: Profile
     depth: float

@@ -25,8 +25,8 @@ FORGOTTEN = 1e-12
 KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
-"""Steps of a strip that are interpreted before it pays to compile: about a second. To load what is compiled
-takes half a second; to compile it, once for an installation, about a minute."""
+"""Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
+kernels takes half a second; compiling them, once per installation, about a minute."""
 COLUMNS = 13
 """Numbers of a report, see `error_estimate.COLUMNS`."""
 
@@ -51,7 +51,7 @@ class IndenterState(NamedTuple):
 
 
 class Tally:
-    """How many steps of a strip were interpreted in this process."""
+    """Number of steps of a strip interpreted in this process."""
 
     steps = 0
 

@@ -93,7 +93,7 @@ SCHEMES = {
 
 
 class ContactRule(NamedTuple):
-    """How an element is found to press in an explicit scheme; a field that is not the default is a mistake.
+    """How an explicit scheme decides that an element presses; any value but the default is a mistake.
 
     `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
     only where the surface of the foundation is met. `stale`: within a step that surface is the one at its

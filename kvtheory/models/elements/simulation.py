@@ -33,7 +33,7 @@ PER_RELAXATION = 100.0
 PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
 ROUGHLY = 0.9
-"""The iteration for a period has converged when the period falls to no less than this share of itself."""
+"""The iteration for a period ends when the new period is at least this share of the previous one."""
 PER_STOPPING, FINER = 4.0, 1.0 / 16.0
 """Steps in the time in which dampers stop the mass, at least, after a jump of the drive, and so many for each
 element in half a contact, so that more elements are more accurate there, too; later the steps grow with the
@@ -150,7 +150,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
         shorter = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
         if not shorter < ROUGHLY * period:
             break
-    # Along x, the dampers of the contact at rest may allow no swing.
+    # Along x, the dampers of the contact at rest may suppress the oscillation.
     if model.sprung:
         resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
         if resistance * resistance < 4.0 * model.spring_along * model.mass_along:

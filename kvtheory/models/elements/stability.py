@@ -25,7 +25,7 @@ ADVISED = 0.9
 RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
-"""Of the forces: a mean imbalance that a stable run stays below, besides that of single elements."""
+"""Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
 
 GROWS = 1e-10
 """Growth per step above which it is not rounding."""
@@ -33,7 +33,7 @@ SHORTEST, LIMIT_RTOL = 1e-6, 1e-9
 """Search for the largest stable step: least step times the fastest rate, and relative tolerance."""
 
 ELEMENTS = 4.0
-"""Elements whose coming and going may upset the balance in a stable run, of all in contact at rest."""
+"""Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
 
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
