@@ -24,7 +24,7 @@ LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
 
 
 def sample(run: Run, times: Any, found: Any) -> int:
-    """Write the times that divide each step into `SAMPLES` parts, the last one before its end, and states."""
+    """Write times and states that divide each step into `SAMPLES` parts, the last just before its end."""
     count = 0
     for index in range(run.now.steps):
         start, end = _step(run, index)

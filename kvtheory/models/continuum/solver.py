@@ -101,7 +101,7 @@ class Trajectory:
         )
 
     def _memory(self) -> Iterator[ScaledEvent]:
-        """Yield the times at which an edge begins and ceases to touch previously deformed ground."""
+        """Yield an event where an edge begins or ceases to touch previously deformed ground."""
         sides, left_at = self.records["sides"], self.nodes["inner"]["s"]
         remembers = (sides["state"] == TOUCHING) & (left_at[sides["node"]] > -math.inf)
         changes, sides_of = np.nonzero(remembers[1:] != remembers[:-1])  # none at first

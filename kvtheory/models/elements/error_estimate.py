@@ -13,9 +13,9 @@ from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import POWERS, BaseMotion
 
 SAFETY = 4.0
-"""Of the estimated errors: a change of the density can be small by luck. With one coarse run a bound was
+"""Factor on the estimated errors: a difference can be small by chance. With one coarse run a bound was
 exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
-are seldom lucky at once."""
+are seldom both small by chance."""
 KNOWN = 0.5
 """Uncertainty of an edge, in elements, after a change of the drive, if a damper leaves pressure on it."""
 KINKED = 0.05

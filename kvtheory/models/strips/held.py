@@ -7,7 +7,7 @@ foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down mu
 
     tau |dV/dt| (1 - l_r/sqrt(A^2 + l_r^2)) <= |V|,
 
-first in the middle plane, where A = a. Over a linear piece of the drive its slow end decides. The forces are
+which binds first where A = a, the middle plane, and at the slow end of a linear piece of drive. Forces are
 sums over y = b sin t by Gauss's rule, each strip by F11.
 
 A ball that can rise is left to elements: d' < 0 lifts the rim off the ground at once, where
