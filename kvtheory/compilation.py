@@ -18,7 +18,7 @@ def available() -> bool:
 
 
 def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
-    """Return an entry of a module of kernels that is compiled when called, and kept if there is a place.
+    """Return a kernel entry that is compiled when called, and cached on disk if there is a writable place.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
 
 
 def register(module: ModuleType, inlined: Container[str] = (), **options: Any) -> None:
-    """Tell numba that the functions of a module may be compiled; the names of some of them `inlined`."""
+    """Register the functions of a module with numba; those named in `inlined` are inlined."""
     from numba.extending import register_jitable
 
     for name, function in vars(module).items():
@@ -39,7 +39,7 @@ def register(module: ModuleType, inlined: Container[str] = (), **options: Any) -
 
 
 def cached(entry: Callable[..., Any], **options: Any) -> Any:
-    """Return an entry that is compiled when called, and kept on the disk if there is a place."""
+    """Return an entry that is compiled when called, and cached on disk if there is a writable place."""
     from numba import njit
 
     try:

@@ -1,4 +1,4 @@
-"""Every task of the compiled kernel by one entry, and the task of following many transients in one call."""
+"""One entry point for every task of the kernels, and the task that solves many transients in one call."""
 
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from kvtheory.models.continuum.stepping import DONE, TAKE_OFF, walk
 
 
 class Scenes(NamedTuple):
-    """Scenes in scaled form, an entry for each: inertia and support number, end, steady friction force.
+    """Scenes in scaled form, one entry each: inertia and support number, end time, steady friction force.
 
     The pieces of the drive of scene i are `pieces[first[i] : first[i + 1]]`.
     """
@@ -26,9 +26,9 @@ class Scenes(NamedTuple):
 
 
 class Request(NamedTuple):
-    """Extremes to measure of columns in a sense (see `maxima`), and scaled times, a row for each scene.
+    """What to measure: extremes of columns, each in a sense (see `maxima`), and states at scaled times.
 
-    The motion is settled while the friction force is within a `share` of the steady one.
+    `times` has a row for each scene. A motion is settled if friction stays within `share` of the steady one.
     """
 
     columns: Any
@@ -38,7 +38,7 @@ class Request(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Samples and natural times, each with their states, and two states: overwritten by each scene."""
+    """Buffers for sample times, natural times, their states, and two more states; reused for each scene."""
 
     times: Any
     samples: Any
@@ -48,7 +48,7 @@ class Workspace(NamedTuple):
 
 
 class Results(NamedTuple):
-    """The status of both walks, deviations, extremes with their times, states at the times and at the end."""
+    """Status of both runs, deviations, extremes with their times, states at the times and at the end."""
 
     status: Any
     other: Any
@@ -61,7 +61,7 @@ class Results(NamedTuple):
 
 
 class Bulk(NamedTuple):
-    """All that `follow` needs beside two runs."""
+    """Everything that `follow` needs besides two runs."""
 
     scenes: Scenes
     request: Request
@@ -70,9 +70,9 @@ class Bulk(NamedTuple):
 
 
 def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
-    """Follow the scenes by two methods, whose records `fine` and `other` hold, and measure them.
+    """Solve the scenes by two methods, in the records `fine` and `other`, and measure the solutions.
 
-    A scene that does not reach its end in so many steps, or has not enough room, leaves its status.
+    The status of a scene tells if it did not reach its end in `steps` steps, or ran out of room.
     """
     scenes, request, room, results = bulk.scenes, bulk.request, bulk.workspace, bulk.results
     for i in range(len(scenes.eps)):
@@ -106,16 +106,16 @@ def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
 
 
 WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
-"""Tasks."""
+"""Tasks of `perform`."""
 
 
 def perform(
     task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any,
     count: int, bulk: Bulk,
 ) -> int:  # fmt: skip
-    """Perform a task: the entry of all kernels, so that each of them is compiled once.
+    """Perform a task: the only entry to the kernels, so that each of them is compiled once.
 
-    Arguments that a task does not need are blank. `values` are those that go in and come out.
+    Arguments that a task does not need are blank. `values` is both input and output.
     """
     one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
     two = Run(second.given[0], second.method[0], second.now[0], *second[3:])
@@ -149,4 +149,4 @@ NO_BULK = Bulk(
         _COUNTS, _COUNTS, _ROWS, np.zeros((0, 0, 2)), np.zeros((0, 0, 0)), _ROW, _COUNTS, _ROWS
     ),
 )
-"""In the place of scenes for the other tasks."""
+"""Placeholder for the tasks that need no scenes."""

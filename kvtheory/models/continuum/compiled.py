@@ -1,7 +1,7 @@
-"""The kernels, compiled by numba from the very source that is also interpreted.
+"""The kernels compiled by numba, from the same source that runs interpreted without it.
 
-Only one entry, `bulk.perform`, is cached: each kernel is compiled once. Numba would not notice a change of
-a function in another file, so the entry is named by a digest of all kernel sources.
+Only one entry, `bulk.perform`, is cached, so that each kernel is compiled once. Numba does not notice changes
+in other files, so the name of the entry contains a digest of all kernel sources.
 """
 
 import hashlib
@@ -33,28 +33,28 @@ MODULES = (
     *(base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
     *(evaluation, maxima, deviation, bulk),
 )
-"""Where the kernels are."""
+"""Modules that contain kernels."""
 
 OPTIONS: Any = {"_nrt": False}
-"""Kernels allocate nothing, so that numba need not count references to rows: it takes half the time."""
+"""Kernels allocate nothing, so that numba need not count references; this takes half the time."""
 INLINED = base_motion, contact, radau_iia
-"""Modules of short kernels that are called most."""
+"""Modules of short kernels that are called most often."""
 SHORT = ("sliding_now", "_slack", "_probe")
-"""Functions of the other modules that are inlined, too."""
+"""Functions of the other modules that are inlined too."""
 
 WORTHWHILE = 4000
-"""Steps that are interpreted before it pays to compile: about a second. To load the compiled kernels takes
-half a second, to compile them, once for an installation, half a minute."""
+"""Number of interpreted steps after which compiling pays: about a second. Loading the compiled kernels takes
+half a second; compiling them, once per installation, takes half a minute."""
 
 
 class Tally:
-    """How many steps were interpreted in this process."""
+    """Number of steps interpreted in this process."""
 
     steps = 0
 
 
 def worthwhile() -> bool:
-    """Whether the kernels should be compiled from now on: the numbers are the same."""
+    """Whether to use compiled kernels from now on; they give the same numbers."""
     return Tally.steps >= WORTHWHILE and available()
 
 
@@ -67,18 +67,18 @@ def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
 
 
 def in_use(run: Any) -> bool:
-    """Whether a run has arrays for records, as compiled kernels need them."""
+    """Whether the records of a run are arrays, as compiled kernels need."""
     return isinstance(run.steps, np.ndarray)
 
 
 def chosen(run: Any) -> Callable[..., int]:
-    """Return the entry of the kernels, compiled if the run needs that."""
+    """Return the entry of the kernels, compiled if the records of the run are arrays."""
     return kernel() if in_use(run) else bulk.perform
 
 
 @cache
 def kernel() -> Any:
-    """Return the entry of the kernels, compiled; it runs without the interpreter lock.
+    """Return the compiled entry of the kernels; it releases the interpreter lock.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def kernel() -> Any:
 
 
 def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
-    """Follow many scenes by compiled kernels: `bulk.follow`."""
+    """Solve many scenes with compiled kernels, see `bulk.follow`."""
     room = all_of.workspace
     kernel()(
         bulk.FOLLOW, fine, other, room.times, room.samples, room.rows, np.zeros(2), steps, all_of

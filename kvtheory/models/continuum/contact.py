@@ -1,4 +1,4 @@
-r"""The motion of a step, the edges of the contact, and what they leave behind (facts F8 to F11).
+r"""Motion within a step, the contact edges, and the ground that they leave behind (facts F8 to F11).
 
 Scaled form: depth d, depth rate v, drive number lambda = Y', surface compression u = g in contact,
 g = d - xi^2, at the material coordinate X = xi - Y. Outside the contact u e^s keeps A(X), the largest
@@ -15,8 +15,8 @@ b -> lambda, c -> d + v. In the limit sigma -> -oo they are the edges on undistu
 
 The memory of a side is a chain of nodes, the innermost first. The ground of a node was left at one
 instant (a strip, when lambda jumped; undisturbed ground, at sigma = -oo), or swept by a peeling edge
-during one step: at sigma the edge was at X_e(sigma), a root of p = 0. A node on a chain never
-changes, so that the chain of any past time is still there. Side 0 is the left edge, side 1 the
+during one step: at sigma the edge was at X_e(sigma), a root of p = 0. Nodes on a chain never
+change, so the chain of any past time remains available. Side 0 is the left edge, side 1 the
 right one; `run` describes the records.
 """
 
@@ -26,7 +26,7 @@ from typing import Any
 from kvtheory.scene.base_motion import evaluate
 
 PEELING, TOUCHING, FREE = 0, 1, 2
-"""States of an edge; both are free while the indenter flies."""
+"""States of an edge; both edges are free in flight."""
 
 SIDES = (-1.0, 1.0)
 """Outward directions."""
@@ -35,9 +35,9 @@ FAR = 1e150
 
 SWEEP_ERROR, FARTHEST_GUESS = 1e-15, 0.75
 """Allowed error of an edge due to that of sigma, in which it is stationary; largest fraction of a sweep, from
-its outer end, for the linear first guess, which must stay off the inner end."""
+its outer end, for the linear initial guess, which must stay off the inner end."""
 SWEEP_STEPS, NEWTON_ALONE = 150, 20
-"""Iteration limit (bisection alone needs fewer than 60); after `NEWTON_ALONE`, every other one bisects."""
+"""Iteration limit (bisection alone needs fewer than 60); after `NEWTON_ALONE`, every other step bisects."""
 
 ROUNDING = 1e-15
 """Rounding error of an edge on recently left ground, times the age of that ground, relative to 1 + |Y|."""

@@ -1,4 +1,4 @@
-"""The limit cycle of an indenter on a spring: steady sliding, or stick-slip that repeats itself.
+"""The limit cycle of an indenter on a spring: steady sliding, or periodic stick-slip.
 
 Nothing sticks: "stick" is slow creep while the spring is stretched; "slip" follows from the fall of the
 friction force with the sliding velocity.
@@ -6,7 +6,7 @@ friction force with the sliding velocity.
 A motion need not last until its cycle has settled. Near the limit of stability the amplitude A obeys
 dA/dn = g A - c A^3 over the number n of cycles, so that 1/A^2 tends to its limit as exp(-2 g n): three cycles
 at equal distances give that limit (Aitken). Near any cycle the approach is geometric, too. The limit is
-accepted where two such triples agree; it was then right to 1.1 %. Number of cycles from rest until it is
+accepted where two such triples agree; its error was then up to 1.1 %. Number of cycles from rest until it is
 accepted, and until the amplitude itself is within 1 % of it, for Table 1, with g from F22:
 
     V (mm/s)   k_x (MN/m^2)   g        accepted   reached
@@ -33,17 +33,17 @@ Array = NDArray[np.float64]
 REPEATS, MOST_PEAKS = 0.01, 4
 """Share of the swing, and of the period, by which a cycle may differ from the one before it; peaks in one."""
 STEADY, LAST = 1e-3, 0.75
-"""A rate along x below this share of the largest sliding velocity counts as zero, if it stays there from this
-share of the motion to its end."""
+"""A rate along x counts as zero if it stays below the first share of the largest sliding velocity from the
+second share of the motion to its end."""
 FEWEST = 8
-"""Cycles that two triples need, of which the wider one spans the last half of the motion."""
+"""Least number of cycles for two triples, the wider of which spans the last half of the motion."""
 AGREE, FAR = 1e-3, 1.5
 """Share of the amplitude by which both limits may differ (their error may be ten times that), and largest
-factor between the amplitude and its limit: farther, a triple may see another stage of the motion."""
+ratio between amplitude and limit: beyond it, a triple may belong to another stage of the motion."""
 QUIET = 1e-4
-"""Share of the amplitude: smaller differences between cycles are errors of the steps."""
+"""Share of the amplitude below which differences between cycles are integration errors."""
 POINTS = 4000
-"""For the extremes of a cycle: a parabola between them is right to 1e-6."""
+"""Samples of a cycle for its extremes, which are parabolic between samples: accurate to 1e-6."""
 
 
 class Cycle(NamedTuple):
@@ -102,7 +102,7 @@ def cycle(motion: Trajectory) -> Cycle:
 
 
 def _turns(motion: Trajectory, s: Array, rate: Array) -> tuple[Array, Array]:
-    """Return when x turns, and x there: maxima and minima alternate, a maximum is first and last."""
+    """Return times and values of the extremes of x, alternating; the first and the last are maxima."""
     up = rate > 0.0
     k = np.flatnonzero(up[:-1] != up[1:])
     k = k[np.argmax(up[k]) :] if up[k].any() else k[:0]
@@ -116,7 +116,7 @@ def _turns(motion: Trajectory, s: Array, rate: Array) -> tuple[Array, Array]:
 
 
 def _cycles(turns: Array, x: Array) -> tuple[Array, Array]:
-    """Return the ends of the cycles and their amplitudes; none if the last one does not repeat itself."""
+    """Return the ends of the cycles and their amplitudes; none if the last two cycles differ."""
     for size in range(2, 2 * MOST_PEAKS + 1, 2):
         count = (len(x) - 1) // size
         if count < 2:

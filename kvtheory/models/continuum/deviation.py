@@ -1,8 +1,8 @@
 """Deviation of two solutions of one transient, from which its error is estimated.
 
 At a take-off or landing the edges and the peak pressure jump. Two solutions find it at slightly different
-times; between these, one has jumped and the other has not. There the other solution is taken as far from
-its own jump as the instant is from the first one's.
+times; between these, one has jumped and the other has not. There the other solution is evaluated at the same
+time relative to its own jump.
 """
 
 import math
@@ -21,7 +21,7 @@ on the time of a landing."""
 NUMBER, SPRING_FORCE, ALONG, DRIVE = range(12, 16)
 """Sliding velocity of the base; force and elongation of a spring in the drive; the drive itself."""
 SIZES = 16
-"""From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
+"""From here on, the largest magnitude of each quantity; it stays zero for the effects of rounding."""
 SIZE = 2 * SIZES
 PAIRS = (
     (DEPTH, e_.DEPTH), (RATE, e_.RATE), (NORMAL_FORCE, e_.NORMAL_FORCE),
@@ -35,9 +35,8 @@ PAIRS = (
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
     """Raise the deviations `worst` to those of `other` from the states `found` of `fine`.
 
-    The `times` are in order, or not before the first of them that is after a hop; `rows` is room for two
-    states. Where the solutions do not hop equally often, nothing is known about them, and a quantity may
-    be wrong by what it changes.
+    The `times` are in order; `rows` is workspace for two states. If the solutions differ in the number of
+    hops, their error is unknown, and the deviation of a quantity is at least its change since the start.
     """
     alike = hops(fine) == hops(other)
     last_f, last_o, next_f, next_o = -1, -1, next_hop(fine, 0), next_hop(other, 0)
@@ -67,7 +66,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
 
 
 def hops(run: Run) -> int:
-    """Return how many take-offs and landings there are."""
+    """Return the number of take-offs and landings."""
     count, index = 0, next_hop(run, 0)
     while index >= 0:
         count, index = count + 1, next_hop(run, index + 1)
@@ -83,7 +82,7 @@ def next_hop(run: Run, index: int) -> int:
 
 
 def _hop_rounding(run: Run, s: float, row: Any) -> float:
-    """Return what rounding may do to the time of a hop: at a landing, the gap closes by the pressure."""
+    """Return the rounding error of the time of a hop; at a landing, the pressure is the closing rate."""
     index, found = e_.step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
     if row[e_.PEAK_PRESSURE] > 0.0:
@@ -108,5 +107,5 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
 
 
 def _known(value: float) -> float:
-    """Return zero for an edge in flight: both are at the axis, where no contact is."""
+    """Return a value, or zero for an edge in flight, which is NaN."""
     return 0.0 if math.isnan(value) else value

@@ -29,7 +29,7 @@ class Ledger:
 
     `stored_at_rest` and the `work` of the drive since then are spent on the other entries; the
     dissipated energies are sums since the start. Potential energies are zero at the static depth. The last
-    three are of a drive with a spring: of the motion along x, in the spring, and in the damper.
+    three are for a drive with a spring: kinetic along x, stored in the spring, dissipated in the damper.
     """
 
     stored_at_rest: Any
@@ -79,7 +79,7 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     flat = times.reshape(-1)
 
     def powers(_: Any, t: Array) -> Array:
-        """Return the power of the drive and what is dissipated in the contact, behind it, in the damper."""
+        """Return the power of the drive, and those dissipated in contact, behind it and in the damper."""
         found = motion.states(t.reshape(-1)).T
         l, r, v, number, rate = found[[e_.LEFT, e_.RIGHT, e_.RATE, e_.NUMBER, e_.ALONG_RATE]]
         thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)

@@ -1,4 +1,4 @@
-"""How wrong a transient may be: measured against a solution with a tighter tolerance and other steps."""
+"""Error of a transient, estimated from a solution with a tighter tolerance and other steps."""
 
 import math
 from typing import Any
@@ -14,19 +14,19 @@ from kvtheory.results.certificate import AT_REST, Certificate
 Array = NDArray[np.float64]
 
 LOOSEST, TIGHTEST = 1e-4, 1e-13
-"""Looser tolerances would save no steps; tighter ones would be rounding."""
+"""Looser tolerances would save no steps; tighter ones would be below rounding."""
 TIGHTER = 100.0
-"""Factor between the tolerances of the solution and of the one it is compared with; with a smaller one, the
-latter would be no better in three of a thousand scenes."""
+"""Ratio of the tolerances of the solution and of the one it is compared with; with a smaller ratio, the
+latter would be no more accurate in three of a thousand scenes."""
 COMPARISON = StepControl(first_step=0.17, longest=0.3, grow=6.0, straight=0.85)
-"""Other steps where the tolerance does not set them: after a jump, on the pieces of the drive, and before an
+"""Different steps where the tolerance does not set them: after a jump, on pieces of the drive, and before an
 event, where a last short step covers the singularity of a take-off."""
 MARGIN = 10.0
-"""The difference is multiplied by this: in one of a thousand scenes with hops it is so many times smaller
-than the error."""
+"""Safety factor on the difference: in one of a thousand scenes with hops, the error is this many times as
+large."""
 FLOOR = 1e-2
-"""In units of the tolerance, which is relative to 1 + the largest magnitude of a quantity: a smaller
-difference is a coincidence, for the error of the other solution may be as large."""
+"""Least difference in units of the tolerance, which is relative to 1 + the largest magnitude of a quantity;
+a smaller one is a coincidence, for the error of the other solution may be as large."""
 
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
@@ -49,7 +49,7 @@ def certificate(
 ) -> Certificate:
     """Return the certificate of the states at the scaled `times`, by default the natural ones.
 
-    `tolerance` is that of the polynomials that stand for a drive.
+    `tolerance` is that of the polynomials that approximate a drive.
     """
     if other is None:
         return unknown(NOTHING, sprung=fine.given.sprung)
@@ -74,9 +74,8 @@ def errors(
 
     The error of the pressure inside the contact, d + d' - xi^2 - 2 lambda xi, follows from those of the
     depth, its rate and lambda. The surface is the largest of e^-(s - sigma) (d - xi^2) over the past instants
-    sigma (fact F8): its error is at most the largest one of the depth so far, and that of the distance by
-    which the base has slid since, of which the position along x is a part. Deviations may be arrays over
-    many scenes.
+    sigma (fact F8): its error comes from the largest error of the depth so far, and from that of the sliding
+    distance since then, which includes the position along x. Deviations may be arrays over many scenes.
     """
     moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), np.asarray(whole[d_.SIZES :])
     floor = FLOOR * rtol * (1.0 + sizes)

@@ -33,7 +33,7 @@ def states(times: Any, found: Any, run: Run) -> None:
 
 
 def natural(run: Run, times: Any, found: Any) -> int:
-    """Write the steps, subdivided, as times at which to show a motion, and the states there."""
+    """Write the times at which to show a motion, its subdivided steps, and the states there."""
     count, index = 0, 0
     for index in range(run.now.steps):
         start, end = run.steps[index].start, end_of(run, index)
@@ -49,7 +49,7 @@ def natural(run: Run, times: Any, found: Any) -> int:
 
 
 def end_of(run: Run, index: int) -> float:
-    """Return when a step ends, and the next one begins."""
+    """Return the end of a step, where the next one begins."""
     return run.now.s if index + 1 == run.now.steps else run.steps[index + 1].start
 
 
@@ -98,7 +98,7 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
 
 
 def forward(run: Run, step: Any, s: float) -> bool:
-    """Whether the left edge led before a rest that lasts at `s`."""
+    """Whether the left edge was the leading edge before the base came to the rest it is in at `s`."""
     number, k, first = 0.0, step.piece, run.given.drives if run.given.sprung else 0
     while number == 0.0 and k >= first:
         piece = run.pieces[k]

@@ -1,4 +1,4 @@
-"""When a quantity of a solved transient is largest, and when its friction settles.
+"""Extremes of the quantities of a solved transient, and when its friction force settles.
 
 A motion is smooth within a step. It is sampled densely; a maximum is then refined between two samples.
 """
@@ -14,17 +14,17 @@ SAMPLES = 12
 JUST_BEFORE = 1.0 - 2.0**-53
 """Factor from a number to the next smaller one."""
 SAME = 1e-10
-"""Relative difference of values that count as equal, as in steady sliding; the first is then the largest."""
+"""Relative difference of values that count as equal, as in steady sliding; the first one then counts."""
 GOLDEN, SECTIONS = 0.6180339887498949, 18
 """Golden-section steps, down to a thousandth of a step; then Newton's method on central differences."""
 NEWTON_STEPS, DIFFERENCE, BISECTIONS = 3, 1e-3, 60
-"""The difference is this share of a step: its fourth power, and rounding over it, are both small."""
+"""Iterations; width of a difference as a share of a step: width^4 and rounding/width are both small."""
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
 """Senses of an extreme."""
 
 
 def sample(run: Run, times: Any, found: Any) -> int:
-    """Write times and states: those of `SAMPLES` parts of each step, the last one just before its end."""
+    """Write times and states that divide each step into `SAMPLES` parts, the last just before its end."""
     count = 0
     for index in range(run.now.steps):
         start, end = _step(run, index)
@@ -38,10 +38,10 @@ def sample(run: Run, times: Any, found: Any) -> int:
 def largest(
     run: Run, times: Any, found: Any, count: int, column: int, sense: int, row: Any
 ) -> tuple[float, float]:
-    """Return when a quantity is largest in a `sense`, and its value; NaN if it never exists.
+    """Return time and value of the extreme of a quantity in a `sense`; NaN if it never exists.
 
-    `times` and `found` hold the `count` samples, `row` is room for a state. All samples are candidates, and
-    the maximum beside each one that might be exceeded between it and its neighbours.
+    `times` and `found` hold the `count` samples, `row` is workspace for a state. Candidates are all samples,
+    and the refined maxima beside each sample that may be exceeded between it and its neighbours.
     """
     top, best_s, best = -math.inf, math.nan, math.nan
     for i in range(count):
@@ -70,7 +70,7 @@ def largest(
 def settled(
     run: Run, times: Any, found: Any, count: int, force: float, share: float, row: Any
 ) -> float:
-    """Return since when the friction force is within a share of `force` for good; NaN if it is not."""
+    """Return the time from which friction stays within a share of `force`; NaN if it does not settle."""
     at = count - 1
     while at >= 0 and not abs(found[at][e_.FRICTION_FORCE] - force) > share * abs(force):
         at -= 1
@@ -90,18 +90,18 @@ def settled(
 
 
 def _measured(row: Any, column: int, sense: int) -> float:
-    """Return what is maximized."""
+    """Return the objective to maximize."""
     return abs(row[column]) if sense == MAGNITUDE else sense * row[column]
 
 
 def _step(run: Run, index: int) -> tuple[float, float]:
-    """Return when a step begins, and the last instant that belongs to it."""
+    """Return the start of a step, and the last instant that belongs to it."""
     last = index + 1 == run.now.steps
     return run.steps[index].start, e_.end_of(run, index) * (1.0 if last else JUST_BEFORE)
 
 
 def _rise(found: Any, i: int, column: int, sense: int) -> float:
-    """Return how far a sample stands out from its neighbours in the step; less is missed beside it."""
+    """Return how far a sample exceeds its neighbours in the step: it bounds what sampling misses there."""
     value, rise = _measured(found[i], column, sense), 0.0
     for k in (-1, 1):
         if 0 <= i % (SAMPLES + 1) + k <= SAMPLES:

@@ -24,9 +24,9 @@ def copy(node: Any, inner: Any, outer: Any, old: Any) -> None:
 
 
 def push(run: Run, k: int, step: int, branch: float) -> None:
-    """Add the node in the first unused record, where its ends are already written, to a chain.
+    """Add a node to a chain: the first unused record, whose ends are already written.
 
-    A is smooth across to the next node if one edge swept both, smoothly.
+    A is smooth across to the next node if the same edge swept both without a kink between them.
     """
     node, top = run.nodes[run.now.nodes], run.now.sides[k].node
     below = run.nodes[top]
@@ -74,7 +74,7 @@ def leave(run: Run, Y: float) -> None:
 
 
 def land(run: Run, Y: float) -> None:
-    """Touch down: split the chains at the landing point, where both edges touch."""
+    """Land: split the chains at the landing point, where both edges touch."""
     now = run.now
     _, X, side, index, sigma = summit(run, now.s, now.d, Y)
     near = 1 if side > 0.0 else 0

@@ -8,9 +8,9 @@ of v over the whole step. F has a known Jacobian, and eps d'' keeps the form in 
 every stage: the method is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations II,
 sections IV.5, IV.8 and VI.1).
 
-Why so many stages (`STAGES`): the error must be small all along the step, for memory is read off it, and
-a step costs much beside its stages. Steps and evaluations of F that the start from rest of Table 1 takes,
-for an error of the depth of about 1e-4 (seven stages give less than that at any tolerance), 1e-7 and
+Why so many stages (`STAGES`): the error must be small all along the step, since memory is evaluated from its
+polynomial, and a step has large costs besides its stages. Steps and evaluations of F for the start from rest
+of Table 1, with an error of the depth of about 1e-4 (seven stages give less at any tolerance), 1e-7 and
 1e-11:
 
     stages   about 1e-4   about 1e-7    about 1e-11
@@ -19,8 +19,8 @@ for an error of the depth of about 1e-4 (seven stages give less than that at any
     5        11, 253      22, 386       56, 826
     7        11, 341      11, 341       27, 634
 
-Beyond seven, the linear algebra takes what the evaluations save. `make benchmark` holds it against LSODA,
-`kvtheory chart work-precision` against SciPy's other methods and CVODE.
+Beyond seven, the linear algebra costs what the evaluations save. `make benchmark` compares it with LSODA,
+`kvtheory chart work-precision` with SciPy's other methods and CVODE.
 """
 
 import math
@@ -35,21 +35,21 @@ from kvtheory.models.continuum.contact import FREE, Instant, Run, edge, forces, 
 from kvtheory.scene.base_motion import evaluate
 
 STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
-"""Number of stages for tolerances above each of these: the cheapest, as measured."""
+"""Tolerances, and the number of stages that is the cheapest above each of them, as measured."""
 MOST_STAGES, MOST_PROBES = 7, 3
 
 NEWTON_STEPS, NEWTON_SHARE, NEWTON_STALL = 8, 1e-3, 0.5
-"""Most iterations; shares of the tolerance below which a correction is the last one (convergence is
-quadratic, the error far smaller), or may be if rounding keeps it from becoming smaller."""
+"""Iteration limit; share of the tolerance below which a correction is the last one (convergence is
+quadratic, the error far smaller), and that below which it may be the last if rounding stalls it."""
 ROUNDING = 1e-15
-"""Of F, relative to its terms and its largest derivative: a stiff spring multiplies rounding of the depth."""
+"""Rounding of F, relative to its terms and its largest derivative: a stiff spring amplifies that of d."""
 PLACES = (0.08, 0.25, 0.55)
-"""About where the defect of each step is probed, besides its end."""
+"""Approximate places, as shares of a step, at which its defect is probed, besides its end."""
 
 Balance = tuple[float, float, float, float, float]
 """A residual force, and its derivatives by d, d', x and x'."""
 IN_FLIGHT = math.nan, math.nan, math.nan, -1
-"""An edge of an indenter that flies, see `contact.edge`."""
+"""An edge in flight, see `contact.edge`."""
 
 
 class Method(NamedTuple):
@@ -65,13 +65,13 @@ class Method(NamedTuple):
 
 @cache
 def radau(stages: int) -> Method:
-    """Return the Radau IIA method of so many stages.
+    """Return the Radau IIA method with this number of stages.
 
-    In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of the
+    In rational arithmetic, since the inverses are ill-conditioned. L_j are the Lagrange polynomials of the
     nodes: A_ij is the integral of L_j, its inverse the derivative of theta L_j/c_j; the powers of theta of
     v are those of V_j - v_0. The defect of a smooth step is a multiple of M = prod(theta - c_i); it is
     probed at its extremes nearest to `PLACES`, whose scales are the largest |int M|, |M| and |M'| of the
-    step by |M| there.
+    step divided by |M| there.
     """
     legendre = Legendre.basis(stages) - Legendre.basis(stages - 1)
     roots = np.sort(np.real(legendre.roots()))[:-1]
@@ -130,7 +130,7 @@ def balances(
 ) -> tuple[Balance, Balance]:
     """Return F and G on a spring, each with its derivatives.
 
-    The pressure vanishes at a peeling edge; a touching one moves with d and, over what was left, with Y.
+    The pressure vanishes at a peeling edge; a touching one moves with d and, on deformed ground, with Y.
     """
     given, (d, v, _, _, number, _) = run.given, now
     F, F_d, F_v, (l, l_d, l_Y, _), (r, r_d, r_Y, _) = imbalance(run, step, s, now)
@@ -151,10 +151,10 @@ def balances(
 
 
 def collocate(run: Run, step: Any, along: Any) -> int:
-    """Solve for the stages of a step that has begun, and write its powers of v.
+    """Solve for the stages of a step whose start is set, and write its powers of v.
 
-    Of n unknowns, v at the stages, row n of `matrix` holds a guess of them less v at the start; the rest is
-    work space. With a spring there are as many unknowns along x, and the powers of x' are written to
+    The n unknowns are v at the stages less v at the start; row n of `matrix` holds an initial guess, the rest
+    is workspace. With a spring there are as many unknowns along x, and the powers of x' are written to
     `along`. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
     F, or 0 if it does not converge.
     """
@@ -241,7 +241,7 @@ def _write_powers(method: Any, change: Any, first: int, rate: Any) -> None:
 
 
 def eliminate(matrix: Any) -> float:
-    """Solve the augmented system of all stages in place, its last column; return the largest solution."""
+    """Solve the augmented system in place, into its last column; return the largest magnitude there."""
     stages = len(matrix[0]) - 1
     for k in range(stages):
         best = k

@@ -17,12 +17,12 @@ from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
 ROOM = 64
-"""Steps at first; a start from rest takes some thirty."""
+"""Initial capacity in steps; a start from rest takes about thirty."""
 PER_STEP, EVENTS_PER_STEP = 8, 8
 """Nodes and events that one step may add; a landing may also double the nodes."""
 
 EVENT_SHARE, EVENT_FLOOR = 1e-4, 1e-12
-"""Share of the tolerance by which the state of an edge must be violated: rounding must not toggle it."""
+"""Violation that toggles the state of an edge: a share of the tolerance, and a floor well above rounding."""
 
 
 def _record(**fields: Any) -> np.dtype[Any]:
@@ -94,9 +94,9 @@ class Spring(NamedTuple):
 class Run(NamedTuple):
     """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
-    Outside the kernels `given`, `method` and `now` are rows of one record, inside they are the record itself.
-    With a spring, `along` holds the motion along x for each step, and `pieces` continues behind those of
-    the drive with how the base slides under the indenter.
+    Outside the kernels `given`, `method` and `now` hold one record, inside they are the record itself.
+    With a spring, `along` holds the motion along x for each step, and the `pieces` after those of the
+    drive are those by which the base slides under the indenter.
     """
 
     given: Any
@@ -114,14 +114,14 @@ KINDS = {
     "given": GIVEN, "method": METHOD, "now": NOW,
     "steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP,
 }  # fmt: skip
-"""Of the records of a run."""
+"""Types of the records of a run."""
 
 
 def begin(
     drive: BaseMotion, numbers: tuple[float, float], spring: Spring | None, end: float,
     rtol: float, control: StepControl, *, arrays: bool = False,
 ) -> Run:  # fmt: skip
-    """Return a run that has not begun; `numbers` are eps and kappa. Its records are objects or `arrays`."""
+    """Return a new run; `numbers` are eps and kappa. Its records are objects, or arrays if `arrays`."""
     (eps, kappa), sprung = numbers, spring is not None
     fixed, stages = math.isinf(kappa), stages_for(rtol)
     given = (
@@ -130,7 +130,7 @@ def begin(
     )  # fmt: skip
     room, pieces = ROOM if arrays else ROOM // 2, drive.rows
     unknowns = 2 * stages if sprung else stages
-    if sprung:  # as long as those by which the base slides, and room for these
+    if sprung:  # as wide as the pieces by which the base slides, with room for those
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
     make, matrix = np.zeros if arrays else _blanks, np.zeros((unknowns + 3, unknowns + 1))
@@ -148,7 +148,7 @@ def begin(
 
 
 def rest(run: Run) -> None:
-    """Put a run at rest at its beginning: the stationary contact at d = 1."""
+    """Set the initial state of a run: the contact at rest, d = 1."""
     now = run.now
     now.s, now.d, now.v, now.span, now.kink, now.x, now.w = 0.0, 1.0, 0.0, math.inf, 0.0, 0.0, 0.0
     now.piece, now.slide, now.met, now.smooth, now.toggles = 0, 0, False, False, 0
@@ -163,7 +163,7 @@ def rest(run: Run) -> None:
 
 
 def has_room(run: Run) -> bool:
-    """Whether one more step surely fits."""
+    """Whether one more step is certain to fit."""
     now = run.now
     doubles = 2 if now.sides[0].state == FREE else 1
     return (
@@ -188,13 +188,13 @@ def with_more_room(run: Run) -> Run:
 
 
 def as_arrays(run: Run) -> Run:
-    """Return a run of objects, however far it has come, with arrays for compiled kernels."""
+    """Return a run of objects, new or in progress, with arrays for compiled kernels."""
     records = {name: structured(getattr(run, name), kind) for name, kind in KINDS.items()}
     return Run(**records, pieces=np.array(run.pieces), matrix=np.array(run.matrix))
 
 
 def as_objects(run: Run) -> Run:
-    """Return a run with objects for interpreted kernels, however far it has come."""
+    """Return a run, new or in progress, with objects for interpreted kernels."""
     records = {name: _filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
     return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
 
@@ -250,7 +250,7 @@ def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], in
 
 
 def _blanks(count: int, kind: np.dtype[Any]) -> list[Any]:
-    """Return so many blank objects, or zeros."""
+    """Return `count` blank objects, or zeros."""
     if kind.names is None:
         return [0.0] * count
     make, nested = _class(kind)

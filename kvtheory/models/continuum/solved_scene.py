@@ -1,4 +1,4 @@
-"""The transient of a scene in SI: the scaled solution of `continuum`, put back into units."""
+"""The transient of a scene in SI units, from the scaled solution of `continuum`."""
 
 import math
 from contextlib import suppress
@@ -26,10 +26,10 @@ from kvtheory.scene.static_state import StaticState
 Array = NDArray[np.float64]
 
 AFTER_END = 1e-12
-"""Share of the run by which a time may lie after its end, from rounding."""
+"""Share of the run by which a time may exceed its end because of rounding."""
 TO_A_CHANGE = 0.5 * AFTER_END
-"""Share of the run by which it is followed beyond its end, if the drive changes so close to it that both
-count as one time: the solver then meets the change."""
+"""Share of the run by which it is extended if the drive changes so close to its end that both count as one
+time: the solver then includes the change."""
 COLUMNS = {
     "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
     "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
@@ -38,17 +38,17 @@ COLUMNS = {
 }  # fmt: skip
 """Column of each quantity in the states."""
 STEPS_A_PIECE = 100
-"""More than a piece of a drive takes: a stop takes 25."""
+"""Upper bound on the steps for one piece of a drive; a stop takes 25."""
 
 
 def end_of(scene: Scene) -> float:
-    """Return the time (s) to which a scene is followed: the end of its run, or of a longer history."""
+    """Return the time (s) at which the solution ends: the end of the run, or of a longer history."""
     drive = scene.drive
     return max(scene.run.duration, drive.last_change if drive.function is None else 0.0)
 
 
 def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
-    """Return the drive number over scaled time until the end, or just beyond a change of a history there."""
+    """Return the drive number over scaled time to the end, or just beyond it if a history changes there."""
     drive, end = scene.drive, end_of(scene)
     if drive.function is None and end - drive.last_change <= SAME_TIME * math.ulp(end):
         end *= 1.0 + TO_A_CHANGE
@@ -59,7 +59,7 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
 class SolvedScene:
     """A solved motion and its scales; evaluates every quantity of a transient in SI.
 
-    `end` is that of the run in scaled time; the motion may go on until a little later.
+    `end` is that of the run in scaled time; the motion may extend slightly beyond it.
     """
 
     motion: Trajectory
@@ -74,7 +74,7 @@ class SolvedScene:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """The events of the contact, and when the forces are largest, in the order of time (s)."""
+        """The events of the contact, and the force maxima, in order of time (s)."""
         maxima = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
         found = [*self.motion.events, *((s, f"{force} force maximum") for s, force in maxima)]
         return tuple(
@@ -119,7 +119,7 @@ class SolvedScene:
         return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
 
     def scaled(self, time: Any) -> Any:
-        """Return times in units of tau; those after the end by no more than rounding are the end."""
+        """Return times in units of tau; those beyond the end by rounding only are set to the end."""
         s, end = np.asarray(time, dtype=float) / self.units.time, self.end
         if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
             raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
@@ -144,7 +144,7 @@ def transient(
 
 
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
-    """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
+    """Return the times at which f_z and |f_x| are largest, each the first one from s = 0 on."""
     forces = ((column, maxima.MAGNITUDE) for column in (e_.NORMAL_FORCE, e_.FRICTION_FORCE))
     normal, friction = motion.largest(*forces)[:, 0].tolist()
     return normal, friction
@@ -154,7 +154,7 @@ def certified(
     scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
     *, certify: bool = True, max_steps: int | None = None,
 ) -> tuple[SolvedScene, Array, Certificate]:  # fmt: skip
-    """Solve a scene, and with a tighter tolerance again; return the times (s) that are judged, too.
+    """Solve a scene, then again with a tighter tolerance; also return the times (s) of the certificate.
 
     Without `times`, these are the natural ones.
     """

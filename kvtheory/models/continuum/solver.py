@@ -29,14 +29,14 @@ from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 300_000
 ATTEMPTS = 1000
-"""Between two looks at how far the run has come."""
+"""Attempted steps between two reports of progress."""
 REASONS = {
     stepping.STUCK: "the step length went to zero",
     stepping.INCONSISTENT: "no consistent state of the edges",
 }
 STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 REVERSAL = "sliding reverses"
-"""The kind of an event that only an indenter on a spring has."""
+"""Kind of an event that occurs on a spring only."""
 
 
 class Moment(NamedTuple):
@@ -88,12 +88,12 @@ class Trajectory:
 
     @property
     def compiled(self) -> bool:
-        """Whether the kernels were compiled, at last."""
+        """Whether the run ended with compiled kernels."""
         return compiled.in_use(self.run)
 
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:
-        """The events of the contact, in the order of time."""
+        """The events of the contact, in order of time."""
         found = structured(self.run.events[: self.counts.events], r_.EVENT).tolist()
         kinds = [ScaledEvent(s, stepping.KINDS[kind]) for s, kind in found]
         return tuple(
@@ -101,7 +101,7 @@ class Trajectory:
         )
 
     def _memory(self) -> Iterator[ScaledEvent]:
-        """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
+        """Yield an event where an edge begins or ceases to touch previously deformed ground."""
         sides, left_at = self.records["sides"], self.nodes["inner"]["s"]
         remembers = (sides["state"] == TOUCHING) & (left_at[sides["node"]] > -math.inf)
         changes, sides_of = np.nonzero(remembers[1:] != remembers[:-1])  # none at first
@@ -138,7 +138,7 @@ class Trajectory:
 
     @cached_property
     def interpreted(self) -> Run:
-        """The run with objects for records, as kernels see it."""
+        """The run with objects for records, as interpreted kernels see it."""
         run = r_.as_objects(self.run) if self.compiled else self.run
         return run._replace(given=run.given[0], method=run.method[0], now=run.now[0])
 
@@ -182,7 +182,7 @@ class Trajectory:
     def deviations(
         self, other: "Trajectory", times: NDArray[np.float64] | None = None
     ) -> list[float]:
-        """Return the `deviation` of another solution from this one at the natural `times`, or others."""
+        """Return the `deviation` of another solution at the `times`, by default the natural ones."""
         if self.compiled != other.compiled:
             one, two = (Trajectory(r_.as_arrays(motion.run)) for motion in (self, other))
             return one.deviations(two, times)
@@ -202,14 +202,14 @@ class Trajectory:
         return times, found, self._perform(bulk.SAMPLE, times, found)
 
     def largest(self, *wanted: tuple[int, int]) -> NDArray[np.float64]:
-        """Return for each column of the states and sense when it is largest, and its value, see `maxima`."""
+        """Return time and value of the extreme for each column of the states and sense, see `maxima`."""
         times, found, count = self.samples
         values = self._rows(np.array(wanted, dtype=float).reshape(-1))
         self._perform(bulk.LARGEST, times, found, values, count)
         return np.array(values).reshape(-1, 2)
 
     def settled(self, force: float, share: float) -> float:
-        """Return since when the friction force is settled, see `maxima`."""
+        """Return the time from which the friction force is settled, see `maxima`."""
         times, found, count = self.samples
         values = self._rows(np.array([force, share], dtype=float))
         self._perform(bulk.SETTLED, times, found, values, count)
@@ -246,18 +246,18 @@ def solve(
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
 ) -> Trajectory:  # fmt: skip
-    """Follow the transient of `drive` from rest until `end`, in scaled form.
+    """Solve the transient of `drive` from rest until `end`, in scaled form.
 
     The drive must reach `end`. Numbers are eps > 0 (not used if the support is fixed) and kappa >= 0, where
     infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
     1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
     steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
-    reached. Steps that are repeated count for `max_steps`, too.
+    reached. Rejected steps count towards `max_steps`.
 
     Raises
     ------
     TransientError
-        If a step cannot be made, or too many would be needed.
+        If a step fails, or too many would be needed.
 
     Examples
     --------

@@ -18,12 +18,12 @@ OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
 SEEN = 0.1
-"""Of a step, or of its allowed overrun: the shortest remainder that is worth a step. A step of which this
-share is lost in the rounding of the time cannot be made."""
+"""Share of a step, or of its allowed overrun: a shorter remainder is not worth a step. No step is possible if
+this share of it is lost in the rounding of the time."""
 BRIEF = 1e-10
-"""An event this soon after the start of a step needs no repetition of the step."""
+"""A step with an event this soon after its start need not be repeated."""
 REMAINDER = 1.1
-"""Of the distance to an event that the previous step left: one no longer than this is taken in one step."""
+"""Factor on the distance to an event that the previous step left: up to this, one step covers it."""
 DECAYED, STEADY = 40.0, 1e-3
 """Retardation times after which memory has decayed to the last digit; share of the tolerance below which a
 rate counts as zero."""
@@ -47,7 +47,7 @@ KINDS = (
 
 
 def walk(run: Run, attempts: int) -> int:
-    """Walk to the end of the run, or for so many attempts at a step; return how it ended."""
+    """Integrate to the end of the run, or for at most `attempts` steps, tried or taken; return the status."""
     now, end = run.now, run.given.end
     if now.nodes == 0:
         rest(run)
@@ -73,11 +73,11 @@ def walk(run: Run, attempts: int) -> int:
 
 
 def _start_piece(run: Run) -> None:
-    """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises.
+    """Start a piece of the drive: a jump of lambda detaches strips, or peeling edges touch.
 
     The step after a kink is limited by the time in which lambda changes, and by the time since the last
     kink: a steep ramp from rest, and ground that was left in a short pulse, make the forces change in so
-    short a time that a longer step would not see it.
+    short a time that a longer step would miss it.
     """
     now, index = run.now, run.now.piece
     _, number, slope = b_.evaluate(run.pieces[index], now.s)
@@ -106,7 +106,7 @@ def _start_piece(run: Run) -> None:
 
 
 def _turn_at_kink(run: Run, Y: float, number: float, slope: float) -> None:
-    """Let a peeling edge touch where a new slope of lambda lets the pressure rise, however briefly.
+    """Let a peeling edge touch if a new slope of lambda makes the pressure rise, however briefly.
 
     The second derivative of the depth is known only to the tolerance.
     """
@@ -122,7 +122,7 @@ def _turn_at_kink(run: Run, Y: float, number: float, slope: float) -> None:
 
 
 def _detach(run: Run, Y: float, number: float) -> None:
-    """Leave strips behind, or turn peeling edges, where a jump of lambda changes the pressure."""
+    """Detach strips, or let peeling edges touch, where a jump of lambda changes the pressure."""
     now = run.now
     left, right = now.sides[0].X, now.sides[1].X
     allowed = run.given.allowed * (1.0 + abs(number) + abs(now.v))
@@ -172,7 +172,7 @@ def _note(run: Run, kind: int) -> None:
 
 
 def _advance(run: Run, until: float) -> int:
-    """Try one step; keep it up to its first event, or try a shorter one next time."""
+    """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
     now = run.now
     span, whole = min(now.span, _longest(run)), until - now.s
     if span >= whole:
@@ -199,7 +199,7 @@ def _advance(run: Run, until: float) -> int:
     if found < math.inf:
         end = found
     if end > now.s:
-        if end - now.s > BRIEF * (1.0 + now.s):  # another instant: toggles are counted anew
+        if end - now.s > BRIEF * (1.0 + now.s):  # another instant: restart the count of toggles
             now.toggles = 0
         _commit(run, step, end)
     if found < math.inf:
@@ -223,7 +223,7 @@ def _share(run: Run, way: float) -> float:
 
 
 def _longest(run: Run) -> float:
-    """Return the longest step that is allowed."""
+    """Return the upper bound of the step size."""
     now, longest = run.now, run.given.longest
     if now.sides[0].state != FREE:
         return math.inf if _steady(run) else longest
@@ -255,7 +255,7 @@ def _steady(run: Run) -> bool:
 
 
 def _commit(run: Run, step: Any, end: float) -> None:
-    """Keep a step up to `end`, and what the peeling edges swept in it."""
+    """Accept a step up to `end`, and store the ground that the peeling edges swept in it."""
     now, index = run.now, run.now.steps
     Y_0, _, _ = sliding_now(run, now.s)
     then = motion(step, end) + sliding_now(run, end)
@@ -279,7 +279,7 @@ def _commit(run: Run, step: Any, end: float) -> None:
 
 
 def _change(run: Run, violated: Monitors) -> int:
-    """Change the states that the event at the present time violates."""
+    """Change the edge states that are violated by the event at the present time."""
     now = run.now
     flies = now.sides[0].state == FREE
     # An edge that runs outward over ground in many pieces crosses each of them only once.

@@ -19,24 +19,24 @@ from kvtheory.scene import base_motion as drive_
 Array = NDArray[np.float64]
 
 HALVINGS = 40
-"""For the instant at which ground was left; its height is stationary there (p = 0), so that half as
-many digits of the instant as of the height would do."""
+"""Bisections for the instant at which ground was left; its height is stationary there (p = 0), so that half
+as many digits of the instant as of the height would do."""
 LEAST_HALF = 1e-9
-"""Of half the width of the interval in which p > 0, relative to 1 + |lambda|: a smaller one is rounding.
-It is zero where an indenter takes off, which is found a little too late: nothing is swept in that while."""
+"""Least half width of the interval in which p > 0, relative to 1 + |lambda|: a smaller one is rounding. It is
+zero at a take-off, which is located slightly too late: nothing is swept in between."""
 ROUNDING = 1e-15
-"""Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
+"""Rounding error of an edge in units of 1 + |Y|, since it is stored as X = xi - Y."""
 
 POINTS = 10
-"""Of Gauss's rule on one panel: most steps of a motion then need no more than their two halves."""
+"""Points of Gauss's rule on one panel: most steps of a motion are then halved only once."""
 TOLERANCE = 1e-12
-"""Of an integral, relative to 1 + its size, by how much a panel may differ from its halves. The halves
-are kept, whose error is smaller by many digits."""
+"""Largest difference between a panel and its halves, relative to 1 + the size of the integral. The halves
+are used, whose error is smaller by many digits."""
 PANEL_LIMIT = 1000
-"""Of one integral at one level of halving. Four are needed where a drive passes, in one step, through
-rest to ten thousand half lengths in a retardation time."""
+"""Most panels of one integral at one level of halving. Four are needed where a drive goes, in one step,
+through rest to ten thousand half lengths in a retardation time."""
 ABSCISSAE, WEIGHTS = (np.polynomial.legendre.leggauss(POINTS) + np.array([[1.0], [0.0]])) * 0.5
-"""On [0, 1]."""
+"""Gauss's rule on [0, 1]."""
 STRIP = np.polynomial.legendre.leggauss(3)
 """Exact for u^2 on a strip."""
 
@@ -86,7 +86,7 @@ def volume(motion: Trajectory, s: float) -> float:
 def relaxing(
     motion: Trajectory, times: Sequence[float], power: int, memory: list[tuple[float, float]]
 ) -> Array:
-    """Return the integral of u^`power` outside the contact at each time; `memory` is `kept` for it."""
+    """Return the integral of u^`power` outside the contact at each time; `memory` comes from `kept`."""
     total = np.zeros(len(times))
     nodes, owners = [], []
     edges = motion.states(times)[:, [evaluation.LEFT, evaluation.RIGHT]].tolist()
@@ -122,7 +122,7 @@ def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
 
 
 def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
-    """Return the nodes that exist in part at `s`, with the edge at xi = `edge`, and the next whole one."""
+    """Return the nodes that are partial at `s`, with the edge at xi = `edge`, and the next whole one."""
     run = motion.interpreted
     index = evaluation.step_at(run, s)
     d, v, _, Y, number, _ = instant(run, index, s)
@@ -213,7 +213,7 @@ def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) ->
         return (np.exp(sigma - s[which, None]) * (d - xi * xi)) ** power * rate
 
     whole = np.abs(integrals(flux, inner["s"], outer["s"]))
-    # sigma follows from an edge that is stationary in it: its error may be the root of rounding
+    # sigma follows from an edge that is stationary in it: its error may be the square root of rounding
     xi = inner["X"] + inner["Y"]
     sliver = swept(slice(None), inner["s"][:, None])[0][:, 0] - xi
     u_in = np.exp(inner["s"] - s) * (inner["d"] - xi * xi)
@@ -224,7 +224,7 @@ def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) ->
 def integrals(function: Callable[[Any, Array], Array], low: Array, high: Array) -> Array:
     """Return the integral of each function k over s from `low[k]` to `high[k]`, by Gauss's rule.
 
-    An integrand may end in square roots, or in their reciprocals: with s = low + (high - low) x^2
+    An integrand may be singular at its ends as sqrt or 1/sqrt: with s = low + (high - low) x^2
     (3 - 2 x), the integrand over x in [0, 1] is smooth at both ends. A panel of x is halved until its
     rule agrees with that on its halves.
 

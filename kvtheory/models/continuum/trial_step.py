@@ -11,18 +11,18 @@ from kvtheory.models.continuum.run import Run
 from kvtheory.scene import base_motion as b_
 
 EVENT_RESOLUTION = 1e-13
-"""Of the time of an event, relative to 1 + s."""
+"""Resolution of the time of an event, relative to 1 + s."""
 OFF_THE_ENDS = 0.01
-"""Share of a bracket by which a secant keeps off its ends, so that both of them move."""
+"""Least distance of a secant step from both ends of the bracket, as a share of it, so that both ends move."""
 DIPPING = 0, 1, 3
 """The monitors that may be negative briefly within a step; an edge does not return to ground it left."""
 LOW = 0.5
 """A monitor may be zero between three probes if its smallest value there is below this share of the largest;
 a parabola that is zero between them has at most 0.33."""
 EVALUATIONS, CLOSE = 6, 1e-7
-"""Most evaluations in the search of a minimum, and their least distance, as a share of the step."""
+"""Most evaluations in the search for a minimum, and their least distance, as a share of the step."""
 ROUNDING = 1e-15
-"""Of an edge, whose material coordinate is xi - Y, relative to Y and to the effect of a rounded time."""
+"""Rounding error of an edge, stored as xi - Y, relative to Y and to the effect of a rounded time."""
 
 Monitors = tuple[float, float, float, float, float]
 """Event functions, which stay positive until an event: the width (in flight, the gap), state and ground of
@@ -37,7 +37,7 @@ def sliding_now(run: Run, s: float) -> tuple[float, float, float]:
 
 
 def begin_along(run: Run, span: float, rate: float) -> None:
-    """Begin the motion along x of a step, whose x' changes by `rate` in a `span`."""
+    """Initialize the motion along x of a step, whose x' changes by `rate` over `span`."""
     now, along = run.now, run.along[run.now.steps]
     along.start, along.span, along.depth, along.piece = now.s, span, now.x, now.piece
     for i in range(len(along.rate)):
@@ -93,17 +93,17 @@ def attempt(run: Run, step: Any, span: float) -> tuple[float, float, Monitors]:
 
 
 def _place(run: Run, probe: int) -> float:
-    """Return where a probe is, as a share of the step; behind the last one is the end."""
+    """Return where a probe is, as a share of the step; after the last one comes the end."""
     return run.method.probes[probe] if probe < run.method.probe_count else 1.0
 
 
 def _dip(
     run: Run, step: Any, probe: int, first: Monitors, second: Monitors, third: Monitors
 ) -> tuple[float, float]:
-    """Return a time before, and one when, a monitor is negative between three probes where none is.
+    """Return times before and within a negative dip of a monitor between three probes; infinite if none.
 
-    The parabola through three points is lowest near where the monitor is: it is evaluated there, and the
-    parabola drawn anew. The first three probes stand for what is before them, too.
+    The monitor is evaluated at the minimum of the parabola through three points, which is then updated. The
+    first three probes also cover the time before them.
     """
     for k in DIPPING:
         f, g, h = first[k], second[k], third[k]
@@ -137,7 +137,7 @@ def _dip(
 
 
 def _solve(run: Run, step: Any, span: float) -> bool:
-    """Solve for a step of the length `span` from the present state; return whether that succeeded."""
+    """Solve a step of length `span` from the present state; return whether it converged."""
     now, given, stages, last = run.now, run.given, run.method.stages, run.now.steps - 1
     if given.sprung:
         begin_along(run, span, 0.0)
@@ -244,9 +244,9 @@ def _locate(run: Run, step: Any, low: float, high: float) -> tuple[float, Monito
 
 
 def _touchdown(run: Run, step: Any, earliest: float, s: float) -> float:
-    """Return when the gap is zero, from a time when it is negative by what a monitor allows.
+    """Return when the gap is zero, from a time at which it is negative by the allowed violation.
 
-    By a step of Newton's method: du/ds = -u on the ground, and dg/ds = p - g under the indenter.
+    By one Newton step: du/ds = -u on the ground, and dg/ds = p - g under the indenter.
     """
     d, v, _, Y, number, _ = motion(step, s) + sliding_now(run, s)
     depth, X, _, _, _ = summit(run, s, d, Y)

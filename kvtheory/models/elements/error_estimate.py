@@ -1,4 +1,4 @@
-"""How wrong a run may be: by runs with half as many elements, which are placed in two ways."""
+"""Error of a run, estimated from runs with half as many elements in two placements."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,17 +13,17 @@ from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import POWERS, BaseMotion
 
 SAFETY = 4.0
-"""Of the estimated errors: a change of the density can be small by luck. With one coarse run a bound was
+"""Factor on the estimated errors: a difference can be small by chance. With one coarse run a bound was
 exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
-are seldom lucky at once."""
+are seldom both small by chance."""
 KNOWN = 0.5
-"""Of an element: how well an edge is known after a change of the drive, if a damper leaves pressure on it."""
+"""Uncertainty of an edge, in elements, after a change of the drive, if a damper leaves pressure on it."""
 KINKED = 0.05
-"""Of an element: how well an edge is known under a shape with kinks, whose overlap is straight anywhere."""
+"""Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere."""
 ROUNDING = 1e-12
-"""Least error: where a method is exact, numbers are not."""
+"""Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
-"""Of a spacing: where the elements of the coarse runs are."""
+"""Offsets of the elements of the coarse runs, in spacings."""
 RELATIVE_TO = (
     "of the scene at rest: depth relative to δ_0, its rate to δ_0/τ, edges to a_0, normal force to W_0, "
     "friction force to W_0 δ_0/a_0, pressure to K δ_0"

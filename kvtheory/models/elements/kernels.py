@@ -39,20 +39,20 @@ SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
 """Limits that are never reached: the iterations end after two or three."""
 SLIDE_RTOL = 1e-9
-"""Of the static half length: a smaller Newton step along x is the last one."""
+"""Newton's method along x has converged when its step is below this share of the static half length."""
 ROOM, MORE_ROOM = 0.25, 4.0
-"""Of the static depth: how far the indenter is first assumed to sink in a step at most, and the factor by
-which that grows where it sinks farther."""
+"""Initial bound on how far the indenter sinks in a step, as a share of the static depth, and the factor by
+which it grows if the indenter sinks farther."""
 STANDS = 1e-12
-"""Of the static depth: an edge whose overlap falls by less in a step does not move inward."""
+"""Share of the static depth: an edge whose overlap falls by less in a step does not move inward."""
 STRAIGHT = 0.25
 """Share of w'^2 below which w'^2 - 2 w w'' is that of a square (0), above which that of a line (1)."""
 NEAR = 1e-9
-"""Of the spacing: the distance inside an edge at which the slope is taken, which may jump at the edge."""
+"""Share of the spacing: distance inside an edge at which the slope is taken, since it may jump there."""
 TIE = 1e-9
-"""Relative: an element in contact is on the surface, up to rounding."""
+"""Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
-"""Of a_0/tau: an indenter on a spring that slides slower stands, and its edges are named by the drive."""
+"""Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -159,7 +159,7 @@ def slope_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
 
 
 def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
-    """Return how far to one side, -1 or 1, h = depth is, or the surface ends."""
+    """Return the distance to one side, -1 or 1, at which h = depth or the surface ends."""
     if profile is not None:
         return float(profile.extent(depth, side))
     if not depth > 0.0:
@@ -172,7 +172,7 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
 
 
 def weights_across(dy: float, count: int, rim: float) -> Array:
-    """Return the width for which each strip counts, on both sides, in m; corrected at a `rim` above zero."""
+    """Return the quadrature weight of each strip, both sides together, in m; corrected at a `rim` > 0."""
     weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
     weights[0], s = dy, rim / dy - last
     if 1 <= last <= count:
@@ -284,12 +284,12 @@ def ramp_functions(z: Array) -> tuple[Array, Array]:
 
 
 def entered(gap: float, rise: float) -> float:
-    """Return for which share of the step an element was on the indenter that has risen so far above it."""
+    """Return the share of a step in which an element was in contact, from its overlap at start and end."""
     return rise / (rise - min(gap, 0.0)) if rise > 0.0 else 0.0
 
 
 def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> Array:
-    """Return u of elements at the end of a step, had they been left alone from its start."""
+    """Return u at the end of a step for elements that are detached throughout it."""
     if not e.arms.shape[0]:
         u: Array = step.fall[0] * e.u[j, low:high]
         return u
@@ -302,7 +302,7 @@ def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> A
 def finish(
     e: Elements, step: ElementStep, runs: Runs, before: float, depths: tuple[float, float]
 ) -> None:
-    """Let a step pass: elements in `runs` end on the indenter, all others were left alone.
+    """Complete a step: elements in `runs` end on the indenter, all others relax freely.
 
     `before` is where the base was under the indenter at its start.
     """
@@ -329,7 +329,7 @@ def finish(
 def _pass_arms(
     e: Elements, step: ElementStep, j: int, before: float, depths: tuple[float, float]
 ) -> None:
-    """Let a step pass for the arms of a strip: held ones are loaded, those of free elements are modes."""
+    """Complete a step for the arms of a strip: held ones are loaded, those of free elements are modes."""
     low, law = e.low[j], e.law
     high, u = e.high[j], e.u[j, low : e.high[j]]
     pressed, touched = e.pressed[j, low:high], e.touched[j, low:high]
@@ -373,12 +373,12 @@ def exponential_fit(z: float) -> float:
 
 
 def _velocity(way: float, before: float, h: float, theta: float) -> float:
-    """Return the velocity at the end of a step in which the mean (1-θ) v_0 + θ v_1 goes this way."""
+    """Return v_1, the velocity at the end of a step with the mean velocity (1-θ) v_0 + θ v_1 = way/h."""
     return (way / h - (1.0 - theta) * before) / theta
 
 
 def kink_area(overlap: Any) -> Any:
-    """Return what trapezoids leave out of the area of u at an edge by dx, and its d/dδ and d²/dδ².
+    """Return the area of u at an edge that the trapezoidal rule omits, by dx, and its d/dδ and d²/dδ².
 
     `overlap` is w at the three nearest elements outside. Between the first of them and the next inside, u
     is the larger of two nearly straight lines, which cross where w = 0; the trapezoid takes the chord
@@ -397,10 +397,10 @@ def kink_area(overlap: Any) -> Any:
 class Step(NamedTuple):
     """An implicit step: where the base is under the indenter at its end, and how far it moved there.
 
-    `first` is the first guess of how far the indenter sinks; `begun` are the runs in contact at the start,
+    `first` is an initial guess of how far the indenter sinks; `begun` are the runs in contact at the start,
     `relaxed` the area of the kinks at their edges less what relaxes of it, NaN where that was not needed yet;
     `falling` says at which sides of each strip the overlap falls; `late` are the elements (strip, element)
-    that are entered within the step, and `lack` what their weight lacks of that of the others.
+    that come into contact within the step, and `lack` the deficits of their weights.
     """
 
     place: float
@@ -442,7 +442,7 @@ def implicit_step(
             runs, sunk = _sink(e, law, step, runs, sums, state)
             if not sunk > sinks or sinks == most:
                 break
-            # Elements may have been missed, without which it sinks too deep, never too little.
+            # If elements were missed, it sinks too deep, never too little.
             sinks = min(most, MORE_ROOM * sinks)
             falling[:] = False
         if not sprung:
@@ -482,8 +482,8 @@ def _lay(
 ) -> tuple[Step, Runs, Array]:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
-    That is to where the mean pressure would vanish: where a free element is then, and above where one in
-    contact is now. An element that passes a kink of the shape is pressed as far as that pressed it. Return
+    There the mean pressure would vanish: at the place of a free element then, and above that of one in
+    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. Return
     the step, the runs that are pressed if the indenter sinks by `first`, and the sums of `meets` over them.
     """
     depth, (place, travel) = state[DEPTH], way
@@ -514,7 +514,7 @@ def _lay(
         e.meets[j, low : low + UNMET] = math.inf
         e.meets[j, high - UNMET : high] = math.inf
     runs = begun.copy()
-    for r in range(runs.shape[0]):  # none is outside but where a caller changed the depth
+    for r in range(runs.shape[0]):  # outside only if a caller changed the depth
         low, high = e.low[runs[r, 0]] + UNMET, e.high[runs[r, 0]] - UNMET
         runs[r, 1] = min(max(runs[r, 1], low), high)
         runs[r, 2] = max(min(runs[r, 2], high), low)
@@ -551,9 +551,9 @@ def _extent(runs: Runs, weights: Array) -> float:
 
 
 def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Array, bool]:
-    """Move the ends of runs to where elements begin and cease to be pressed; tell whether any moved.
+    """Move the ends of runs to their first and last pressed elements; return whether any moved.
 
-    If runs met, or others appeared, they are all found anew.
+    If runs merged, or new ones appeared, all runs are found again.
     """
     meets, moved, count = e.meets, False, 0
     for r in range(runs.shape[0]):
@@ -586,9 +586,9 @@ def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Arra
 def _late(
     e: Elements, law: ElementStep, runs: Runs, weights: Array, place: float, depth: float, first: float
 ) -> tuple[Runs, Array]:  # fmt: skip
-    """Return the elements that are entered within the step, and what they lack of their weight.
+    """Return the elements that come into contact within the step, and the deficits of their weights.
 
-    Their arms are loaded for a part of it only.
+    Their arms are loaded during part of the step only.
     """
     count = 0
     for r in range(runs.shape[0] if e.arms.shape[0] else 0):
@@ -611,7 +611,7 @@ def _sink(
 ) -> tuple[Runs, float]:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
-    While no element is met or let go, F_z is of the second order in the depth: one step of Newton's
+    While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
     method with the second derivative is exact.
     """
     h, theta, k, sunk = law.h, step.theta, law.stiffness * e.spacing, step.first
@@ -650,11 +650,11 @@ def _kinks(
     A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts
     where the edge stands or moves outward over the free surface, that is, where the overlap w = g - u
     just outside does not fall. Where the edge moves inward, the surface has no kink, or one that is left
-    behind and relaxes like all that is free. Each side of each strip is asked for itself.
+    behind and relaxes like all free surface. Each side of each strip is decided separately.
     """
     falling, place = step.falling, step.place - step.travel
     met = np.zeros(e.u.shape[0], dtype=np.bool_)
-    known = falling[0, 2]  # decided once in a step, so that no iteration can go to and fro
+    known = falling[0, 2]  # decided once in a step, so that the iteration cannot oscillate
     falling[0, 2] = True
     area = wider = bent = push = 0.0
     for r in range(runs.shape[0]):
@@ -721,7 +721,7 @@ def _slide(
         area -= step.lack[i] * max(sunk - e.meets[place], 0.0) * e.slope[place]
     if e.parts:
         area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
-    # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
+    # Oscillations too fast for the step are damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
     theta = exponential_fit(z) if e.fitted else 1.0
@@ -742,7 +742,7 @@ def explicit_step(
     e: Elements, laws: tuple[ElementStep, ElementStep, ElementStep], state: Array, now: float,
     Y: Array, V: Array,
 ) -> int:  # fmt: skip
-    """Take a step of Runge and Kutta; which elements are in contact is decided at its end.
+    """Take a Runge-Kutta step; which elements are in contact is decided at its end.
 
     `laws` are those of no time, half the step and all of it; Y and V are at these times, V just before the
     end. F_z = dx Σ (K g + C g'). An element in contact detaches where its pressure would be negative, relaxes
@@ -823,7 +823,7 @@ def _press(
 def report(
     e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
 ) -> int:
-    """Put what is reported at an instant into `found`, in the order of `error_estimate.COLUMNS`.
+    """Write the report at an instant into `found`, in the order of `error_estimate.COLUMNS`.
 
     `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
     last with V >= 0, Y). An element is in contact if the indenter touches its surface and its pressure
@@ -890,8 +890,8 @@ def _behind(e: Elements, V: float) -> float:
 def _pressure(e: Elements, state: Array, law: ElementStep, j: int, place: float, V: float) -> Array:
     """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12); set `slope`.
 
-    Of one that is not in contact, it is what it would be had it followed the indenter in the last step: it
-    is brought down by the gap at the start of that time, and then moves with the indenter.
+    For a detached element, it is the pressure it would have had it followed the indenter in the last step:
+    brought down by the gap at the start of the step, and then moving with the indenter.
     """
     low, high, y = e.low[j], e.high[j], j * e.across
     x, u = positions(e, low, high, place), e.u[j, low:high]
@@ -968,7 +968,7 @@ def touching(overlap: Any) -> tuple[float, bool]:
 
 
 def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array) -> None:
-    """Split the element in which a kink of the shape is: h' jumps there, and p by -C V times as much.
+    """Split the element that contains a kink of the shape: h' jumps there, and p by -C V times as much.
 
     Without this, the forces under a wedge are of the first order in the spacing.
     """
@@ -990,11 +990,11 @@ def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array
 
 
 def _peak(e: Elements, p: Array, k: int, reach: Array, low: int, high: int) -> tuple[float, float]:
-    """Return the peak near element k, of the parabola through three, and its doubt.
+    """Return the peak near element k, from the parabola through three, and its uncertainty.
 
-    A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
-    where contact began, so that the pressure itself may have a kink between two elements: then the better
-    of a parabola and a ridge counts.
+    A shape with kinks has no such parabola: there the peak is known to within one element. Arms remember
+    where contact began, so that the pressure itself may have a kink between two elements: then the more
+    certain of a parabola and a ridge counts.
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
     doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
@@ -1035,8 +1035,8 @@ class Course(NamedTuple):
 
     `times` are those before the first step and after each, `steps` their lengths, `Y` and `V` at the start of
     each, halfway and at its end, V just before that. `after` says after which step an instant is
-    reported, `about` what `report` wants to know of it. `limits` are the speeds, upward and along, that no
-    stable run reaches, and the imbalance of the forces that it stays below. `law` is that of an element over
+    reported, `about` is that argument of `report`. `limits` are upper bounds, in a stable run, of the speeds
+    upward and along, and of the imbalance of the forces. `law` is that of an element over
     steps of no length, and over half and all of each length, numbered by `which`.
     """
 

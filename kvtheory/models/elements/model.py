@@ -22,13 +22,13 @@ from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Array, Element
 
 LEVEL = 1.1
-"""Ratio of the depths at which the span of a Python function is found; between, a power of the depth."""
+"""Ratio of the depths at which the span of a Python profile is found; a power law interpolates it."""
 PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
 FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
 FEWEST, MOST = 8, 2_000_000
-"""Elements in contact at rest: with fewer there is no contact to speak of, with more no memory."""
+"""Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
 SAMPLES = 2049
 """Of the surface, where a depth is wanted to about a thousandth."""
 SAMPLES_ALONG, SAMPLES_ACROSS = 257, 16
@@ -43,7 +43,7 @@ class Model:
     Along x the indenter has `mass_along` M_x, infinite on a rigid drive, on a spring k_x and a damper c_x.
     At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
     `across` is the distance dy of the strips of a ball, zero for a line contact.
-    `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
+    `rule` and `start`, the depth at t = 0 relative to δ_0, may be set wrong on purpose.
     """
 
     indenter: Indenter
@@ -153,7 +153,7 @@ class Model:
 
     @cached_property
     def surface(self) -> kernels.Surface:
-        """The indenter as the kernels know it."""
+        """The indenter in the form that the kernels use."""
         return surface_of(self.indenter)
 
     @cached_property
@@ -171,7 +171,7 @@ class Model:
         return kernels.slope_at(self.surface, self.profile, x, y)
 
     def strips(self, depth: float) -> int:
-        """Return how many strips can be met at this depth."""
+        """Return the number of strips that can be in contact at this depth."""
         return 1 + int(self.half_width(depth) / self.across) if self.across else 1
 
     def static_load(self, depth: float) -> float:
@@ -217,7 +217,7 @@ class Model:
         return root(surplus, self.depth, 1e-9)
 
     def _samples(self, depth: float) -> tuple[Array, Array, Array]:
-        """Return x and y of places under the indenter, and for what length (m) or area (m^2) each counts."""
+        """Return x and y of points under the indenter, and their quadrature weights, in m or m^2."""
         low, high = span(self.indenter, depth)
         if self.indenter.per_width:
             each = (high - low) / (SAMPLES - 1)
@@ -232,7 +232,7 @@ class Model:
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
     """Return where an increasing function of x > 0 becomes positive: to the last digit, or to `rtol`.
 
-    Infinite if it nowhere does. By false position (Illinois), every fourth step by halves: SciPy's would be
+    Infinite if it never does. By false position (Illinois), bisecting every fourth time: SciPy's would be
     as fast, but takes longer to import than most runs.
 
     >>> root(lambda x: x * x - 2.0, 1.0)
@@ -287,7 +287,7 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
 
 
 class PythonProfile(NamedTuple):
-    """A profile of Python functions; how far out it has a height is found at some depths only."""
+    """A profile given by Python functions; its extent is found at some depths and interpolated."""
 
     line: Profile
     depth: float

@@ -1,4 +1,4 @@
-"""The elements that matter: a window on an endless row that moves with the base.
+"""The stored elements: a window on an infinite row that moves with the base.
 
 Element i sits at x_i = (i + shift) dx + Y(t). It is stored while it is near the indenter, or while the
 drive will bring it there again before it has relaxed; every other element counts as undisturbed. A ball has a
@@ -21,18 +21,18 @@ from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
 from kvtheory.theory.laws import Array, Element
 
 FORGOTTEN = 1e-12
-"""A compression that has relaxed to this share counts as none."""
+"""A compression that has relaxed to this share counts as zero."""
 KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
-"""Steps of a strip that are interpreted before it pays to compile: about a second. To load what is compiled
-takes half a second; to compile it, once for an installation, about a minute."""
+"""Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
+kernels takes half a second; compiling them, once per installation, about a minute."""
 COLUMNS = 13
 """Numbers of a report, see `error_estimate.COLUMNS`."""
 
 
 class OutgrownError(ArithmeticError):
-    """The indenter sank so deep that it may meet elements that were given up; `rows` as found so far."""
+    """The indenter sank so deep that it may meet elements no longer stored; `rows` are the results so far."""
 
     rows: Sequence[tuple[float, ...]] = ()
 
@@ -51,7 +51,7 @@ class IndenterState(NamedTuple):
 
 
 class Tally:
-    """How many steps of a strip were interpreted in this process."""
+    """Number of steps of a strip interpreted in this process."""
 
     steps = 0
 
@@ -82,7 +82,7 @@ class ElementRow:
         self.state[kernels.DEPTH] = depth
 
     def use(self, scheme: Scheme) -> None:
-        """Take the steps from here on by a scheme."""
+        """Use a scheme for all further steps."""
         model, law, self.scheme = self.model, self.model.law, scheme
         names = ("spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length",
                  "mass_along", "spring_along", "damping_along")  # fmt: skip
@@ -116,7 +116,7 @@ class ElementRow:
     def run(
         self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
-        """Take steps until one of them, or until something is wrong; return what, and how far it came."""
+        """Take steps up to `until` or a failure; return the status, and the steps and reports done."""
         advance = compiled_advance() if self.compiled else kernels.advance
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
@@ -173,7 +173,7 @@ class ElementRow:
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
-        """Move the window so that it holds the elements that are lacking, and those still of use."""
+        """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
         (first, low, high, strips, _), (rows, width) = old.counts.tolist(), old.u.shape
         spare, useful = (high - low) // 2, self._useful(t)

@@ -4,17 +4,17 @@ The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt),
 M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how
 F_z is summed over the elements and over the step; what is known of each is in `results.schemes`.
 
-Explicit schemes are those of Runge and Kutta on F_z = dx Σ (K g + C g'), with the paper's rules of contact.
+Explicit schemes are Runge-Kutta methods on F_z = dx Σ (K g + C g'), with the paper's rules of contact.
 They are stable up to dt C L/M = 2.785 (the paper's) or 2 (Euler), L the length of the contact; on arms, up to
 where the matrix of a step (`stability.amplification`) begins to grow.
 
-Implicit schemes stand on the exact memory of an element (F8 for Kelvin-Voigt), and need no rules of contact.
+Implicit schemes use the exact memory of an element (F8 for Kelvin-Voigt), and need no rules of contact.
 The force, averaged over the step, is k Σ dx max(g - r, 0), r being where the mean pressure of an element
 would vanish; for Kelvin-Voigt, with the weight e^(t/τ),
 
     F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0).
 
-It is never negative, free of elements that are left alone, and convex in the depth at the end of the step,
+It is never negative, independent of detached elements, and convex in the depth at the end of the step,
 which therefore is the one root of a monotone function. The depth advances with the mean velocity
 (1-θ) v_0 + θ v_1. With θ = 1 the damping is that of the backward Euler method; with the exponential
 fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M, the velocity falls by e^(-z) exactly as it should, and the
@@ -93,7 +93,7 @@ SCHEMES = {
 
 
 class ContactRule(NamedTuple):
-    """How an element is found to press in an explicit scheme; a field that is not the default is a mistake.
+    """How an explicit scheme decides that an element presses; any value but the default is a mistake.
 
     `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
     only where the surface of the foundation is met. `stale`: within a step that surface is the one at its

@@ -1,4 +1,4 @@
-"""A run: which step, which instants, what is reported, and how wrong it may be."""
+"""A run: its time steps, its instants, its results and their error."""
 
 import itertools
 import math
@@ -33,28 +33,28 @@ PER_RELAXATION = 100.0
 PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
 ROUGHLY = 0.9
-"""Of a period: nearer to it, it counts as found."""
+"""The iteration for a period ends when the new period is at least this share of the previous one."""
 PER_STOPPING, FINER = 4.0, 1.0 / 16.0
 """Steps in the time in which dampers stop the mass, at least, after a jump of the drive, and so many for each
 element in half a contact, so that more elements are more accurate there, too; later the steps grow with the
 time since the jump, up to the step of the run."""
 JUMP = 1e-6
-"""Of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
+"""Share of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
 MOST_STEPS = 20_000
-"""In a run, for the sake of these two: where the foundation or the spring is far faster than the run
-lasts, no more is resolved than this; the implicit schemes stay stable, and the certificate tells."""
+"""Most steps of a run for these two: where the foundation or the spring is far faster than the run lasts,
+it is resolved no further; the implicit schemes stay stable, and the certificate states the error."""
 STABLE_SHARE = 0.5
-"""Of the largest stable step, for an explicit scheme."""
+"""Default step of an explicit scheme, as a share of the largest stable step."""
 COARSE = 0.25
-"""Of the work of a run: that with half as many elements and steps, for the error."""
+"""Work of a run with half as many elements and steps, for the error, as a share of the main run's."""
 ROWS = 400
-"""Instants reported where none are asked for, at most about so many."""
+"""Approximate upper bound on the instants reported if none are requested."""
 MORE_ROOM = 16.0
 """Ratio of the depths for which elements are kept, from one attempt to the next."""
 PAUSE = {True: 3e7, False: 1e5}
 """Elements times steps between two reports of progress, compiled and interpreted."""
 MOST_OF_ALL = 2e9
-"""Elements under the contact at rest, times steps: so many take from some minutes to hours."""
+"""Upper bound on elements in the contact at rest times steps: so many take from minutes to hours."""
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
@@ -62,7 +62,7 @@ DEEPEST, BALL_DEEPEST = 1e7, 256.0
 """Times the static depth: no scene sinks deeper. Of a ball, elements grow as the depth, not as its root."""
 
 Leg = tuple[float, float, int]
-"""From one instant to another in so many steps."""
+"""Start, end and number of steps."""
 
 
 def simulate(
@@ -150,7 +150,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
         shorter = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
         if not shorter < ROUGHLY * period:
             break
-    # Along x, the dampers of the contact at rest may allow no swing.
+    # Along x, the dampers of the contact at rest may suppress the oscillation.
     if model.sprung:
         resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
         if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
@@ -161,7 +161,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
-    """Return where steps are shorter than h, after jumps of the drive, and how long they are there.
+    """Return the times, after jumps of the drive, from which steps are shorter than h, and these steps.
 
     The dampers of the contact at rest stop the mass in the time M/(C L).
     """
@@ -220,7 +220,7 @@ def _with_room(
     model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
     progress: Progress | None,
 ) -> tuple[Rows, ElementRow]:  # fmt: skip
-    """Run, and run again with more elements kept, should the indenter sink very deep."""
+    """Run; if the indenter sinks too deep, run again with more elements stored."""
     kept, deepest = KEPT_DEPTH, min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
     while True:
         try:
@@ -238,7 +238,7 @@ def _with_room(
                 raise error from None
 
 
-@np.errstate(all="ignore")  # the kernels judge what comes of it
+@np.errstate(all="ignore")  # the kernels check the results
 def _run(
     row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
 ) -> Rows:

@@ -1,4 +1,4 @@
-"""Which time steps are stable: known before a run, and watched during it.
+"""Stability of time steps: predicted before a run, and monitored during it.
 
 Near any state, with a contact of length L that does not change within the step, the depth obeys
 M σ^2 + C L σ + K L + k_s = 0 (F12 with the contact held). A step is stable if |R(σ h)| <= 1 for both
@@ -21,19 +21,19 @@ from kvtheory.theory.laws import Array
 LONGEST_PASS = 0.25
 """Of the static half length, for the elements in a step; with more, some are pressed within a step."""
 ADVISED = 0.9
-"""Of the stability limit, for the step that is advised."""
+"""Advised step, as a share of the stability limit."""
 RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
-"""Of the forces: a mean imbalance that a stable run stays below, besides that of single elements."""
+"""Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
 
 GROWS = 1e-10
-"""Growth in a step that is not rounding."""
+"""Growth per step above which it is not rounding."""
 SHORTEST, LIMIT_RTOL = 1e-6, 1e-9
-"""Of the search for the largest stable step: one as short, times the fastest rate, is none; where it ends."""
+"""Search for the largest stable step: least step times the fastest rate, and relative tolerance."""
 
 ELEMENTS = 4.0
-"""Elements whose coming and going may upset the balance in a stable run, of all in contact at rest."""
+"""Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
 
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
@@ -119,7 +119,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 
 
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
-    """Return what is doubtful about a time step before the run begins, or nothing."""
+    """Return a warning about a time step before the run begins, or an empty text."""
     if h > limit_at(scheme, model, max(lengths(model, path))):
         return f"the run may diverge: {describe(scheme, model, path, h)}"
     passed = h * model.fastest(path) / model.half_length
@@ -132,7 +132,7 @@ def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
 
 
 def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
-    """Say how a step compares with the largest stable one, and what would do."""
+    """Compare a step with the largest stable one, and suggest one that would do."""
     length = max(lengths(model, path))
     limit = limit_at(scheme, model, length)
     if math.isinf(limit):

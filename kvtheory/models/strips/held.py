@@ -3,11 +3,11 @@ r"""The transient of a ball at a constant depth, from strips with closed-form ed
 A strip at y is a parabola of the half length A, A^2 = a^2 - y^2 R/R'. Its leading edge stays at -A, on ground
 that was never touched; its trailing edge peels, x_TE = sqrt(A^2 + l_r^2) - l_r with l_r = |V| tau of that
 instant (fact F10 with a constant depth). This holds as long as no strip's trailing edge outruns the
-foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down meets
+foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down must satisfy
 
     tau |dV/dt| (1 - l_r/sqrt(A^2 + l_r^2)) <= |V|,
 
-first in the middle plane, where A = a. Over a linear piece of the drive its slow end decides. The forces are
+which binds first where A = a, the middle plane, and at the slow end of a linear piece of drive. Forces are
 sums over y = b sin t by Gauss's rule, each strip by F11.
 
 A ball that can rise is left to elements: d' < 0 lifts the rim off the ground at once, where
@@ -31,9 +31,9 @@ from kvtheory.theory.closed_forms import trailing_edge_ratio
 Array = NDArray[np.float64]
 
 NODES = 128
-"""Of Gauss's rule over the strips; half as many tell its error."""
+"""Nodes of Gauss's rule over the strips; its error is estimated with half as many."""
 OWN_TIMES = 401
-"""Times of the series if none are given."""
+"""Number of times of the series if none are given."""
 ROUNDING = 1e-13
 FORCES = {"normal_force": "load", "friction_force": "friction_force"}
 """The forces, and their scales in the static state."""
