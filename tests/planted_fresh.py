@@ -1,0 +1,629 @@
+"""More steps for the engine to judge: false ones, which it must refuse, and true ones, which it must accept.
+
+Each row has a name, the step (functions of a fresh proof, one after the other), why it is false or what
+it is for, and `OPEN` while the engine gets it wrong. A false row holds at least one false claim, a
+contradiction, or a display that says something else. Equality means that both sides are defined at the same
+places, and equal there; functions of complex numbers have their principal values.
+`python -m tests.planted_fresh [PART OF A NAME ...]` prints what the engine does with each.
+"""
+
+import itertools
+import signal
+import sys
+import time
+from collections import Counter
+
+import sympy as sp
+from kvtheory.derivations.book import StepError
+from kvtheory.derivations.step import Proof
+from sympy import Abs, Derivative, I, Integral, Subs, Sum, atan, cos, exp, log, oo, pi, sin, sqrt
+
+x, u, v = sp.symbols("x u v", real=True)
+y, z, a, b, h, q, l, R, K, nu = sp.symbols("y z a b h q l R K nu", positive=True)
+l_r, delta = sp.symbols("l_r delta", positive=True)
+m = sp.Symbol("m", nonnegative=True)
+n, k = sp.symbols("n k", integer=True)
+w = sp.Symbol("w")
+f = sp.Function("f", real=True)
+G = sp.Function("G", positive=True)
+other_x = sp.Symbol("x", positive=True)
+half, third = sp.Rational(1, 2), sp.Rational(1, 3)
+UNIT = (q, 0, 1)
+OPEN, SLOW = "open", "slow"
+"""The engine gets it wrong today; or takes longer than anybody waits."""
+_labels = itertools.count()
+
+
+def _proof(label=None, **more):
+    label = label or f"planted-{next(_labels)}"
+    return Proof(label, None, section="Trial", title="Trial", **more)
+
+
+def steps(*several):
+    def run(p):
+        for each in several:
+            each(p)
+
+    return run
+
+
+def equal(lhs, rhs, **shown):
+    return lambda p: p.equal(sp.sympify(lhs), sp.sympify(rhs), "identity", **shown)
+
+
+def holds(lhs, relation=">", rhs=0, **cases):
+    return lambda p: p.holds(sp.sympify(lhs), relation, rhs, "inequality", **cases)
+
+
+def sign(expr, relation, over, bound=0):
+    return lambda p: p.sign(sp.sympify(expr), relation, bound, over, "sign")
+
+
+def root(expr, variable, value, **more):
+    return lambda p: p.root(sp.sympify(expr), variable, sp.sympify(value), "root", **more)
+
+
+def unique(expr, over):
+    return lambda p: p.unique_root(expr, over, "unique")
+
+
+def integral(integrand, over, primitive, name=v, **more):
+    return lambda p: p.integral(
+        name, sp.sympify(integrand), over, sp.sympify(primitive), "integral", **more
+    )
+
+
+def order(expr, leading, variable=h, point=0, eps=h):
+    return lambda p: p.leading_order(expr, sp.sympify(leading), variable, point, "series", eps=eps)
+
+
+def greatest(value, expr, variable, place, surplus, **given):
+    return lambda p: p.greatest(
+        sp.sympify(value), expr, (variable, sp.sympify(place)), "greatest", surplus=surplus, **given
+    )
+
+
+def equivalent(nonnegative, lhs, rhs):
+    return lambda p: p.equivalent(nonnegative, lhs, rhs, "the same")
+
+
+def define(lhs, rhs, **shown):
+    return lambda p: p.define(lhs, sp.sympify(rhs), **shown)
+
+
+def where(*conditions):
+    return steps(*((lambda p, each=each: p.where(each)) for each in conditions))
+
+
+def notation(**letters):
+    return lambda p: p.notation.update(letters)
+
+
+def recalled(lhs, rhs, given=(), by=None, at=None):
+    """Recall what an earlier derivation proves from the steps `given` and `by`."""
+
+    def run(p):
+        source = _proof()
+        steps(*given, by or equal(lhs, rhs))(source)
+        source.done(sp.sympify(lhs), sp.sympify(rhs))
+        p.recall(source.label, sp.sympify(lhs), sp.sympify(rhs), at=at)
+
+    return run
+
+
+def _finish(proof, lhs=(y + 1) ** 2, rhs=y**2 + 2 * y + 1):
+    proof.equal(lhs, rhs, "identity")
+    return proof.done(lhs, rhs)
+
+
+def _uses_itself(p):
+    label = f"planted-{next(_labels)}"
+    _finish(_proof(label, uses=(label,)))
+
+
+def _uses_unfinished(p):
+    source = _proof()
+    source.equal((y + 1) ** 2, y**2 + 2 * y + 1, "identity")
+    _finish(_proof(uses=(source.label,)))
+
+
+def _use_one_another(p):
+    first, second = (f"planted-{next(_labels)}" for _ in range(2))
+    _finish(_proof(first, uses=(second,)))
+    _finish(_proof(second, uses=(first,)))
+
+
+def _one_label_two_theorems(p):
+    label = f"planted-{next(_labels)}"
+    _finish(_proof(label))
+    _finish(_proof(label), (z + 1) ** 2, z**2 + 2 * z + 1)
+
+
+def _one_label_two_values(p):
+    label = f"planted-{next(_labels)}"
+    for value in (1, 2):
+        source = _proof(label)
+        source.define(a, sp.S(value))
+        source.done(a, value)
+
+
+def _done_twice(p):
+    _finish(p)
+    p.equal((z + 1) ** 2, z**2 + 2 * z + 1, "identity")
+    p.done((z + 1) ** 2, z**2 + 2 * z + 1)
+
+
+def _through_two(first, lhs, rhs, then):
+    """Recall 2 lhs = 2 rhs from a derivation that recalls lhs = rhs from one that begins with `first`."""
+    again = recalled(2 * lhs, 2 * rhs, given=[recalled(lhs, rhs, given=[first])])
+    return steps(again, then)
+
+
+def _for_every_function(lhs, rhs, by, value, at):
+    """Recall what was proved of an unknown function, which is then given a value."""
+    return steps(recalled(lhs, rhs, by=by), define(f(at), value))
+
+
+CANCELLED = (x**2 - 1) / (x - 1), x + 1
+POLE = 1 / (1 + exp(1 / x))
+KERNEL = sin(x * y) / y
+FUBINI = (x**2 - u**2) / (x**2 + u**2) ** 2
+FADING = x**3 / y**2 * exp(-(x**2) / y)
+PROFILE = 1 - x**2 - 2 * l * x
+SHIFTED = sqrt(y**2 + 2 * y + 1)
+HURWITZ = a * b * K - a**2 - b**2 * R
+"""Of s^4 + b s^3 + K s^2 + a s + R."""
+
+FALSE = {
+    "recall outside its domain": {
+        "root at a negative place":
+            (where(x < -1), recalled(SHIFTED, y + 1, at={y: x}), equal(sqrt(x**2 + 2 * x + 1), x + 1),
+             "x = -3: 2 is not -2", OPEN),
+        "logarithm at a negative place":
+            (where(x < 0), recalled(log(y**2), 2 * log(y), at={y: x}), "x = -1", OPEN),
+        "difference of lengths":
+            (where(l_r < a), recalled(SHIFTED, y + 1, at={y: l_r - 2 * a}),
+             "l_r = 1, a = 2: 2 is not -2", OPEN),
+        "condition against the premise":
+            (where(x < 1), recalled(*CANCELLED, given=[where(x > 1)]), "no x is both", OPEN),
+        "real letter at a complex one":
+            (recalled(sqrt(x**4 + 2 * x**2 + 1), x**2 + 1, at={x: w}), define(w, 2 * I), "3 is not -3", OPEN),
+        "letter at a function that is negative":
+            (recalled(SHIFTED, y + 1, at={y: f(x)}), define(f(x), -2 - x**2), "x = 0: 1 is not -1", OPEN),
+        "at a place below its condition":
+            (where(u < 1), recalled(*CANCELLED, given=[where(x > 1)], at={x: u}), "u < 1 and u > 1", OPEN),
+    },
+    "greatest": {
+        "peak ahead of the leading edge":
+            (greatest(1 + l**2, PROFILE, x, -l, (x + l) ** 2, given=(x > -1, l > 1)),
+             "-l < -1 is outside", OPEN),
+        "negative depth":
+            (greatest(0, -K * (delta + a) ** 2, delta, -a, K * (delta + a) ** 2),
+             "delta = -a is excluded", OPEN),
+        "state at rest, which is excluded":
+            (where(q < 1), greatest(4, (1 + q) ** 2, q, 1, (1 - q) * (3 + q)), "q < 1", OPEN),
+        "place that is imaginary": (greatest(1, -(x**2), x, I, 1 + x**2), "for real x it is at most 0", OPEN),
+        "place between integers":
+            (greatest(sp.Rational(1, 4), n * (1 - n), n, half, (n - half) ** 2),
+             "n = 1/2 is no integer; the greatest is 0", OPEN),
+        "value that varies": (greatest(x**2 + 1, x**2 + 1, x, x, sp.S.Zero), "x^2 + 1 is not bounded", OPEN),
+        "place that varies":
+            (greatest(2 * x * u - u**2, 2 * x * u - u**2, u, u, sp.S.Zero), "the greatest is x^2", OPEN),
+        "surplus of the wrong form":
+            (greatest(1, 2 * x - x**2 + u**2 * (x - 1), x, 1, (x - 1) ** 2), "u^2 (x - 1) is without bound"),
+        "outside of a condition":
+            (where(x > 2), greatest(4, 4 - x**2, x, 0, x**2), "below 0 for x > 2", OPEN),
+        "arm that has relaxed altogether":
+            (greatest(1, 1 - exp(-y), y, oo, exp(-y)), "1 is not reached", OPEN),
+    },
+    "conditions of a bound variable": {
+        "pressure behind, where x < 0":
+            (where(x < 0), holds(Integral(-K * x, (x, 0, a)), ">="), "-K a^2/2", OPEN),
+        "integral beyond the condition":
+            (where(q < 1), holds(Integral(1 - q, (q, 0, 3)), ">="), "-3/2", OPEN),
+        "positive letter below zero": (holds(Integral(y, (y, -2, -1)), ">="), "-3/2", OPEN),
+        "negative retardation length":
+            (holds(Integral(l_r * exp(-l_r / a), (l_r, -a, 0)), ">="), "-a^2", OPEN),
+        "root of a positive letter at a place": (equal(Subs(SHIFTED, y, u), u + 1), "u = -3: 2 is not -2"),
+        "load of a longer retardation":
+            (where(l_r < a), holds(Integral(a - l_r, (l_r, 0, 3 * a)), ">="), "-3 a^2/2", OPEN),
+        "named integral": (define(v, Integral(y, (y, -1, 0))), holds(v, ">="), "-1/2", OPEN),
+    },
+    "one-sided leading orders": {
+        "moment about an edge":
+            (order(sqrt(a**2 * x**2 + x**4), a * x, x, 0, x**2 / a**2), "-a x for x < 0", OPEN),
+        "distance in q":
+            (order(Abs(1 - q) * (1 + (1 - q) ** 2), 1 - q, q, 1, (1 - q) ** 2), "q - 1 for q > 1", OPEN),
+        "arc tangent of a pole":
+            (order(x * atan(1 / x), pi * x / 2, x, 0, Abs(x)), "-pi x/2 for x < 0", OPEN),
+        "exponential of a pole": (order(1 + x**2 - POLE, 1, x, 0, x**2), "tends to 0 for x < 0"),
+        "distance of two lengths":
+            (order(Abs(a - l_r) * (1 + (a - l_r) ** 2), a - l_r, l_r, a, (a - l_r) ** 2),
+             "l_r - a for l_r > a", OPEN),
+        "arc cotangent": (order(sp.acot(x), pi / 2, x, 0, Abs(x)), "-pi/2 for x < 0", OPEN),
+        "cube root of a cube": (order(sp.cbrt(x**3 + x**5), x, x, 0, x**2), "complex for x < 0", OPEN),
+        "inverse of a root of a square":
+            (order(1 / sqrt(x**2 + x**4), 1 / x, x, 0, x**2), "-1/x for x < 0", OPEN),
+        "next coefficient": (order(1 + x, 1, x, 0, Abs(x)), "1 + |x| for x > 0, 1 - |x| for x < 0", OPEN),
+        "next coefficient at a place": (order(q + q**2, 2, q, 1, Abs(1 - q)), "another sign for q > 1", OPEN),
+    },
+    "limits outside of the domain": {
+        "slow where fast": (where(l_r > a), order(a / (a + l_r), 1, l_r, 0, l_r / a), "l_r > a", OPEN),
+        "fast where slow": (where(q > half), order((1 - q) / (1 + q), 1, q, 0, q), "q > 1/2", OPEN),
+        "infinity below a bound": (where(h < b), order(sqrt(1 + h**2), h, h, oo, 1 / h**2), "h < b", OPEN),
+        "letter that is not negative at a negative place":
+            (order(1 + (m + 1) ** 2, 1, m, -1, (m + 1) ** 2), "m >= 0", OPEN),
+    },
+    "letters that hide a dependence": {
+        "exponential that grows":
+            (define(exp(z), b * z), order(1 / z + b / z**2, 1 / z, z, oo, 1 / z),
+             "b = e^z/z is without bound", OPEN),
+        "law for a square": (define(b**2, y), equal(Derivative(b * y, y), b), "b = sqrt y: 3/2 sqrt y"),
+        "law for an exponential": (define(exp(b), y), equal(Derivative(b, y), 0), "1/y", OPEN),
+        "trailing edge of the retardation length":
+            (define(q, 1 / (l + sqrt(1 + l**2))), equal(Derivative(q * l, l), q), "q depends on l"),
+    },
+    "differentiation": {
+        "under an integral that then diverges":
+            (equal(Derivative(Integral(KERNEL, (y, 0, oo)), x), Integral(cos(x * y), (y, 0, oo))),
+             "0 is not a divergent integral; at x = 0 there is no derivative", OPEN),
+        "under an integral at one place":
+            (equal(Derivative(Integral(FADING, (y, 0, 1)), x), Integral(sp.diff(FADING, x), (y, 0, 1))),
+             "x = 0: 1 is not 0", OPEN),
+        "term by term":
+            (equal(Derivative(Sum(sin(k * x) / k, (k, 1, oo)), x), Sum(cos(k * x), (k, 1, oo))),
+             "x = 1: -1/2 is not a divergent sum"),
+        "absolute value": (equal(Derivative(Abs(x), x), sp.sign(x)), "none at x = 0", OPEN),
+        "kink of the pressure":
+            (equal(Derivative(sp.Piecewise((a - x, x < a), (0, True)), x),
+             sp.Piecewise((-1, x < a), (0, True))),
+             "none at x = a", OPEN),
+        "logarithm under an integral":
+            (equal(Derivative(Integral(log(x**2 + y**2), (y, 0, 1)), x),
+             Integral(2 * x / (x**2 + y**2), (y, 0, 1))),
+             "x = 0: pi on one side, -pi on the other, not 0", OPEN),
+        "transform with a kink":
+            (equal(Derivative(Integral(cos(x * y) / (1 + y**2), (y, 0, oo)), x),
+             Integral(-y * sin(x * y) / (1 + y**2), (y, 0, oo))),
+             "pi/2 e^(-|x|) has none at x = 0", OPEN),
+        "twice under a kernel":
+            (equal(Derivative(Integral(Abs(x - y), (y, 0, 1)), (x, 2)), 0), "x = 1/2: 2", OPEN),
+        "step under an integral":
+            (equal(Derivative(Integral(sp.Piecewise((1, x < y), (0, True)), (x, 0, 1)), y), 0),
+             "y = 1/2: 1", OPEN),
+    },
+    "function given a value with a singularity": {
+        "relaxation that is singular inside":
+            (_for_every_function(v, f(1) - f(-1), integral(Derivative(f(x), x), (x, -1, 1), f(x)), 1 / x**2,
+             x),
+             "a divergent integral is not 0", OPEN),
+        "logarithm between the ends":
+            (_for_every_function(v, f(2) - f(-1), integral(Derivative(f(x), x), (x, -1, 2), f(x)),
+             log(Abs(x)), x),
+             "the integral of 1/x diverges", OPEN),
+        "jump between the ends":
+            (_for_every_function(v, f(1) - f(-1), integral(Derivative(f(x), x), (x, -1, 1), f(x)),
+             atan(1 / x), x),
+             "-pi/2 is not pi/2", OPEN),
+        "product rule at a kink":
+            (_for_every_function(Derivative(f(x) ** 2, x), 2 * f(x) * Derivative(f(x), x), None, Abs(x), x),
+             "x = 0: 0 is not undefined", OPEN),
+        "pole at an end":
+            (_for_every_function(v, f(1) - f(0), integral(Derivative(f(x), x), (x, 0, 1), f(x)), 1 / x, x),
+             "1/0", OPEN),
+        "by parts across a pole":
+            (_for_every_function(v, f(1) + f(-1),
+             integral(f(x) + x * Derivative(f(x), x), (x, -1, 1), x * f(x)), 1 / x**2, x),
+             "x f = 1/x jumps: -1/x^2 is negative, its integral not 2", OPEN),
+    },
+    "roots with a letter that may vanish": {
+        "quadratic": (root(m * y**2 - b * y, y, b / m), "m = 0: none"),
+        "all coefficients vanish": (root(m * y**2 - m * z**2, y, z), "m = 0: every y"),
+        "damper that may be missing": (root(K * m**3 - R * m, m, sqrt(R / K)), "m = 0 as well", OPEN),
+        "quartic with a root at zero": (root(m**4 - 8 * m, m, 2), "m = 0 as well"),
+        "fractional power": (root(m ** sp.Rational(3, 2) - a * m, m, a**2), "m = 0 as well", OPEN),
+    },
+    "contradictory definitions": {
+        "cosine beyond 1": (define(cos(x), 2), "cos x <= 1", OPEN),
+        "part greater than the whole": (define(a + b, 1), define(a, 2), "b = -1"),
+        "function against its value": (define(f(x), x**2), define(f(sp.S(2)), 5), "f(2) = 4", OPEN),
+        "function against its slope": (define(Derivative(f(x), x), 1), define(f(x), x**2), "f' = 2 x", OPEN),
+        "slope against three values":
+            (define(Derivative(f(x), (x, 2)), 2), define(f(sp.S(0)), 0), define(f(sp.S(1)),
+             0), define(f(sp.S(2)), 5),
+             "f = x^2 - x, f(2) = 2", OPEN),
+        "value of an integral": (define(Integral(x**2, (x, 0, 1)), 1), "1/3", OPEN),
+        "value of a sum": (define(Sum(k, (k, 1, 3)), 7), "6", OPEN),
+        "positive function at one place": (define(G(sp.S(0)), 0), "G > 0"),
+        "square of an integer": (define(n**2, 2), "sqrt 2 is irrational", OPEN),
+        "sum of squares": (define(x**2 + u**2 + 2, 2 * x), "(x - 1)^2 + u^2 = -1", OPEN),
+        "larger of two": (define(sp.Max(x, u), 1), define(x, 2), "max >= x", OPEN),
+        "conditions that exclude each other": (where(x > 1, x < 0), "empty"),
+        "case that never is": (holds(-1, cases=(sp.Lt(x**2 + x + 1, 0),)), "x^2 + x + 1 > 0"),
+        "share beyond 1": (define(l_r / (a + l_r), 2), "l_r = -2 a"),
+        "sine and cosine": (define(sin(x), half), define(cos(x), half), "squares add up to 1/2", OPEN),
+        "negative root": (define(sqrt(x), -1), "its real part is not negative", OPEN),
+        "arm that never relaxes": (define(exp(-a / l_r), 1), "a = 0", OPEN),
+        "quadratic without a root": (define(x**2 + x + 1, 0), "at least 3/4", OPEN),
+        "three sums": (define(x + u, 1), define(u + v, 1), define(x - v, 1), "x = v", OPEN),
+        "two laws of one function": (define(f(x), x), define(f(u), u**2), "f(2) is 2 and 4", OPEN),
+        "slope and curvature":
+            (define(Derivative(f(x), x), x), define(Derivative(f(x), (x, 2)), 3), "curvature 1", OPEN),
+        "condition on a cosine": (where(cos(x) > 2), "empty", OPEN),
+        "conditions on a product": (where(x * u > 1, x < 0, u > 0), "x u < 0", OPEN),
+        "hypotenuse as long as a leg": (define(sqrt(a**2 + l_r**2), l_r), "a = 0", OPEN),
+        "trailing edge beyond the contact": (define(sqrt(a**2 + l_r**2) - l_r, 2 * a), "it is below a", OPEN),
+        "relaxation against its start": (define(G(x), exp(x)), define(G(sp.S(0)), 2), "G(0) = 1", OPEN),
+    },
+    "display": {
+        "notation that reads itself":
+            (notation(x=1 - x), equal(1 - x, 1 - x, left="x"), "prints x = 1 - x", OPEN),
+        "sine of a product":
+            (equal(delta * sin(3), delta * sin(3), left=r"\sin 3 \delta"), "reads sin(3 delta)", OPEN),
+        "power of the argument": (equal(cos(x) ** 2, cos(x) ** 2, left=r"\cos x^2"), "reads cos(x^2)"),
+        "derivative of a sum without brackets":
+            (equal(Derivative(x**2 + x, x), 2 * x + 1, left=r"\frac{d}{dx} x^2 + x"), "reads 3 x"),
+        "exponent of two digits": (equal(q**23, q**23, left="q^23"), "prints q^2 3", OPEN),
+        "root with the same letter": (root(x - other_x**2, x, other_x**2), "prints x = x^2", OPEN),
+        "name of a definition": (define(z, y**2, left="y"), "prints y = y^2"),
+        "root of two digits":
+            (equal(sqrt(23), sqrt(23), left=r"\sqrt 23"), "prints a root of 2, times 3", OPEN),
+        "exponential of a product": (equal(x * exp(2), x * exp(2), left=r"\exp 2 x"), "reads e^(2 x)", OPEN),
+        "end of two digits":
+            (equal(Integral(x, (x, 0, 12)), 72, left=r"\int_0^12 x \, dx"),
+             "prints the integral of 2 x to 1", OPEN),
+        "two numbers side by side":
+            (equal(6 * l_r, 2 * l_r + 4 * l_r, left=r"2 3 l_{\mathrm{r}}"), "prints 23 l_r", OPEN),
+        "mixed number":
+            (equal(delta / 2, delta - delta / 2, left=r"1 \frac{1}{2} \delta"), "reads 3 delta/2", OPEN),
+        "notation of a letter that has a value":
+            (define(y, z + 1), notation(y=z), equal(z**2 + z, z * (z + 1), left="y^2 + y"),
+             "prints y^2 + y, though y = z + 1", OPEN),
+        "notation of a number":
+            (lambda p: p.notation.update({r"\pi": sp.S(3)}), equal(3 * a, 3 * a, left=r"\pi a"),
+             "prints pi a = 3 a", OPEN),
+        "functions of one letter":
+            (define(sp.Function("f", positive=True)(x), f(x) + 1), "prints f(x) = f(x) + 1", OPEN),
+        "names that print alike":
+            (define(sp.Symbol("l_{r}", positive=True), l_r + 1), "prints l_r = l_r + 1", OPEN),
+    },
+    "book-keeping": {
+        "uses itself": (_uses_itself, "a circle", OPEN),
+        "uses what is not finished": (_uses_unfinished, "no such theorem yet", OPEN),
+        "two that use one another": (_use_one_another, "a circle", OPEN),
+        "one label, two theorems": (_one_label_two_theorems, "the second replaces the first", OPEN),
+        "one label, two values": (_one_label_two_values, "a = 1 and a = 2", OPEN),
+        "finished twice": (_done_twice, "two results of one label", OPEN),
+        "recalls from itself": (lambda p: p.recall(p.label, y, y), "a circle"),
+        "another symbol of the same name":
+            (recalled(SHIFTED.subs(y, other_x), other_x + 1), equal(sqrt(x**2 + 2 * x + 1), x + 1), "x = -3"),
+        "premise two back": (_through_two(define(y, 1), b * y, b, define(y, 2)), "y = 1 and y = 2"),
+        "condition two back": (_through_two(where(x > 1), *CANCELLED, where(x < 0)), "x > 1 and x < 0"),
+    },
+    "branch cuts": {
+        "logarithm of an exponential": (equal(log(exp(w)), w), "w = 2 i pi"),
+        "product of roots": (equal(sqrt(x - 1) * sqrt(x + 1), sqrt(x**2 - 1)), "x = -2: two signs"),
+        "double arc tangent": (equal(2 * atan(x), atan(2 * x / (1 - x**2))), "x = 2"),
+    },
+    "division by zero": {
+        "edges that meet": (equal((a**2 - l_r**2) / (a - l_r), a + l_r), "undefined at l_r = a"),
+        "sign as a quotient": (equal(x / Abs(x), sp.sign(x)), "undefined at x = 0"),
+        "squares for their roots": (equivalent(x**2 - u**2, x, u), "x = -2, u = 1"),
+        "inverses turned round": (equivalent(1 / u - 1 / x, x, u), "x = 1, u = -1"),
+        "extraneous root": (root(sqrt(x + 6) - x, x, -2), "2 + 2 is not 0"),
+    },
+    "series and divergent integrals": {
+        "principal value": (equal(Integral(1 / x, (x, -1, 1)), 0), "diverges"),
+        "mean of an oscillation": (equal(Integral(sin(x), (x, 0, oo)), 1), "diverges"),
+        "order of integration":
+            (equal(Integral(FUBINI, (x, 0, 1), (u, 0, 1)), Integral(FUBINI, (u, 0, 1), (x, 0, 1))),
+             "-pi/4 is not pi/4", SLOW),
+        "tail not integrable": (integral(y ** (-b), (y, 1, oo), y ** (1 - b) / (1 - b)), "b < 1"),
+        "oscillation with a primitive": (integral(cos(x), (x, 0, oo), sin(x)), "sin has no limit", OPEN),
+        "faster oscillation":
+            (integral(2 * x * cos(x**2), (x, 0, oo), sin(x**2)), "sin x^2 has no limit", OPEN),
+    },
+    "strict, or at one place": {
+        "negative in a millionth":
+            (sign((1 - q) ** 2 * (2 * q + 1) - sp.Rational(1, 10**12), ">", UNIT), "next to q = 1"),
+        "letter inside the interval": (sign((x - y) ** 2, ">", (x, 0, 1)), "x = y = 1/2"),
+        "equal letters": (holds(y**2 + z**2 - 2 * y * z), "y = z"),
+        "exponential above its tangent": (holds(exp(x) - 1 - x), "x = 0"),
+        "logarithm below its tangent": (holds(y - 1 - log(y)), "y = 1"),
+        "mean that is strict": (holds((a + b) / 2 - sqrt(a * b)), "a = b"),
+        "Hurwitz from positive coefficients": (holds(HURWITZ), "all 1: -1"),
+        "no arms": (holds(Sum(G(k), (k, 1, n))), "n = 0"),
+        "ends in the wrong order": (root(x - (a + b) / 2, x, (a + b) / 2, over=(x, a, b)), "a > b"),
+    },
+    "antiderivatives with a jump": {
+        "half tangent over a turn":
+            (integral(1 / (2 + cos(x)), (x, 0, 2 * pi), 2 / sqrt(3) * atan(sp.tan(x / 2) / sqrt(3))),
+             "jumps at pi: 2 pi/sqrt 3, not 0"),
+        "exponential of a pole": (integral(sp.diff(POLE, x), (x, -1, 1), POLE), "jumps at 0"),
+        "logarithm of an absolute value": (integral(1 / x, (x, -1, 2), log(Abs(x))), "diverges"),
+        "pole at a letter": (integral(1 / (x - y) ** 2, (x, 0, 1), -1 / (x - y)), "y = 1/2"),
+        "angle of a turn": (integral(1, (x, 0, 2 * pi), sp.atan2(sin(x), cos(x))), "jumps at pi"),
+    },
+    "sums over arms": {
+        "product of sums":
+            (equal(Sum(G(k), (k, 1, n)) * Sum(f(k), (k, 1, n)), Sum(G(k) * f(k), (k, 1, n))), "n = 2"),
+        "one arm too few": (equal(Sum(G(k), (k, 1, 4)), G(1) + G(2) + G(3)), "G(4) > 0"),
+    },
+    "floats and objects that are not numbers": {
+        "float for a third": (equal(x * sp.Float(0.3333333333333333), x / 3), "16 digits", OPEN),
+        "float as a root": (root(x**2 - 2, x, sp.Float(1.4142135623730951), over=(x, 0, oo)), "16 digits"),
+        "float for pi in an integral":
+            (integral(1 / (1 + x**2), (x, -oo, oo), atan(x), value=sp.Float(pi.n(15))), "15 digits"),
+        "limit from both sides": (equal(sp.Limit(Abs(x) / x, x, 0, "+-"), 1), "there is none", OPEN),
+    },
+    "series at singular places": {
+        "power of itself": (order(h**h, 1), "1 + h ln h"),
+        "beyond all orders": (order(2 * sp.cosh(z), exp(z), z, oo, 1 / z), "1 + e^(-2 z)"),
+        "springpot of any order": (order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "nu = 2: h leads"),
+        "oscillation at infinity": (order(z + sin(z), z, z, oo, 1 / z), "sin z has no limit"),
+        "function that may vanish": (order(f(h) + h, f(h)), "f = h: 2 h"),
+    },
+    "roots that are others": {
+        "root outside of the unit interval": (root(q**2 - 4 * q + 1, q, 2 + sqrt(3), over=UNIT), "q > 1"),
+        "one of infinitely many": (root(sin(x), x, 0), "pi"),
+        "power against exponential": (root(y**2 - 2**y, y, 2), "4"),
+        "square of a logarithm": (root(log(y) ** 2 - 1, y, sp.E), "1/e"),
+        "real root of a complex letter": (root(w**3 - 1, w, 1), "two more", OPEN),
+        "one root that touches": (unique(x**2 * (x - 1), (x, -1, 2)), "0 is a root as well"),
+        "exponential with two roots": (root(exp(x) - 2 * x - 1, x, 0), "one more near 1.26"),
+        "root against a condition": (where(x < 0), root(x - 2, x, 2), "2 is not below 0", OPEN),
+    },
+}  # fmt: skip
+
+TRUE = {
+    "bounds and angles": {
+        "arc tangents of inverses": (equal(atan(1 / q) + atan(q), pi / 2), "angle of a strip", OPEN),
+        "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges", OPEN),
+        "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm", OPEN),
+        "two less a sine": (holds(2 - sin(x)), "a denominator", OPEN),
+    },
+    "steady sliding": {
+        "trailing edge":
+            (root(x**2 + 2 * l_r * x - a**2, x, sqrt(a**2 + l_r**2) - l_r, over=(x, -a, oo)),
+             "where the pressure vanishes"),
+        "hypotenuse in q":
+            (define(l, (1 - q**2) / (2 * q)), equal(sqrt(1 + l**2), (1 + q**2) / (2 * q)), "rational"),
+        "half length from the trailing edge":
+            (define(l_r, a * (1 - q) / q), equal(l_r / (a + l_r), 1 - q), "a share between 0 and 1"),
+        "root of a square": (where(q < 1), equal(sqrt(1 - 2 * q + q**2), 1 - q), "q < 1", OPEN),
+        "quotient of roots":
+            (where(q < 1), equal(sqrt((1 - q) / (1 + q)), (1 - q) / sqrt(1 - q**2)), "q < 1", OPEN),
+        "logarithm of a ratio": (where(q < 1), equal(log((1 + q) / (1 - q)), 2 * sp.atanh(q)), "q < 1", OPEN),
+        "factor of the friction force": (sign((1 - q) * (q**2 - q + 4), ">", UNIT), "friction is positive"),
+        "edge from inside":
+            (where(q < 1), order(Abs(1 - q) * (1 + q), 2 * (1 - q), q, 1, 1 - q),
+             "one side only, as the condition says"),
+        "slow where slow": (where(l_r < a), order(a / (a + l_r), 1, l_r, 0, l_r / a), "l_r may tend to 0"),
+        "peak inside the contact":
+            (greatest(1 + l**2, PROFILE, x, -l, (x + l) ** 2, given=(x > -1, l < 1)), "-1 < -l"),
+        "peak at a letter": (greatest(a**2, 2 * a * x - x**2, x, a, (x - a) ** 2), "a constant place"),
+        "larger of two, in order": (where(a < b), equal(sp.Max(a, b), b), "as the condition says", OPEN),
+        "factor that the condition makes positive":
+            (where(x > 0), equivalent(x * (u - v), u, v), "x > 0", OPEN),
+    },
+    "relaxation": {
+        "moment of an arm":
+            (integral(x * exp(-z * x), (x, 0, 1), -x * exp(-z * x) / z - exp(-z * x) / z**2,
+             value=(1 - (1 + z) * exp(-z)) / z**2),
+             "by parts"),
+        "moment of a springpot":
+            (integral(y ** (nu - 1) * (1 - y), (y, 0, 1), y**nu / nu - y ** (nu + 1) / (nu + 1),
+             value=1 / (nu * (nu + 1))),
+             "singular, but integrable"),
+        "positive moment":
+            (holds(Integral(exp(-z * y) * (1 - y), (y, 0, 1)), ">="),
+             "a weight that is positive in the contact", OPEN),
+        "gamma of the next order": (equal(sp.gamma(nu + 1), nu * sp.gamma(nu)), "springpot"),
+        "reflection of gamma":
+            (where(nu < 1), equal(sp.gamma(nu) * sp.gamma(1 - nu), pi / sin(pi * nu)), "springpot", OPEN),
+        "three arms": (equal(Sum(G(k), (k, 1, 3)), G(1) + G(2) + G(3)), "a finite sum"),
+        "springpot and spring":
+            (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "its dashpot is small", OPEN),
+        "half an arm": (root(exp(-x / y) - half, x, y * log(2)), "half-life", OPEN),
+        "time of an e-fold": (root(log(y / z) - 1, y, sp.E * z), "by the logarithm", OPEN),
+        "exponential above its tangent": (holds(exp(a) - 1 - a), "a > 0", OPEN),
+    },
+    "calculus and algebra": {
+        "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2", OPEN),
+        "sine below its argument": (holds(y - sin(y)), "y > 0", OPEN),
+        "hyperbolic cosine from 1": (holds(sp.cosh(x) - 1, ">="), "not strict", OPEN),
+        "sine to 1": (holds(1 - sin(x), ">="), "not strict", OPEN),
+        "root of a sum": (holds(sqrt(a) + sqrt(b) - sqrt(a + b)), "concave"),
+        "quadratic form": (holds(x**2 + x * u + u**2, ">="), "definite", OPEN),
+        "cosine below 2, integrated":
+            (integral(1 / (2 + cos(x)), (x, 0, pi / 2), 2 / sqrt(3) * atan(sp.tan(x / 2) / sqrt(3))),
+             "no jump up to pi/2", OPEN),
+        "derivative of x |x|": (equal(Derivative(x * Abs(x), x), 2 * Abs(x)), "smooth enough at 0"),
+        "derivative with respect to an end":
+            (equal(Derivative(Integral(exp(-(u**2)), (u, 0, x)), x), exp(-(x**2))), "fundamental theorem"),
+        "limit": (equal(sp.Limit(sin(x) / x, x, 0), 1), "known", OPEN),
+        "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi", OPEN),
+        "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch", OPEN),
+        "larger less smaller": (equal(sp.Max(x, u) - sp.Min(x, u), Abs(x - u)), "distance"),
+        "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers", OPEN),
+        "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
+        "order at infinity": (order(sp.coth(z), 1, z, oo, exp(-2 * z)), "exponentially small", OPEN),
+        "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval", OPEN),
+        "root of a logarithm": (root(y * log(y), y, 1), "y > 0", OPEN),
+        "between ends in order":
+            (where(a < b), root(x - (a + b) / 2, x, (a + b) / 2, over=(x, a, b)), "midpoint"),
+        "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded", OPEN),
+        "real and imaginary part": (equal(sp.re(w) ** 2 + sp.im(w) ** 2, Abs(w) ** 2), "complex rates", OPEN),
+    },
+    "premises and displays": {
+        "recalled at a place of its domain":
+            (recalled(SHIFTED, y + 1, at={y: z**2 + 1}), equal(sqrt(z**4 + 4 * z**2 + 4), z**2 + 2),
+             "positive"),
+        "recalled under a stronger condition":
+            (where(x > 2), recalled(*CANCELLED, given=[where(x > 1)]), equal(CANCELLED[0] + 1, x + 2),
+             "x > 2"),
+        "function of another letter": (define(f(x), x**2), equal(f(u), u**2), "a law for every x", OPEN),
+        "function with a value": (define(f(x), exp(x)), equal(f(sp.S(0)), 1), "consistent", OPEN),
+        "derivative of a bracket":
+            (equal(Derivative(x**2 + x, x), 2 * x + 1, left=r"\frac{d}{dx} (x^2 + x)"), "unambiguous"),
+        "exponent in braces": (equal(y**23, y**23, left="y^{23}"), "unambiguous"),
+    },
+}  # fmt: skip
+
+
+class OverTimeError(BaseException):
+    """Not an Exception, so that no library swallows it."""
+
+
+def _expire(*_):
+    raise OverTimeError
+
+
+def verdict(step, seconds=20):
+    """Return what the engine does with a step: accepted, refused, crashed or timeout; and its words."""
+    before = signal.signal(signal.SIGALRM, _expire)
+    signal.alarm(seconds)
+    try:
+        step(_proof())
+    except OverTimeError:
+        return "timeout", f"longer than {seconds} s"
+    except StepError as error:
+        return "refused", str(error)
+    except Exception as error:
+        return "crashed", f"{type(error).__name__}: {error}"
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+    return "accepted", ""
+
+
+def rows():
+    """Yield kind, name, expected verdict, step, why, and whether the engine is wrong today."""
+    for table, expected in ((FALSE, "refused"), (TRUE, "accepted")):
+        for kind, group in table.items():
+            for name, row in group.items():
+                step = steps(*(part for part in row if callable(part)))
+                why, *state = (part for part in row if isinstance(part, str))
+                yield kind, name, expected, step, why, "".join(state)
+
+
+def main(parts):
+    counts, found = Counter(), []
+    for kind, name, expected, step, why, _ in rows():
+        if parts and not any(part in f"{kind}: {name}" for part in parts):
+            continue
+        begin = time.process_time()
+        result, words = verdict(step)
+        words += f" [{time.process_time() - begin:.1f} s]"
+        counts[expected, result] += 1
+        line = f"{kind}: {name}\n    expected {expected}, {result} {words}"
+        print(line, flush=True)
+        if result != expected:
+            found.append(f"{line}\n    {why}")
+    print("\nNot as expected:", *found, sep="\n")
+    for (expected, result), count in sorted(counts.items()):
+        print(f"expected {expected}, {result}: {count}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
