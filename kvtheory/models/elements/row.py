@@ -59,7 +59,8 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    return compilation.kept(kernels.advance, kernels)
+    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
+    return compilation.cached(kernels.advance, _nrt=False)
 
 
 class ElementRow:
@@ -109,7 +110,7 @@ class ElementRow:
             each[...] = 0
         for j in range(row.u.shape[0]):
             part = slice(row.low[j], row.high[j])
-            x = kernels.positions(row, row.low[j], row.high[j], 0.0)
+            x = row.spacing * row.numbers[part]
             row.u[j, part] = surface(x, j * row.across)
             row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
 
@@ -158,29 +159,31 @@ class ElementRow:
         free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
         return u, np.where(row.touched, row.arms, free)
 
-    def _empty(self, first: int, width: int, strips: int) -> Elements:
+    def _empty(self, first: int, width: int, strips: int, runs: int = 0) -> Elements:
         """Return elements that are undisturbed."""
-        arms = np.zeros((self.model.law.arm_stiffness.size, strips, width))
-        work, flags = np.zeros((6, strips, width)), np.zeros((2, strips, width), dtype=bool)
+        size, runs = self.model.law.arm_stiffness.size, max(runs, 2 * strips)
+        state, flags = np.zeros((6, strips, width)), np.zeros((3, strips, width), dtype=bool)
         counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
-        counts[kernels.FIRST] = first
-        numbers = np.arange(float(first), first + width) + self.model.shift
-        ends = np.zeros((4, strips), dtype=np.int64)
+        counts[kernels.FIRST], ends = first, np.zeros((4, strips), dtype=np.int64)
         return Elements(
-            u=work[0], arms=arms, since=work[1], touched=flags[0], low=ends[0], high=ends[1], first=ends[2],
-            last=ends[3], counts=counts, height=work[2], meets=work[3], slope=work[4], before=work[5],
-            pressed=flags[1], numbers=numbers, **self.constants,
+            u=state[0], arms=np.zeros((size, strips, width)), since=state[1], touched=flags[0], low=ends[0],
+            high=ends[1], first=ends[2], last=ends[3], counts=counts,
+            numbers=np.arange(float(first), first + width) + self.model.shift, height=state[2], meets=state[3],
+            slope=state[4], before=state[5], pressed=flags[1], late=flags[2],
+            falling=np.zeros((strips, 2), dtype=bool), weights=np.ones(strips),
+            begun=np.zeros((runs, 3), dtype=np.int64), ended=np.zeros((runs, 3), dtype=np.int64),
+            relaxed=np.zeros((runs, 2)), modes=np.zeros(size), stages=np.zeros((6, 4)), **self.constants,
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
-        (first, low, high, strips, _), (rows, width) = old.counts.tolist(), old.u.shape
+        (first, low, high, strips, runs, _), (rows, width) = old.counts.tolist(), old.u.shape
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows))
-        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
+        new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
+        new.counts[kernels.STRIPS], new.counts[kernels.UPDATES] = strips, old.counts[kernels.UPDATES]
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
