@@ -20,11 +20,14 @@ def available() -> bool:
 
 
 def register(
-    module: ModuleType, inlined: Container[str] = (), compiled: Mapping[str, Any] = NONE, **options: Any
+    module: ModuleType,
+    inlined: Container[str] = (),
+    compiled: Mapping[str, Any] = NONE,
+    **options: Any,
 ) -> None:
     """Register the functions of a module with numba; those named in `inlined` are inlined.
 
-    `compiled` has what stands for some of them where they are compiled.
+    `compiled` has what stands for some of them where they are compiled. They may add up in any order.
 
     Raises
     ------
@@ -37,6 +40,8 @@ def register(
         if inspect.isfunction(function) and function.__module__ == module.__name__:
             body = compiled.get(name, function)
             own = {**OPTIONS, **options, "forceinline": name in inlined}
+            if name in compiled:
+                own["fastmath"] = {"reassoc", "nsz"}
             overload(function, jit_options=own, strict=False)(lambda *_, body=body, **__: body)
 
 

@@ -22,11 +22,12 @@ from kvtheory.theory.laws import Array, Element, ElementStep
 Runs = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST, GAINED = range(8)
-"""The indenter: depth, its rate, both along x, the two forces that judge an explicit step, the last step and
-the change of the rate along x in it."""
-FIRST, LOW, HIGH, STRIPS, RUNS, UPDATES = range(6)
-"""Counts: the first element stored; the range, strips and runs that are needed; element updates."""
+DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST, GAINED, CURVED = range(9)
+"""The indenter: depth, its rate, both along x, the two forces that judge an explicit step, the last step, and
+the first and second backward difference of the rate along x."""
+FIRST, LOW, HIGH, STRIPS, RUNS, BEGUN, ENDED, UPDATES = range(8)
+"""Counts: the first element stored; the range, strips and runs that are needed; the runs in contact at the
+start of a step and at its end; element updates."""
 DONE, LACKING, OUTGROWN, THROWN_UP, THROWN_ALONG, UNBALANCED = range(6)
 """How a run ended, or why it paused."""
 
@@ -39,7 +40,7 @@ SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
 """Below these, the exponential fit and phi_2 are taken from series, where the closed forms cancel."""
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
 """Limits that are never reached: the iterations end after two or three."""
-SLIDE_RTOL = 1e-9
+SLIDE_RTOL = 1e-8
 """Newton's method along x has converged when its step is below this share of the static half length."""
 ROOM, MORE_ROOM = 0.25, 4.0
 """Initial bound on how far the indenter sinks in a step, as a share of the static depth, and the factor by
@@ -81,7 +82,7 @@ class Elements(NamedTuple):
     `arms` are then the forces of its arms, else its modes. Elements `low` to `high` of a strip are near the
     indenter and up to date; one elsewhere is as it was at `since`. An element may stay in contact above the
     plane z = 0, so that all in contact are in `first` to `last`. `numbers` holds i + shift of the elements of
-    a strip. From `height` on all is work space, so that a step allocates nothing.
+    a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
     """
 
     u: Array
@@ -94,6 +95,7 @@ class Elements(NamedTuple):
     last: Runs
     counts: Runs
     numbers: Array
+    ones: Array
     height: Array
     meets: Array
     slope: Array
@@ -150,6 +152,11 @@ def changed(flags: Flags, low: Any, high: Any) -> Any:
     return low + np.flatnonzero(flags[low:high] != flags[low - 1 : max(low, high) - 1])
 
 
+def dotted(one: Array, other: Array, low: Any, high: Any) -> Any:
+    """Return the sum over elements of the product of two quantities."""
+    return np.dot(one[low:high], other[low:high])
+
+
 def total(values: Any) -> Any:
     """Return the sum over the elements of a turn of the loop."""
     return values.sum()
@@ -160,14 +167,24 @@ def choose(flags: Any, yes: Any, no: Any) -> Any:
     return np.where(flags, yes, no)
 
 
+def _dotted(one: Array, other: Array, low: int, high: int) -> float:
+    both = 0.0
+    for i in range(max(low, 0), high):
+        both += one[i] * other[i]
+    return both
+
+
 COMPILED = {
-    "over": lambda low, high: range(low, high),
+    "over": lambda low, high: range(max(low, 0), high),
     "flagged": lambda flags, low, high: range(low, high),
     "changed": lambda flags, low, high: range(low, high),
+    "dotted": _dotted,
     "total": lambda value: value,
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
+INLINED = ("implicit_step", "_lay", "_sink", "_slide", "finish", "begin", "find_runs")
+"""Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
 # The indenter
@@ -236,6 +253,29 @@ def _weigh(e: Elements, depth: float) -> None:
         weigh(e.weights, e.across, rim)
 
 
+def heights(e: Elements, j: int, place: float) -> None:
+    """Write h at the elements of a strip when the base has moved by `place` under the indenter."""
+    s, y, numbers, height = e.surface, j * e.across, e.numbers, e.height[j]
+    if e.profile is None and s.exponent == 2.0 and not s.revolved:
+        for i in over(e.low[j], e.high[j]):
+            x = e.spacing * numbers[i] + place
+            height[i] = x * x * (0.5 / s.size) + s.across * (y * y)
+    else:
+        for i in over(e.low[j], e.high[j]):
+            height[i] = height_at(s, e.profile, e.spacing * numbers[i] + place, y)
+
+
+def slopes(e: Elements, j: int, low: int, high: int, place: float) -> None:
+    """Write dh/dx at elements of a strip."""
+    s, numbers, slope = e.surface, e.numbers, e.slope[j]
+    if e.profile is None and s.exponent == 2.0:
+        for i in over(low, high):
+            slope[i] = (e.spacing * numbers[i] + place) * (1.0 / s.size)
+    else:
+        for i in over(low, high):
+            slope[i] = slope_at(s, e.profile, e.spacing * numbers[i] + place, j * e.across)
+
+
 # The row
 
 
@@ -279,22 +319,20 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
     return DONE
 
 
-def runs_of(e: Elements, flags: Flags, runs: Runs) -> int:
-    """Write the runs of flagged elements; return how many there are, as far as there is room.
-
-    Those at both ends of the strips are taken to be out of them.
-    """
+def find_runs(e: Elements) -> None:
+    """Write the runs of pressed elements; those at both ends of the strips are taken to be out of them."""
     count = start = 0
     for j in range(e.counts[STRIPS]):
-        for i in changed(flags[j], e.low[j] + 1, e.high[j]):
-            if flags[j, i] and not flags[j, i - 1]:
+        pressed = e.pressed[j]
+        for i in changed(pressed, e.low[j] + 1, e.high[j]):
+            if pressed[i] and not pressed[i - 1]:
                 start = i
-            elif flags[j, i - 1] and not flags[j, i]:
-                if count < runs.shape[0]:
-                    runs[count, 0], runs[count, 1], runs[count, 2] = j, start, i
+            elif pressed[i - 1] and not pressed[i]:
+                if count < e.ended.shape[0]:
+                    e.ended[count, 0], e.ended[count, 1], e.ended[count, 2] = j, start, i
                 count += 1
     e.counts[RUNS] = max(e.counts[RUNS], count)
-    return min(count, runs.shape[0])
+    e.counts[ENDED] = min(count, e.ended.shape[0])
 
 
 def _crowded(e: Elements) -> bool:
@@ -347,38 +385,51 @@ def left_alone(e: Elements, step: ElementStep, j: int, i: Any) -> Any:
     return left
 
 
-def finish(
-    e: Elements, step: ElementStep, runs: int, before: float, depths: tuple[float, float]
-) -> None:
+def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, float]) -> None:
     """Complete a step: elements that are `pressed` end on the indenter, all others relax freely.
 
     `before` is where the base was under the indenter at its start.
     """
-    arms = e.arms.shape[0]
+    for j in range(e.counts[STRIPS]):
+        low, high, late = e.low[j], e.high[j], e.late[j]
+        u, height, pressed, touched = e.u[j], e.height[j], e.pressed[j], e.touched[j]
+        if not e.arms.shape[0]:
+            for i in over(low, high):
+                u[i] = choose(pressed[i], depths[1] - height[i], step.fall[0] * u[i])
+                touched[i] = pressed[i]
+            continue
+        rise, free = e.slope[j], e.meets[j]
+        for i in over(low, high):
+            late[i], rise[i], free[i] = pressed[i] != touched[i], depths[1] - height[i] - u[i], 0.0
+        for k in range(e.arms.shape[0]):
+            arm, share, held, ramp, fall = (
+                e.arms[k, j],
+                e.law.shares[k],
+                step.held[k],
+                step.ramp[k],
+                step.fall[k],
+            )
+            for i in over(low, high):
+                new = choose(touched[i], held * arm[i] + ramp * rise[i], fall * arm[i])
+                arm[i] = choose(late[i], arm[i], new)
+                free[i] += share * new
+        for i in over(low, high):
+            u[i] = choose(late[i], u[i], choose(pressed[i], depths[1] - height[i], free[i]))
+        for i in flagged(late, low, high):
+            if late[i]:
+                _turn(e, step, j, i, before, depths)
+    begin(e)
+
+
+def begin(e: Elements) -> None:
+    """Take the runs at the end of a step for those at the start of the next."""
     for j in range(e.counts[STRIPS]):
         e.first[j] = e.last[j] = 0
-        for i in over(e.low[j], e.high[j]):
-            g, pressed = depths[1] - e.height[j, i], e.pressed[j, i]
-            if not arms:
-                e.u[j, i] = choose(pressed, g, step.fall[0] * e.u[j, i])
-                e.touched[j, i] = pressed
-                continue
-            u, held, free = e.u[j, i], e.touched[j, i], 0.0 * g
-            turned = pressed != held
-            for k in range(arms):
-                arm = e.arms[k, j, i]
-                loaded = step.held[k] * arm + step.ramp[k] * (g - u)
-                new = choose(held, loaded, step.fall[k] * arm)
-                e.arms[k, j, i] = choose(turned, arm, new)
-                free = free + e.law.shares[k] * new
-            e.u[j, i] = choose(turned, u, choose(pressed, g, free))
-            e.late[j, i] = turned
-        for i in flagged(e.late[j], e.low[j], e.high[j] if arms else 0):
-            if e.late[j, i]:
-                _turn(e, step, j, i, before, depths)
-    for r in range(runs):
+    for r in range(e.counts[ENDED]):
         j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
         e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
+        e.begun[r, 0], e.begun[r, 1], e.begun[r, 2] = j, low, high
+    e.counts[BEGUN] = e.counts[ENDED]
 
 
 def _turn(
@@ -454,11 +505,11 @@ def implicit_step(
     On a spring, so is the place along x: for every place there is one depth.
     """
     h, sprung, depth, along = law.h, math.isfinite(e.mass_along), state[DEPTH], state[ALONG]
-    guess = state[ALONG_RATE] + 0.5 * state[GAINED] * h / max(state[LAST], h)
+    gained = state[GAINED] * h / max(state[LAST], h)
+    guess = state[ALONG_RATE] + gained / 2.0 + 5.0 / 12.0 * state[CURVED]  # Adams-Bashforth
     slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
     most, sunk, new_along_rate, known = _deepest_fall(e, state, h), 0.0, 0.0, False
     _weigh(e, depth + 0.5 * h * state[RATE])
-    begun = runs_of(e, e.touched, e.begun)
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
@@ -468,8 +519,8 @@ def implicit_step(
             if status != DONE:
                 return status
             first = min(h * state[RATE], sinks)
-            runs, theta = _lay(e, law, begun, known, depth, (place, travel), first)
-            runs, sunk = _sink(e, law, begun, runs, theta, first, state)
+            theta = _lay(e, law, known, depth, (place, travel), first)
+            sunk = _sink(e, law, theta, first, state)
             # If elements were missed, it sinks too deep, never too little.
             known = not sunk > sinks or sinks == most
             if known:
@@ -478,17 +529,18 @@ def implicit_step(
         if not sprung:
             break
         before = slid
-        slid, new_along_rate = _slide(e, law, begun, runs, (place, travel), state, sunk, slid)
+        slid, new_along_rate = _slide(e, law, (place, travel), state, sunk, slid)
         if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
     if _crowded(e):
         return LACKING
-    finish(e, law, runs, place - travel, (depth, depth + sunk))
+    finish(e, law, place - travel, (depth, depth + sunk))
     if math.isfinite(e.mass):
         state[RATE] = _velocity(sunk, state[RATE], h, theta)
     state[DEPTH] = depth + sunk
     if sprung:
-        state[GAINED] = new_along_rate - state[ALONG_RATE]
+        gained = new_along_rate - state[ALONG_RATE]
+        state[GAINED], state[CURVED] = gained, gained - state[GAINED] if state[LAST] == h else 0.0
         state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
     return DONE
 
@@ -504,52 +556,56 @@ def _deepest_fall(e: Elements, state: Array, h: float) -> float:
 
 
 def _lay(
-    e: Elements, law: ElementStep, begun: int, known: bool, depth: float, way: tuple[float, float],
-    first: float,
-) -> tuple[int, float]:  # fmt: skip
+    e: Elements, law: ElementStep, known: bool, depth: float, way: tuple[float, float], first: float
+) -> float:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
     There the mean pressure would vanish: at the place of a free element then, and above that of one in
-    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. Return
-    the runs that are pressed if the indenter sinks by `first`, and θ. They decide, too, unless it is `known`,
-    where the overlap w = g - u outside falls, so that the edge moves inward; once in a step, so that the
-    iteration cannot oscillate.
+    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. The
+    elements that are pressed if the indenter sinks by `first` decide θ, which is returned, and, unless it is
+    `known`, where the overlap w = g - u outside falls, so that the edge moves inward: once in a step, so that
+    the iteration cannot oscillate.
     """
     (place, travel), arms = way, e.arms.shape[0]
+    tip = e.law.damping > 0.0 and e.per_width and travel != 0.0
     for j in range(e.counts[STRIPS]):
-        for i in over(e.low[j], e.high[j]):
-            x = e.spacing * e.numbers[i] + place
-            e.height[j, i] = height_at(e.surface, e.profile, x, j * e.across)
-    for n in range(e.kinks.size if e.law.damping and e.per_width and travel else 0):
-        # What a damper has of the compression by the tip is left at the end of the step, and so is its
-        # mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
-        passed, kink = _passed(e, e.kinks[n], place, travel), e.kinks[n]
-        g = depth - height_at(e.surface, e.profile, kink, 0.0)
-        for i in over(passed[0], passed[1]):
-            since = law.h * (e.spacing * e.numbers[i] + place - kink) / travel
-            pressed = depth - g * np.exp(-since * e.law.rates[0])
-            e.height[0, i] = np.minimum(e.height[0, i], pressed)
-    for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
+        low, high, u, height, meets = e.low[j], e.high[j], e.u[j], e.height[j], e.meets[j]
+        heights(e, j, place)
+        for n in range(e.kinks.size if tip else 0):
+            # What a damper has of the compression by the tip is left at the end of the step, and so is its
+            # mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
+            passed, kink = _passed(e, e.kinks[n], place, travel), e.kinks[n]
+            g = depth - height_at(e.surface, e.profile, kink, 0.0)
+            for i in over(passed[0], passed[1]):
+                since = law.h * (e.spacing * e.numbers[i] + place - kink) / travel
+                height[i] = np.minimum(height[i], depth - g * np.exp(-since * e.law.rates[0]))
+        fall = 0.0 if arms else law.fall[0]
         for i in over(low, high):
-            e.meets[j, i] = left_alone(e, law, j, i) + e.height[j, i] - depth
-        for i in over(low, low + UNMET):
-            e.meets[j, i] = math.inf
-        for i in over(high - UNMET, high):
-            e.meets[j, i] = math.inf
-    for r in range(begun if arms else 0):
-        j = e.begun[r, 0]
-        for i in over(e.begun[r, 1], e.begun[r, 2]):
-            p = e.law.stiffness * e.u[j, i]
-            for k in range(arms):
-                p = p + law.weights[k] * e.arms[k, j, i]
-            e.meets[j, i] = e.u[j, i] - p / law.stiffness + e.height[j, i] - depth
-    runs, _ = _pressed(e, first)
+            meets[i] = fall * u[i] + height[i] - depth
+        for k in range(arms):
+            arm, fall = e.arms[k, j], e.law.shares[k] * law.fall[k]
+            for i in over(low, high):
+                meets[i] += fall * arm[i]
+        for end in (low, high - UNMET):
+            for i in over(end, end + UNMET):
+                meets[i] = math.inf
+    for r in range(e.counts[BEGUN] if arms else 0):
+        j, low, high = e.begun[r, 0], e.begun[r, 1], e.begun[r, 2]
+        u, height, meets = e.u[j], e.height[j], e.meets[j]
+        for i in over(low, high):
+            meets[i] = (1.0 - e.law.stiffness / law.stiffness) * u[i] + height[i] - depth
+        for k in range(arms):
+            arm, share = e.arms[k, j], law.weights[k] / law.stiffness
+            for i in over(low, high):
+                meets[i] -= share * arm[i]
+    _press(e, first)
+    find_runs(e)
+    begun, ended = e.counts[BEGUN], e.counts[ENDED]
     if arms:
         _load_late(e, law, place - travel, depth, first)
     for j in range(e.counts[STRIPS] if e.parts and not known else 0):
         e.falling[j, 0] = e.falling[j, 1] = False
-    for r in range(runs if e.parts and not known else 0):
+    for r in range(ended if e.parts and not known else 0):
         j, only = e.ended[r, 0], r == 0 or e.ended[r, 0] != e.ended[r - 1, 0]
         for side in range(2):
             i = e.ended[r, 2] if side else e.ended[r, 1] - 1
@@ -562,19 +618,20 @@ def _lay(
             if not e.falling[e.begun[r, 0], side]:
                 kink = kink_area(gaps(e, e.begun[r, 0], i, 2 * side - 1, place - travel, depth))[0]
             e.relaxed[r, side] = kink * (e.law.stiffness / law.stiffness - 1.0)
-    wide = e.spacing * max(_extent(e, e.ended, runs), _extent(e, e.begun, begun))
-    return runs, exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+    wide = e.spacing * max(_extent(e, e.ended, ended), _extent(e, e.begun, begun))
+    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
 
 
-def _pressed(e: Elements, sunk: float) -> tuple[int, int]:
-    """Flag the elements that are pressed if the indenter sinks so far; return their runs, and how many changed."""
+def _press(e: Elements, sunk: float) -> bool:
+    """Flag the elements that are pressed if the indenter sinks so far; return whether any flag changed."""
     moved = 0
     for j in range(e.counts[STRIPS]):
+        meets, pressed = e.meets[j], e.pressed[j]
         for i in over(e.low[j], e.high[j]):
-            pressed = e.meets[j, i] <= sunk
-            moved += total(pressed != e.pressed[j, i])
-            e.pressed[j, i] = pressed
-    return runs_of(e, e.pressed, e.ended), moved
+            new = meets[i] <= sunk
+            moved += total(new != pressed[i])
+            pressed[i] = new
+    return moved > 0
 
 
 def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
@@ -611,9 +668,7 @@ def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first:
                 e.before[j, i] = share * stiff / law.stiffness
 
 
-def _sink(
-    e: Elements, law: ElementStep, begun: int, runs: int, theta: float, sunk: float, state: Array
-) -> tuple[int, float]:
+def _sink(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
@@ -622,15 +677,13 @@ def _sink(
     h, k, arms = law.h, law.stiffness * e.spacing, e.arms.shape[0]
     for _ in range(NEWTON_STEPS if math.isfinite(e.mass) else 0):
         width = area = 0.0
-        for r in range(runs):
-            j, pressed, elements = e.ended[r, 0], 0.0, 1.0 * (e.ended[r, 2] - e.ended[r, 1])
-            for i in over(e.ended[r, 1], e.ended[r, 2]):
-                overlap = sunk - e.meets[j, i]
-                pressed += total(overlap * e.before[j, i] if arms else overlap)
-                elements += total(e.before[j, i] - 1.0) if arms else 0.0
-            area += e.weights[j] * pressed
+        for r in range(e.counts[ENDED]):
+            j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
+            weight = e.before[j] if arms else e.ones
+            elements = dotted(weight, e.ones, low, high) if arms else 1.0 * (high - low)
+            area += e.weights[j] * (sunk * elements - dotted(weight, e.meets[j], low, high))
             width += e.weights[j] * elements
-        kinks = _kinks(e, begun, runs, sunk) if e.parts else (0.0, 0.0, 0.0, 0.0)
+        kinks = _kinks(e, sunk) if e.parts else (0.0, 0.0, 0.0, 0.0)
         mean = state[DEPTH] - e.depth + theta * sunk
         change_of_rate = _velocity(sunk, state[RATE], h, theta) - state[RATE]
         held = e.mass * change_of_rate / h - e.weight + e.spring * mean
@@ -638,13 +691,13 @@ def _sink(
         slope = e.mass / (theta * h * h) + theta * e.spring + k * width
         root = math.sqrt(max(slope * slope - 2.0 * residual * k * kinks[2], 0.0))
         sunk -= 2.0 * residual / (slope + root)
-        runs, moved = _pressed(e, sunk)
-        if not moved:
+        if not _press(e, sunk):
             break
-    return runs, sunk
+        find_runs(e)
+    return sunk
 
 
-def _kinks(e: Elements, begun: int, runs: int, sunk: float) -> tuple[float, float, float, float]:
+def _kinks(e: Elements, sunk: float) -> tuple[float, float, float, float]:
     """Return the area of the kinks at edges by dx less what relaxed, its derivatives by depth, and its push.
 
     A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts where
@@ -652,7 +705,7 @@ def _kinks(e: Elements, begun: int, runs: int, sunk: float) -> tuple[float, floa
     kink, or one that is left behind and relaxes like all free surface.
     """
     area = wider = bent = push = 0.0
-    for r in range(runs):
+    for r in range(e.counts[ENDED]):
         j = e.ended[r, 0]
         for side in range(2):
             if not e.falling[j, side]:
@@ -664,11 +717,11 @@ def _kinks(e: Elements, begun: int, runs: int, sunk: float) -> tuple[float, floa
                 bent += e.weights[j] * bend
                 push += e.weights[j] * added * e.slope[j, i - out]
     n = 0
-    for r in range(begun):
+    for r in range(e.counts[BEGUN]):
         j = e.begun[r, 0]
-        while n < runs and e.ended[n, 0] < j:
+        while n < e.counts[ENDED] and e.ended[n, 0] < j:
             n += 1
-        for side in range(2 if n < runs and e.ended[n, 0] == j else 0):
+        for side in range(2 if n < e.counts[ENDED] and e.ended[n, 0] == j else 0):
             i = e.begun[r, 2] - 1 if side else e.begun[r, 1]
             area += e.weights[j] * e.relaxed[r, side]
             push += e.weights[j] * e.relaxed[r, side] * e.slope[j, i]
@@ -676,8 +729,7 @@ def _kinks(e: Elements, begun: int, runs: int, sunk: float) -> tuple[float, floa
 
 
 def _slide(
-    e: Elements, law: ElementStep, begun: int, runs: int, way: tuple[float, float], state: Array,
-    sunk: float, slid: float,
+    e: Elements, law: ElementStep, way: tuple[float, float], state: Array, sunk: float, slid: float
 ) -> tuple[float, float]:  # fmt: skip
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
 
@@ -688,15 +740,13 @@ def _slide(
     k, width, inclined, tilted, area = law.stiffness * e.spacing, 0.0, 0.0, 0.0, 0.0
     (place, travel), arms = way, e.arms.shape[0]
     for j in range(e.counts[STRIPS]):
-        for i in over(e.low[j], e.high[j]):
-            x = e.spacing * e.numbers[i] + place - 0.5 * travel
-            e.slope[j, i] = slope_at(e.surface, e.profile, x, j * e.across)
+        slopes(e, j, e.low[j], e.high[j], place - 0.5 * travel)
     for n in range(e.kinks.size if e.per_width and e.law.damping and travel else 0):
         passed = _passed(e, e.kinks[n], place, travel)
-        for i in over(passed[0], passed[1]):  # pressed by the flank that they come from
-            x = e.spacing * e.numbers[i] + place - travel
-            e.slope[0, i] = slope_at(e.surface, e.profile, x, 0.0)
-    for r in range(runs):
+        slopes(
+            e, 0, passed[0], passed[1], place - travel
+        )  # pressed by the flank that they come from
+    for r in range(e.counts[ENDED]):
         j, weight = e.ended[r, 0], e.weights[e.ended[r, 0]]
         width += weight * (e.ended[r, 2] - e.ended[r, 1])
         for i in over(e.ended[r, 1], e.ended[r, 2]):
@@ -705,7 +755,7 @@ def _slide(
             tilted += weight * total(slope * slope)
             area += weight * total(slope * (overlap * e.before[j, i] if arms else overlap))
     if e.parts:
-        area += _kinks(e, begun, runs, sunk)[3]
+        area += _kinks(e, sunk)[3]
     # Oscillations too fast for the step are damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
@@ -750,14 +800,14 @@ def explicit_step(
         if i == stages or math.isfinite(M) or math.isfinite(M_x):
             n = int(2.0 * share)
             places, within = (begin, Y[n] - at[ALONG]), share > 0.0 and i < stages
-            status, pull, drag = _press(e, laws[n], state, at, now, places, V[n], within)
+            status, pull, drag = _stage(e, laws[n], state, at, now, places, V[n], within)
             if status != DONE:
                 return status
             rates[i, RATE], rates[i, ALONG_RATE] = pull / M, drag / M_x
-    runs = runs_of(e, e.pressed, e.ended)
+    find_runs(e)
     if _crowded(e):
         return LACKING
-    finish(e, laws[2], runs, begin, (state[DEPTH], at[DEPTH]))
+    finish(e, laws[2], begin, (state[DEPTH], at[DEPTH]))
     if math.isfinite(M):
         mean, first, last = 0.0, rates[0, RATE], rates[stages, RATE]
         for k in range(stages):
@@ -769,7 +819,7 @@ def explicit_step(
     return DONE
 
 
-def _press(
+def _stage(
     e: Elements, law: ElementStep, state: Array, at: Array, now: float,
     places: tuple[float, float], velocity: float, within: bool,
 ) -> tuple[int, float, float]:  # fmt: skip
@@ -783,38 +833,44 @@ def _press(
     pull = e.weight - e.spring * (at[DEPTH] - e.depth)
     drag = -e.spring_along * at[ALONG] - e.damping_along * at[ALONG_RATE]
     for j in range(e.counts[STRIPS]):
-        low, high, y = e.low[j], e.high[j], j * e.across
+        low, high, left, p = e.low[j], e.high[j], e.before[j], e.meets[j]
+        u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
+        heights(e, j, place)
+        slopes(e, j, low, high, place)
+        fall = 0.0 if arms else law.fall[0]
         for i in over(low, high):
-            x, held = e.spacing * e.numbers[i] + place, e.touched[j, i]
-            g = at[DEPTH] - height_at(e.surface, e.profile, x, y)
-            slope = slope_at(e.surface, e.profile, x, y)
-            p = e.law.stiffness * g + e.law.damping * (at[RATE] - V * slope)
-            for k in range(arms):
-                arm = law.held[k] * e.arms[k, j, i] + law.ramp[k] * (g - e.u[j, i])
-                p = p + choose(held, arm, 0.0)
-            e.height[j, i], e.slope[j, i], e.meets[j, i] = at[DEPTH] - g, slope, p
-            e.late[j, i] = (g > left_alone(e, law, j, i)) > held
+            g, left[i] = at[DEPTH] - height[i], fall * u[i]
+            p[i] = e.law.stiffness * g + e.law.damping * (at[RATE] - V * slope[i])
+        for k in range(arms):
+            arm, fall = e.arms[k, j], e.law.shares[k] * law.fall[k]
+            for i in over(low, high):
+                loaded = law.held[k] * arm[i] + law.ramp[k] * (at[DEPTH] - height[i] - u[i])
+                p[i] += choose(held[i], loaded, 0.0)
+                left[i] += fall * arm[i]
+        for i in over(low, high if arms else low):
+            e.late[j, i] = (at[DEPTH] - height[i] > left[i]) > held[i]
         for i in flagged(e.late[j], low, high if arms else 0):
             if not e.late[j, i]:
                 continue
-            left, stiff = left_alone(e, law, j, i), 0.0
-            rise = at[DEPTH] - e.height[j, i] - left
+            rise, stiff = at[DEPTH] - height[i] - left[i], 0.0
             share = entered(gap(e, j, i, places[0], state[DEPTH]), rise)
             for k in range(arms):
                 phi_1, _ = ramp_functions(law.h * share / e.law.arm_time[k])
                 stiff += e.law.arm_stiffness[k] * phi_1
-            e.meets[j, i] += rise * stiff - e.law.stiffness * left
+            p[i] += rise * stiff - e.law.stiffness * left[i]
+        free = u if rule.stale and within else left
         for i in over(low, high):
-            p, g, held = e.meets[j, i], at[DEPTH] - e.height[j, i], e.touched[j, i]
-            free = e.u[j, i] if rule.stale and within else left_alone(e, law, j, i)
+            g = at[DEPTH] - height[i]
             if not rule.remembers:
-                pressed = (g > 0.0) & (p >= 0.0)
+                pressed = (g > 0.0) & (p[i] >= 0.0)
             else:
-                pressed = g > 0.0 if rule.pulls else p >= 0.0
-                pressed = pressed & (held | (g > free) if rule.flags else g >= free * (1.0 - TIE))
+                pressed = g > 0.0 if rule.pulls else p[i] >= 0.0
+                met = held[i] | (g > free[i]) if rule.flags else g >= free[i] * (1.0 - TIE)
+                pressed = pressed & met
             e.pressed[j, i] = pressed
-            pull -= e.spacing * e.weights[j] * total(choose(pressed, p, 0.0))
-            drag -= e.spacing * e.weights[j] * total(choose(pressed, p * e.slope[j, i], 0.0))
+            p[i] = choose(pressed, p[i], 0.0)
+        pull -= e.spacing * e.weights[j] * dotted(p, e.ones, low, high)
+        drag -= e.spacing * e.weights[j] * dotted(p, slope, low, high)
     return DONE, pull, drag
 
 
@@ -851,19 +907,16 @@ def report(
         math.nan,
         math.nan,
     )
-    runs = runs_of(e, e.pressed, e.ended)
+    find_runs(e)
     if _crowded(e):
         return LACKING
-    for r in range(runs):
+    for r in range(e.counts[ENDED]):
         j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
         p, slope = e.meets[j], e.slope[j]
         top = low + np.argmax(p[low:high])
-        normal = along = 0.0
-        for i in over(low, high):
-            x = e.spacing * e.numbers[i] + place
-            steep = slope[i] if e.parts else slope_at(e.surface, e.profile, x, j * e.across)
-            normal += total(p[i])
-            along += total(p[i] * steep)
+        if not e.parts:
+            slopes(e, j, low, high, place)
+        normal, along = dotted(p, e.ones, low, high), dotted(p, slope, low, high)
         ends = e.numbers[low] - 0.5, e.numbers[high - 1] + 0.5
         if e.parts:
             first = _end(e, j, low, -1, p_before[j], place, state[DEPTH])
@@ -909,23 +962,24 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
     For a detached element, it is the pressure it would have had it followed the indenter in the last step:
     brought down by the gap at the start of the step, and then moving with the indenter.
     """
-    arms, behind = e.arms.shape[0], _behind(e, V)
     for j in range(e.counts[STRIPS]):
-        for i in over(e.low[j], e.high[j]):
-            x, held = e.spacing * e.numbers[i] + place, e.touched[j, i]
-            slope = slope_at(e.surface, e.profile, x - behind, j * e.across)
-            g = state[DEPTH] - height_at(e.surface, e.profile, x, j * e.across)
-            g_rate = state[RATE] - V * slope
-            p = e.law.stiffness * g + e.law.damping * g_rate
-            for k in range(arms):
-                brought = e.law.arm_stiffness[k] * law.held[k]
-                moved = (law.ramp[k] - brought) * law.h
-                followed = brought * (g - e.u[j, i]) + moved * g_rate
-                p = p + choose(held, e.arms[k, j, i], followed)
-            if arms:
-                p = p - choose(held, 0.0, e.law.stiffness * e.u[j, i])
-            e.slope[j, i], e.meets[j, i] = slope, p
-            e.pressed[j, i] = held & ((p >= 0.0) | e.rule.pulls)
+        low, high, p = e.low[j], e.high[j], e.meets[j]
+        u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
+        heights(e, j, place)
+        slopes(e, j, low, high, place - _behind(e, V))
+        for i in over(low, high):
+            g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
+            p[i] = e.law.stiffness * g + e.law.damping * g_rate
+        for k in range(e.arms.shape[0]):
+            arm, brought = e.arms[k, j], e.law.arm_stiffness[k] * law.held[k]
+            moved = (law.ramp[k] - brought) * law.h
+            for i in over(low, high):
+                g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
+                p[i] += choose(held[i], arm[i], brought * (g - u[i]) + moved * g_rate)
+        lost = e.law.stiffness if e.arms.shape[0] else 0.0
+        for i in over(low, high):
+            p[i] -= choose(held[i], 0.0, lost * u[i])
+            e.pressed[j, i] = held[i] & ((p[i] >= 0.0) | e.rule.pulls)
 
 
 def _end(
@@ -1111,6 +1165,9 @@ def advance(
         imbalance = forces = 0.0
         for n in range(WINDOW if e.explicit else 0):
             known = balances[1, n] > 0.0
-            imbalance, forces = imbalance + balances[0, n], forces + balances[1, n] if known else math.inf
+            imbalance, forces = (
+                imbalance + balances[0, n],
+                forces + balances[1, n] if known else math.inf,
+            )
         if e.explicit and imbalance > course.limits[2] * forces:
             return UNBALANCED, step, reported
