@@ -39,7 +39,7 @@ def register(
     for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
             body = compiled.get(name, function)
-            own = {**OPTIONS, **options, "forceinline": name in inlined}
+            own: Any = {**OPTIONS, **options, "forceinline": name in inlined}
             if name in compiled:
                 own["fastmath"] = {"reassoc", "nsz"}
             overload(function, jit_options=own, strict=False)(lambda *_, body=body, **__: body)

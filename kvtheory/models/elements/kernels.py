@@ -55,6 +55,8 @@ TIE = 1e-9
 """Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
 """Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
+WHOLE = (0.5, 0.0, 0.0, 0.0, 0.0)
+"""The end of a run of whole elements, as `_end` returns it: half an element beyond the last."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -183,7 +185,17 @@ COMPILED = {
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
-INLINED = ("implicit_step", "_lay", "_sink", "_slide", "finish", "begin", "find_runs")
+INLINED = (
+    "implicit_step",
+    "_lay",
+    "relax",
+    "_judge_edges",
+    "_sink",
+    "_slide",
+    "finish",
+    "begin",
+    "find_runs",
+)
 """Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
@@ -375,14 +387,16 @@ def entered(before: float, rise: float) -> float:
     return rise / (rise - min(before, 0.0)) if rise > 0.0 else 0.0
 
 
-def left_alone(e: Elements, step: ElementStep, j: int, i: Any) -> Any:
-    """Return u at the end of a step for elements that are detached throughout it."""
-    if not e.arms.shape[0]:
-        return step.fall[0] * e.u[j, i]
-    left = (e.law.shares[0] * step.fall[0]) * e.arms[0, j, i]
-    for k in range(1, e.arms.shape[0]):
-        left = left + (e.law.shares[k] * step.fall[k]) * e.arms[k, j, i]
-    return left
+def relax(e: Elements, step: ElementStep, j: int, low: int, high: int, left: Array) -> None:
+    """Write u at the end of a step for elements that are detached throughout it."""
+    u, arms = e.u[j], e.arms.shape[0]
+    fall = 0.0 if arms else step.fall[0]
+    for i in over(low, high):
+        left[i] = fall * u[i]
+    for k in range(arms):
+        arm, fall = e.arms[k, j], e.law.shares[k] * step.fall[k]
+        for i in over(low, high):
+            left[i] += fall * arm[i]
 
 
 def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, float]) -> None:
@@ -443,7 +457,8 @@ def _turn(
     for k in range(old.size):
         old[k] = e.arms[k, j, i]
     if e.pressed[j, i]:
-        g, left = depths[1] - e.height[j, i], left_alone(e, step, j, i)
+        relax(e, step, j, i, i + 1, e.meets[j])
+        g, left = depths[1] - e.height[j, i], e.meets[j, i]
         share = entered(gap(e, j, i, before, depths[0]), g - left)
         for k in range(old.size):
             y = 0.0
@@ -561,15 +576,13 @@ def _lay(
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
     There the mean pressure would vanish: at the place of a free element then, and above that of one in
-    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. The
-    elements that are pressed if the indenter sinks by `first` decide θ, which is returned, and, unless it is
-    `known`, where the overlap w = g - u outside falls, so that the edge moves inward: once in a step, so that
-    the iteration cannot oscillate.
+    contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. Return
+    θ, which depends on the elements that are pressed if the indenter sinks by `first`.
     """
     (place, travel), arms = way, e.arms.shape[0]
     tip = e.law.damping > 0.0 and e.per_width and travel != 0.0
     for j in range(e.counts[STRIPS]):
-        low, high, u, height, meets = e.low[j], e.high[j], e.u[j], e.height[j], e.meets[j]
+        low, high, height, meets = e.low[j], e.high[j], e.height[j], e.meets[j]
         heights(e, j, place)
         for n in range(e.kinks.size if tip else 0):
             # What a damper has of the compression by the tip is left at the end of the step, and so is its
@@ -579,13 +592,9 @@ def _lay(
             for i in over(passed[0], passed[1]):
                 since = law.h * (e.spacing * e.numbers[i] + place - kink) / travel
                 height[i] = np.minimum(height[i], depth - g * np.exp(-since * e.law.rates[0]))
-        fall = 0.0 if arms else law.fall[0]
+        relax(e, law, j, low, high, meets)
         for i in over(low, high):
-            meets[i] = fall * u[i] + height[i] - depth
-        for k in range(arms):
-            arm, fall = e.arms[k, j], e.law.shares[k] * law.fall[k]
-            for i in over(low, high):
-                meets[i] += fall * arm[i]
+            meets[i] += height[i] - depth
         for end in (low, high - UNMET):
             for i in over(end, end + UNMET):
                 meets[i] = math.inf
@@ -600,26 +609,38 @@ def _lay(
                 meets[i] -= share * arm[i]
     _press(e, first)
     find_runs(e)
-    begun, ended = e.counts[BEGUN], e.counts[ENDED]
     if arms:
         _load_late(e, law, place - travel, depth, first)
-    for j in range(e.counts[STRIPS] if e.parts and not known else 0):
+    if e.parts:
+        _judge_edges(e, law, known, place - travel, depth, first)
+    wide = (
+        max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN])) * e.spacing
+    )
+    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+
+
+def _judge_edges(
+    e: Elements, law: ElementStep, known: bool, place: float, depth: float, first: float
+) -> None:
+    """Find, unless it is `known`, where the overlap w = g - u outside falls, so that the edge moves inward.
+
+    This is decided once in a step, so that the iteration cannot oscillate. At the other edges, find what
+    relaxes of the kinks at the start.
+    """
+    for j in range(0 if known else e.counts[STRIPS]):
         e.falling[j, 0] = e.falling[j, 1] = False
-    for r in range(ended if e.parts and not known else 0):
+    for r in range(0 if known else e.counts[ENDED]):
         j, only = e.ended[r, 0], r == 0 or e.ended[r, 0] != e.ended[r - 1, 0]
         for side in range(2):
             i = e.ended[r, 2] if side else e.ended[r, 1] - 1
-            falls = first - e.meets[j, i] - gap(e, j, i, place - travel, depth) < -STANDS * e.depth
+            falls = first - e.meets[j, i] - gap(e, j, i, place, depth) < -STANDS * e.depth
             e.falling[j, side] = falls and (only or e.falling[j, side])
-    for r in range(begun if e.parts else 0):
+    for r in range(e.counts[BEGUN]):
         for side in range(2):
-            i = e.begun[r, 2] if side else e.begun[r, 1] - 1
-            kink = 0.0
+            i, kink = e.begun[r, 2] if side else e.begun[r, 1] - 1, 0.0
             if not e.falling[e.begun[r, 0], side]:
-                kink = kink_area(gaps(e, e.begun[r, 0], i, 2 * side - 1, place - travel, depth))[0]
+                kink = kink_area(gaps(e, e.begun[r, 0], i, 2 * side - 1, place, depth))[0]
             e.relaxed[r, side] = kink * (e.law.stiffness / law.stiffness - 1.0)
-    wide = e.spacing * max(_extent(e, e.ended, ended), _extent(e, e.begun, begun))
-    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
 
 
 def _press(e: Elements, sunk: float) -> bool:
@@ -837,16 +858,15 @@ def _stage(
         u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
         heights(e, j, place)
         slopes(e, j, low, high, place)
-        fall = 0.0 if arms else law.fall[0]
+        relax(e, law, j, low, high, left)
         for i in over(low, high):
-            g, left[i] = at[DEPTH] - height[i], fall * u[i]
-            p[i] = e.law.stiffness * g + e.law.damping * (at[RATE] - V * slope[i])
+            g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
+            p[i] = e.law.stiffness * g + e.law.damping * g_rate
         for k in range(arms):
-            arm, fall = e.arms[k, j], e.law.shares[k] * law.fall[k]
+            arm = e.arms[k, j]
             for i in over(low, high):
                 loaded = law.held[k] * arm[i] + law.ramp[k] * (at[DEPTH] - height[i] - u[i])
                 p[i] += choose(held[i], loaded, 0.0)
-                left[i] += fall * arm[i]
         for i in over(low, high if arms else low):
             e.late[j, i] = (at[DEPTH] - height[i] > left[i]) > held[i]
         for i in flagged(e.late[j], low, high if arms else 0):
@@ -894,51 +914,37 @@ def report(
         return status
     sliding, peak, doubt, at_edge, edge_doubt = V - state[ALONG_RATE], 0.0, 0.0, 0.0, 0.0
     _weigh(e, state[DEPTH])
+    _pressure(e, state, law, place, V_before - state[ALONG_RATE])
+    for j in range(e.counts[STRIPS]):
+        for i in over(e.low[j], e.high[j]):
+            e.before[j, i] = e.meets[j, i]
     if V_before != V:
-        _pressure(e, state, law, place, V_before - state[ALONG_RATE])
-        for j in range(e.counts[STRIPS]):
-            for i in over(e.low[j], e.high[j]):
-                e.before[j, i] = e.meets[j, i]
-    _pressure(e, state, law, place, sliding)
-    p_before, force, push, left, right = (
-        e.meets if V_before == V else e.before,
-        0.0,
-        0.0,
-        math.nan,
-        math.nan,
-    )
+        _pressure(e, state, law, place, sliding)
+    force, push, left, right = 0.0, 0.0, math.nan, math.nan
     find_runs(e)
     if _crowded(e):
         return LACKING
     for r in range(e.counts[ENDED]):
         j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
-        p, slope = e.meets[j], e.slope[j]
-        top = low + np.argmax(p[low:high])
+        p, top = e.meets[j], low + np.argmax(e.meets[j, low:high])
         if not e.parts:
             slopes(e, j, low, high, place)
-        normal, along = dotted(p, e.ones, low, high), dotted(p, slope, low, high)
-        ends = e.numbers[low] - 0.5, e.numbers[high - 1] + 0.5
-        if e.parts:
-            first = _end(e, j, low, -1, p_before[j], place, state[DEPTH])
-            last = _end(e, j, high - 1, 1, p_before[j], place, state[DEPTH])
-            ends = e.numbers[low] - first[0], e.numbers[high - 1] + last[0]
-            normal, along = normal + first[1] + last[1], along + first[2] + last[2]
-            for end in (first, last):
-                if end[3] > at_edge:
-                    at_edge, edge_doubt = end[3], end[4]
-            if e.per_width:
-                split = _split(e, low, high, place, sliding)
-                normal, along = normal + split[0], along + split[1]
-            if p[top] > peak or not peak:
-                reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
-                peak, doubt = _peak(e, p, top, reach, low, high)
-        else:
-            peak = max(peak, p[top])
+        first = _end(e, j, low, -1, place, state[DEPTH]) if e.parts else WHOLE
+        last = _end(e, j, high - 1, 1, place, state[DEPTH]) if e.parts else WHOLE
+        split = _split(e, low, high, place, sliding) if e.parts and e.per_width else (0.0, 0.0)
+        normal = dotted(p, e.ones, low, high) + first[1] + last[1] + split[0]
+        along = dotted(p, e.slope[j], low, high) + first[2] + last[2] + split[1]
+        for end in (first, last):
+            if end[3] > at_edge:
+                at_edge, edge_doubt = end[3], end[4]
+        if p[top] > peak or not peak:
+            reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
+            peak, doubt = _peak(e, p, top, reach, low, high) if e.parts else (p[top], 0.0)
         force += e.weights[j] * normal
         push += e.weights[j] * along
         if j == 0:
-            left = e.spacing * ends[0] + place if math.isnan(left) else left
-            right = e.spacing * ends[1] + place
+            left = e.spacing * (e.numbers[low] - first[0]) + place if math.isnan(left) else left
+            right = e.spacing * (e.numbers[high - 1] + last[0]) + place
     if state[ALONG_RATE] and abs(sliding) > AT_REST * e.rest_velocity:
         forward = 1.0 if sliding > 0.0 else 0.0
     found[0], found[1], found[2], found[3] = time, V, state[DEPTH], state[RATE]
@@ -983,7 +989,7 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
 
 
 def _end(
-    e: Elements, j: int, i: int, out: int, p_before: Array, place: float, depth: float
+    e: Elements, j: int, i: int, out: int, place: float, depth: float
 ) -> tuple[float, float, float, float, float]:
     """Return how far outward of the last element i of a run the edge is, in elements.
 
@@ -992,7 +998,7 @@ def _end(
     and touches where the indenter meets the free surface. Where V jumps, an edge that peeled until then, by
     the pressure before, is still where it was, or has gone further in.
     """
-    p, slope = e.meets[j], e.slope[j]
+    p, p_before, slope = e.meets[j], e.before[j], e.slope[j]
     now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
     touches, straight = touching(gaps(e, j, i + out, out, place, depth))
     if math.isinf(before) or straight:

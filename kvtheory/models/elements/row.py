@@ -26,7 +26,7 @@ KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
 """Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
-kernels takes half a second; compiling them, once per installation, about a minute."""
+kernels takes half a second; compiling them, once per installation, about twenty seconds."""
 COLUMNS = 13
 """Numbers of a report, see `error_estimate.COLUMNS`."""
 
