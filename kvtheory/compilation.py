@@ -1,9 +1,9 @@
 """Kernels compiled by numba, which is optional, and cached on disk."""
 
 import inspect
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Mapping
 from importlib.util import find_spec
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Any
 
 from kvtheory.progress import compiling
@@ -11,31 +11,38 @@ from kvtheory.progress import compiling
 OPTIONS: Any = {"error_model": "numpy"}
 """Division by zero gives infinity, as in NumPy, and needs no check."""
 
+NONE: Mapping[str, Any] = MappingProxyType({})
+
 
 def available() -> bool:
     """Whether numba is installed: the extra `fast`."""
     return find_spec("numba") is not None
 
 
-def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
-    """Return a kernel entry that is compiled when called, and cached on disk if there is a writable place.
+def register(
+    module: ModuleType,
+    inlined: Container[str] = (),
+    compiled: Mapping[str, Any] = NONE,
+    **options: Any,
+) -> None:
+    """Register the functions of a module with numba; those named in `inlined` are inlined.
+
+    `compiled` has what stands for some of them where they are compiled. They may add up in any order.
 
     Raises
     ------
     ModuleNotFoundError
         If numba is not installed.
     """
-    register(module)
-    return cached(entry)
-
-
-def register(module: ModuleType, inlined: Container[str] = (), **options: Any) -> None:
-    """Register the functions of a module with numba; those named in `inlined` are inlined."""
-    from numba.extending import register_jitable
+    from numba.extending import overload
 
     for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
-            register_jitable(**OPTIONS, **options, forceinline=name in inlined)(function)
+            body = compiled.get(name, function)
+            own: Any = {**OPTIONS, **options, "forceinline": name in inlined}
+            if name in compiled:
+                own["fastmath"] = {"reassoc", "nsz"}
+            overload(function, jit_options=own, strict=False)(lambda *_, body=body, **__: body)
 
 
 def cached(entry: Callable[..., Any], **options: Any) -> Any:

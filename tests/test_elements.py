@@ -378,6 +378,7 @@ def test_steps_that_find_no_element_fly():
     for scheme in SCHEMES.values():
         model = Model.of(kv.Scene(), 5e-6, parts=scheme.row.parts_of_elements)
         elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1))
+        elements.lay(model.depth, lambda x, y: 0.0 * x)
         new = elements.step(scheme, IndenterState(0.0, -1e-3, 0.0), 1e-4)
         assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements.kernels import weights_across
+from kvtheory.models.elements.kernels import weigh
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
@@ -119,7 +119,7 @@ def test_order_of_the_rule_across(corrected, order):
             y = dy * np.arange(count + 1)
             depth = np.maximum(1.0 - y * y, 1e-12)
             loads = kv.steady(scene, over={"support.depth": depth}).load
-            weights = weights_across(dy, count + 1, 1.0 if corrected else 0.0)
+            weights = weigh(np.empty(count + 1), dy, 1.0 if corrected else 0.0)
             worst = max(worst, abs(float(weights @ loads) / whole - 1.0))
         left.append(worst)
     found = -np.polyfit(np.log(counts), np.log(left), 1)[0]

@@ -354,7 +354,9 @@ class Element(NamedTuple):
             return cls(K, C, K_i, tau_i, one * (K / C), one, np.eye(1), np.eye(1))
         weight = np.sqrt(K_i * tau_i)
         times, vectors = np.linalg.eigh(np.diag(tau_i) + np.outer(weight, weight) / K)
-        back, to_modes = vectors / weight[:, None], np.ascontiguousarray(vectors.T * weight)
+        back, to_modes = (
+            np.ascontiguousarray(m) for m in (vectors / weight[:, None], vectors.T * weight)
+        )
         shares, rates = K_i / (K + K_i.sum()) @ back, 1.0 / np.maximum(times, tau_i.min())
         return cls(K, 0.0, K_i, tau_i, rates, shares, to_modes, back)
 
@@ -386,7 +388,7 @@ class Element(NamedTuple):
         """
         h = np.asarray(h, dtype=float)
         z, K_i = h[..., None] / self.arm_time, self.arm_stiffness
-        phi_1, phi_2 = (each.real for each in phi(z.astype(complex))[:2])
+        phi_1, phi_2 = (each.real.copy() for each in phi(z.astype(complex))[:2])
         ramp, stiffness = phi_1 * K_i, np.full(h.shape, 0.5 * self.stiffness)
         if self.damping:
             with np.errstate(divide="ignore"):

@@ -3,10 +3,11 @@
 Read from the top: the indenter; the row, strip by strip; an element over a step; the implicit step; the
 explicit step; sums over the elements at an instant, whole elements or up to the edges; the run.
 
-Loops over elements are array expressions, fast both ways; loops over strips, edges and arms are scalar.
-A line contact is one strip. A run of elements in contact is (strip, first, one after the last), counted from
-the first stored element. All that is compiled is in this file, since numba does not notice a change in
-another. `profile` is None but for a shape given by Python functions, which is interpreted.
+A loop `for i in over(low, high)` is a loop over elements. Compiled, i is one element after the other;
+interpreted, it is all of them at once, as a slice, so that what is in such a loop holds for numbers and
+arrays. A line contact is one strip. A run of elements in contact is (strip, first, one after the last),
+counted from the first stored element. All that is compiled is in this file, since numba does not notice a
+change in another. `profile` is None but for a shape given by Python functions, which is interpreted.
 """
 
 import math
@@ -21,11 +22,12 @@ from kvtheory.theory.laws import Array, Element, ElementStep
 Runs = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST, GAINED = range(8)
-"""The indenter: depth, its rate, both along x, the two forces that judge an explicit step, the last step and
-the change of the rate along x in it."""
-FIRST, LOW, HIGH, STRIPS, UPDATES = range(5)
-"""Counts: the first element stored, the range that is lacking, strips near the indenter, element updates."""
+DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST, GAINED, CURVED = range(9)
+"""The indenter: depth, its rate, both along x, the two forces that judge an explicit step, the last step, and
+the first and second backward difference of the rate along x."""
+FIRST, LOW, HIGH, STRIPS, RUNS, BEGUN, ENDED, UPDATES = range(8)
+"""Counts: the first element stored; the range, strips and runs that are needed; the runs in contact at the
+start of a step and at its end; element updates."""
 DONE, LACKING, OUTGROWN, THROWN_UP, THROWN_ALONG, UNBALANCED = range(6)
 """How a run ended, or why it paused."""
 
@@ -38,7 +40,7 @@ SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
 """Below these, the exponential fit and phi_2 are taken from series, where the closed forms cancel."""
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
 """Limits that are never reached: the iterations end after two or three."""
-SLIDE_RTOL = 1e-9
+SLIDE_RTOL = 1e-8
 """Newton's method along x has converged when its step is below this share of the static half length."""
 ROOM, MORE_ROOM = 0.25, 4.0
 """Initial bound on how far the indenter sinks in a step, as a share of the static depth, and the factor by
@@ -53,6 +55,8 @@ TIE = 1e-9
 """Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
 """Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
+WHOLE = (0.5, 0.0, 0.0, 0.0, 0.0)
+"""The end of a run of whole elements, as `_end` returns it: half an element beyond the last."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -79,8 +83,8 @@ class Elements(NamedTuple):
     Arrays over strips and elements: `u` is the compression, `touched` whether an element is in contact;
     `arms` are then the forces of its arms, else its modes. Elements `low` to `high` of a strip are near the
     indenter and up to date; one elsewhere is as it was at `since`. An element may stay in contact above the
-    plane z = 0, so that all in contact are in `first` to `last`. `height`, `meets`, `slope`, `before` and
-    `pressed` are work space. `numbers` holds i + shift of the elements of a strip.
+    plane z = 0, so that all in contact are in `first` to `last`. `numbers` holds i + shift of the elements of
+    a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
     """
 
     u: Array
@@ -92,12 +96,21 @@ class Elements(NamedTuple):
     first: Runs
     last: Runs
     counts: Runs
+    numbers: Array
+    ones: Array
     height: Array
     meets: Array
     slope: Array
     before: Array
     pressed: Flags
-    numbers: Array
+    late: Flags
+    falling: Flags
+    weights: Array
+    begun: Runs
+    ended: Runs
+    relaxed: Array
+    modes: Array
+    stages: Array
     surface: Surface
     profile: Any
     law: Element
@@ -121,6 +134,69 @@ class Elements(NamedTuple):
     half_length: float
     rest_velocity: float
     kinks: Array
+
+
+# Loops over elements
+
+
+def over(low: Any, high: Any) -> Any:
+    """Return the elements from `low` to before `high`: one by one if compiled, else all as one slice."""
+    return (slice(low, high),) if low < high else ()
+
+
+def flagged(flags: Flags, low: Any, high: Any) -> Any:
+    """Return which elements are flagged; compiled, all that may be."""
+    return low + np.flatnonzero(flags[low:high])
+
+
+def changed(flags: Flags, low: Any, high: Any) -> Any:
+    """Return which elements are flagged while the one before is not, or the reverse; or all that may be."""
+    return low + np.flatnonzero(flags[low:high] != flags[low - 1 : max(low, high) - 1])
+
+
+def dotted(one: Array, other: Array, low: Any, high: Any) -> Any:
+    """Return the sum over elements of the product of two quantities."""
+    return np.dot(one[low:high], other[low:high])
+
+
+def total(values: Any) -> Any:
+    """Return the sum over the elements of a turn of the loop."""
+    return values.sum()
+
+
+def choose(flags: Any, yes: Any, no: Any) -> Any:
+    """Return one of two values for each element of a turn of the loop."""
+    return np.where(flags, yes, no)
+
+
+def _dotted(one: Array, other: Array, low: int, high: int) -> float:
+    both = 0.0
+    for i in range(max(low, 0), high):
+        both += one[i] * other[i]
+    return both
+
+
+COMPILED = {
+    "over": lambda low, high: range(max(low, 0), high),
+    "flagged": lambda flags, low, high: range(low, high),
+    "changed": lambda flags, low, high: range(low, high),
+    "dotted": _dotted,
+    "total": lambda value: value,
+    "choose": lambda flag, yes, no: yes if flag else no,
+}
+"""What stands for these functions where they are compiled."""
+INLINED = (
+    "implicit_step",
+    "_lay",
+    "relax",
+    "_judge_edges",
+    "_sink",
+    "_slide",
+    "finish",
+    "begin",
+    "find_runs",
+)
+"""Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
 # The indenter
@@ -171,22 +247,45 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
     return min(s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent), s.inside)
 
 
-def weights_across(dy: float, count: int, rim: float) -> Array:
-    """Return the quadrature weight of each strip, both sides together, in m; corrected at a `rim` > 0."""
-    weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
-    weights[0], s = dy, rim / dy - last
-    if 1 <= last <= count:
+def weigh(weights: Array, dy: float, rim: float) -> Array:
+    """Write the quadrature weight of each strip, both sides together, in m; corrected at a `rim` > 0."""
+    last = math.floor(rim / dy)
+    s = rim / dy - last
+    for j in range(weights.size):
+        weights[j] = 2.0 * dy if j else dy
+    if 1 <= last <= weights.size:
         weights[last - 1] += dy * (s * s - s + 1.0 / 6.0) / (1.0 + s)
     return weights
 
 
-def _weights(e: Elements, depth: float) -> Array:
-    """Return the quadrature weight of each strip: 1, or its width in m."""
-    strips = e.u.shape[0]
-    if not e.across:
-        return np.ones(strips)
-    rim = e.surface.stretch * extent(e.surface, e.profile, depth, 1.0) if e.parts else 0.0
-    return weights_across(e.across, strips, rim)
+def _weigh(e: Elements, depth: float) -> None:
+    """Write the quadrature weight of each strip of a ball; that of a line contact is 1."""
+    if e.across:
+        rim = e.surface.stretch * extent(e.surface, e.profile, depth, 1.0) if e.parts else 0.0
+        weigh(e.weights, e.across, rim)
+
+
+def heights(e: Elements, j: int, place: float) -> None:
+    """Write h at the elements of a strip when the base has moved by `place` under the indenter."""
+    s, y, numbers, height = e.surface, j * e.across, e.numbers, e.height[j]
+    if e.profile is None and s.exponent == 2.0 and not s.revolved:
+        for i in over(e.low[j], e.high[j]):
+            x = e.spacing * numbers[i] + place
+            height[i] = x * x * (0.5 / s.size) + s.across * (y * y)
+    else:
+        for i in over(e.low[j], e.high[j]):
+            height[i] = height_at(s, e.profile, e.spacing * numbers[i] + place, y)
+
+
+def slopes(e: Elements, j: int, low: int, high: int, place: float) -> None:
+    """Write dh/dx at elements of a strip."""
+    s, numbers, slope = e.surface, e.numbers, e.slope[j]
+    if e.profile is None and s.exponent == 2.0:
+        for i in over(low, high):
+            slope[i] = (e.spacing * numbers[i] + place) * (1.0 / s.size)
+    else:
+        for i in over(low, high):
+            slope[i] = slope_at(s, e.profile, e.spacing * numbers[i] + place, j * e.across)
 
 
 # The row
@@ -215,149 +314,168 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
                 return LACKING
             e.counts[UPDATES] += high - low
         before, after = e.low[j], e.high[j]
-        e.since[j, before : min(low, after)] = now
-        e.since[j, max(high, before) : after] = now
+        for old in ((before, min(low, after)), (max(high, before), after)):
+            for i in over(old[0], old[1]):
+                e.since[j, i] = now
         for new in ((low, min(before, high)), (max(after, low), high)):
-            if new[0] < new[1]:  # these were left alone for a while
-                past, u = now - e.since[j, new[0] : new[1]], e.u[j, new[0] : new[1]]
-                if not e.arms.shape[0]:
-                    u *= np.exp(-e.law.rates[0] * past)
-                    continue
-                u[:] = 0.0
+            for i in over(new[0], new[1]):  # these were left alone for a while
+                past = now - e.since[j, i]
+                u = e.u[j, i] * np.exp(-e.law.rates[0] * past)
                 for k in range(e.arms.shape[0]):
-                    mode = e.arms[k, j, new[0] : new[1]]
-                    mode *= np.exp(-e.law.rates[k] * past)
-                    u += e.law.shares[k] * mode
+                    mode = e.arms[k, j, i] * np.exp(-e.law.rates[k] * past)
+                    u = e.law.shares[k] * mode + (u if k else 0.0)
+                    e.arms[k, j, i] = mode
+                e.u[j, i] = u
         e.low[j], e.high[j] = low, high
     e.counts[STRIPS] = strips
     return DONE
 
 
-def runs_of(flags: Flags, low: Runs, high: Runs) -> Runs:
-    """Return the runs of flagged elements; those at both ends of the strips are taken to be out of them."""
-    runs, k = np.empty((4, 3), dtype=np.int64), 0
-    for j in range(low.size):
-        part = flags[j, low[j] : high[j]]
-        changes = low[j] + 1 + np.flatnonzero(part[1:] != part[:-1])
-        for i in range(0, changes.size - 1, 2):
-            if k == runs.shape[0]:
-                more = np.empty((2 * k, 3), dtype=np.int64)
-                more[:k] = runs
-                runs = more
-            runs[k, 0], runs[k, 1], runs[k, 2] = j, changes[i], changes[i + 1]
-            k += 1
-    return runs[:k]
+def find_runs(e: Elements) -> None:
+    """Write the runs of pressed elements; those at both ends of the strips are taken to be out of them."""
+    count = start = 0
+    for j in range(e.counts[STRIPS]):
+        pressed = e.pressed[j]
+        for i in changed(pressed, e.low[j] + 1, e.high[j]):
+            if pressed[i] and not pressed[i - 1]:
+                start = i
+            elif pressed[i - 1] and not pressed[i]:
+                if count < e.ended.shape[0]:
+                    e.ended[count, 0], e.ended[count, 1], e.ended[count, 2] = j, start, i
+                count += 1
+    e.counts[RUNS] = max(e.counts[RUNS], count)
+    e.counts[ENDED] = min(count, e.ended.shape[0])
 
 
-def positions(e: Elements, low: int, high: int, place: float) -> Array:
-    """Return x of elements when the base has moved by `place` under the indenter."""
-    x: Array = e.spacing * e.numbers[low:high] + place
-    return x
+def _crowded(e: Elements) -> bool:
+    """Whether there are more runs than have room."""
+    e.counts[LOW], e.counts[HIGH] = e.low[0] + e.counts[FIRST], e.high[0] + e.counts[FIRST]
+    return bool(e.counts[RUNS] > e.ended.shape[0])
+
+
+def gap(e: Elements, j: int, i: int, place: float, depth: float) -> float:
+    """Return the overlap w = g - u of an element when the base has moved by `place` under the indenter."""
+    x = e.spacing * e.numbers[i] + place
+    w: float = depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, i]
+    return w
 
 
 def gaps(
     e: Elements, j: int, i: int, out: int, place: float, depth: float
 ) -> tuple[float, float, float]:
-    """Return g - u of element i and the next two in the direction `out`, -1 or 1."""
-    first = min(i, i + 2 * out)
-    x = e.spacing * e.numbers[first : first + 3] + place
-    w = depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, first : first + 3]
-    return (w[0], w[1], w[2]) if out > 0 else (w[2], w[1], w[0])
+    """Return the overlap of an element and of the next two in the direction `out`, -1 or 1."""
+    w, far = gap(e, j, i, place, depth), gap(e, j, i + out, place, depth)
+    return w, far, gap(e, j, i + 2 * out, place, depth)
 
 
 # An element over a step
 
 
-def ramp_functions(z: Array) -> tuple[Array, Array]:
+def ramp_functions(z: float) -> tuple[float, float]:
     """Return phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, from 1 and 1/2 at z = 0."""
-    phi_1, phi_2 = np.full(z.size, 1.0), np.full(z.size, 0.5)
-    for i in range(z.size):
-        if z[i] > 0.0:
-            phi_1[i] = -math.expm1(-z[i]) / z[i]
-            phi_2[i] = (1.0 - phi_1[i]) / z[i]
-        if z[i] < SMALL_RAMP:
-            series = 1.0
-            for n in range(7, 2, -1):
-                series = 1.0 - z[i] * series / n
-            phi_2[i] = 0.5 * series
-    return phi_1, phi_2
+    phi_1 = -math.expm1(-z) / z if z > 0.0 else 1.0
+    if z >= SMALL_RAMP:
+        return phi_1, (1.0 - phi_1) / z
+    series = 1.0
+    for n in range(7, 2, -1):
+        series = 1.0 - z * series / n
+    return phi_1, 0.5 * series
 
 
-def entered(gap: float, rise: float) -> float:
+def entered(before: float, rise: float) -> float:
     """Return the share of a step in which an element was in contact, from its overlap at start and end."""
-    return rise / (rise - min(gap, 0.0)) if rise > 0.0 else 0.0
+    return rise / (rise - min(before, 0.0)) if rise > 0.0 else 0.0
 
 
-def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> Array:
-    """Return u at the end of a step for elements that are detached throughout it."""
-    if not e.arms.shape[0]:
-        u: Array = step.fall[0] * e.u[j, low:high]
-        return u
-    left = (e.law.shares[0] * step.fall[0]) * e.arms[0, j, low:high]
-    for k in range(1, e.arms.shape[0]):
-        left += (e.law.shares[k] * step.fall[k]) * e.arms[k, j, low:high]
-    return left
+def relax(e: Elements, step: ElementStep, j: int, low: int, high: int, left: Array) -> None:
+    """Write u at the end of a step for elements that are detached throughout it."""
+    u, arms = e.u[j], e.arms.shape[0]
+    fall = 0.0 if arms else step.fall[0]
+    for i in over(low, high):
+        left[i] = fall * u[i]
+    for k in range(arms):
+        arm, fall = e.arms[k, j], e.law.shares[k] * step.fall[k]
+        for i in over(low, high):
+            left[i] += fall * arm[i]
 
 
-def finish(
-    e: Elements, step: ElementStep, runs: Runs, before: float, depths: tuple[float, float]
-) -> None:
-    """Complete a step: elements in `runs` end on the indenter, all others relax freely.
+def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, float]) -> None:
+    """Complete a step: elements that are `pressed` end on the indenter, all others relax freely.
 
     `before` is where the base was under the indenter at its start.
     """
     for j in range(e.counts[STRIPS]):
-        e.pressed[j, e.low[j] : e.high[j]] = False
-        e.first[j] = e.last[j] = 0
-    for r in range(runs.shape[0]):
-        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        e.pressed[j, low:high] = True
-        if low < high:
-            e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
-    for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        if e.arms.shape[0]:
-            _pass_arms(e, step, j, before, depths)
-        else:
-            e.u[j, low:high] *= step.fall[0]
-        e.touched[j, low:high] = e.pressed[j, low:high]
-    for r in range(runs.shape[0]):
-        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        e.u[j, low:high] = depths[1] - e.height[j, low:high]
-
-
-def _pass_arms(
-    e: Elements, step: ElementStep, j: int, before: float, depths: tuple[float, float]
-) -> None:
-    """Complete a step for the arms of a strip: held ones are loaded, those of free elements are modes."""
-    low, law = e.low[j], e.law
-    high, u = e.high[j], e.u[j, low : e.high[j]]
-    pressed, touched = e.pressed[j, low:high], e.touched[j, low:high]
-    changes = np.flatnonzero(pressed != touched)
-    gap = np.full(changes.size, 0.0)
-    for n in range(changes.size):
-        i = low + changes[n]
-        if pressed[changes[n]]:
-            gap[n] = gaps(e, j, i, 1, before, depths[0])[0]
+        low, high, late = e.low[j], e.high[j], e.late[j]
+        u, height, pressed, touched = e.u[j], e.height[j], e.pressed[j], e.touched[j]
+        if not e.arms.shape[0]:
+            for i in over(low, high):
+                u[i] = choose(pressed[i], depths[1] - height[i], step.fall[0] * u[i])
+                touched[i] = pressed[i]
             continue
-        y = e.u[j, i] - e.arms[:, j, i] / law.arm_stiffness
-        for k in range(y.size):
-            e.arms[k, j, i] = (law.to_modes[k] * y).sum()
-    kept, rise = 1.0 * (pressed & touched), depths[1] - e.height[j, low : e.high[j]] - u
-    u[:] = 0.0
-    for k in range(law.shares.size):
-        arm = e.arms[k, j, low : e.high[j]]
-        arm *= step.fall[k] + (step.held[k] - step.fall[k]) * kept
-        arm += step.ramp[k] * (kept * rise)
-        u += law.shares[k] * arm
-    for n in range(changes.size):
-        i = low + changes[n]
-        if pressed[changes[n]]:
-            sunk, modes = depths[1] - e.height[j, i] - e.u[j, i], e.arms[:, j, i].copy()
-            phi_1, _ = ramp_functions(step.h * entered(gap[n], sunk) / law.arm_time)
-            for k in range(modes.size):
-                y_k = (law.from_modes[k] * modes).sum()
-                e.arms[k, j, i] = law.arm_stiffness[k] * (e.u[j, i] - y_k + phi_1[k] * sunk)
+        rise, free = e.slope[j], e.meets[j]
+        for i in over(low, high):
+            late[i], rise[i], free[i] = pressed[i] != touched[i], depths[1] - height[i] - u[i], 0.0
+        for k in range(e.arms.shape[0]):
+            arm, share, held, ramp, fall = (
+                e.arms[k, j],
+                e.law.shares[k],
+                step.held[k],
+                step.ramp[k],
+                step.fall[k],
+            )
+            for i in over(low, high):
+                new = choose(touched[i], held * arm[i] + ramp * rise[i], fall * arm[i])
+                arm[i] = choose(late[i], arm[i], new)
+                free[i] += share * new
+        for i in over(low, high):
+            u[i] = choose(late[i], u[i], choose(pressed[i], depths[1] - height[i], free[i]))
+        for i in flagged(late, low, high):
+            if late[i]:
+                _turn(e, step, j, i, before, depths)
+    begin(e)
+
+
+def begin(e: Elements) -> None:
+    """Take the runs at the end of a step for those at the start of the next."""
+    for j in range(e.counts[STRIPS]):
+        e.first[j] = e.last[j] = 0
+    for r in range(e.counts[ENDED]):
+        j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
+        e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
+        e.begun[r, 0], e.begun[r, 1], e.begun[r, 2] = j, low, high
+    e.counts[BEGUN] = e.counts[ENDED]
+
+
+def _turn(
+    e: Elements, step: ElementStep, j: int, i: int, before: float, depths: tuple[float, float]
+) -> None:
+    """Complete a step for an element that comes into contact in it or detaches.
+
+    The arms of an element in contact are loaded; free, they are modes.
+    """
+    law, old, free = e.law, e.modes, 0.0
+    for k in range(old.size):
+        old[k] = e.arms[k, j, i]
+    if e.pressed[j, i]:
+        relax(e, step, j, i, i + 1, e.meets[j])
+        g, left = depths[1] - e.height[j, i], e.meets[j, i]
+        share = entered(gap(e, j, i, before, depths[0]), g - left)
+        for k in range(old.size):
+            y = 0.0
+            for m in range(old.size):
+                y += law.from_modes[k, m] * step.fall[m] * old[m]
+            phi_1, _ = ramp_functions(step.h * share / law.arm_time[k])
+            e.arms[k, j, i] = law.arm_stiffness[k] * (left - y + phi_1 * (g - left))
+        e.u[j, i] = g
+    else:
+        for k in range(old.size):
+            mode = 0.0
+            for m in range(old.size):
+                mode += law.to_modes[k, m] * (e.u[j, i] - old[m] / law.arm_stiffness[m])
+            e.arms[k, j, i] = step.fall[k] * mode
+            free += law.shares[k] * step.fall[k] * mode
+        e.u[j, i] = free
+    e.touched[j, i] = e.pressed[j, i]
 
 
 # The implicit step
@@ -394,41 +512,19 @@ def kink_area(overlap: Any) -> Any:
     return half * within * w + rise / 12.0, half * (within + w), 2.0 * half
 
 
-class Step(NamedTuple):
-    """An implicit step: where the base is under the indenter at its end, and how far it moved there.
-
-    `first` is an initial guess of how far the indenter sinks; `begun` are the runs in contact at the start,
-    `relaxed` the area of the kinks at their edges less what relaxes of it, NaN where that was not needed yet;
-    `falling` says at which sides of each strip the overlap falls; `late` are the elements (strip, element)
-    that come into contact within the step, and `lack` the deficits of their weights.
-    """
-
-    place: float
-    travel: float
-    first: float
-    theta: float
-    weights: Array
-    begun: Runs
-    relaxed: Array
-    falling: Flags
-    late: Runs
-    lack: Array
-
-
 def implicit_step(
-    e: Elements, law: ElementStep, begun: Runs, state: Array, now: float, Y: tuple[float, float]
-) -> tuple[int, Runs]:
+    e: Elements, law: ElementStep, state: Array, now: float, Y: tuple[float, float]
+) -> int:
     """Take a step in which the depth at its end is the root of the balance of momentum.
 
-    On a spring, so is the place along x: for every place there is one depth. Return the status, and the
-    runs in contact at the end.
+    On a spring, so is the place along x: for every place there is one depth.
     """
     h, sprung, depth, along = law.h, math.isfinite(e.mass_along), state[DEPTH], state[ALONG]
-    guess = state[ALONG_RATE] + 0.5 * state[GAINED] * h / max(state[LAST], h)
+    gained = state[GAINED] * h / max(state[LAST], h)
+    guess = state[ALONG_RATE] + gained / 2.0 + 5.0 / 12.0 * state[CURVED]  # Adams-Bashforth
     slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
-    most, sunk, new_rate, new_along_rate = _deepest_fall(e, state, h), 0.0, state[RATE], 0.0
-    weights = _weights(e, depth + 0.5 * h * state[RATE])
-    falling, runs = np.zeros((e.u.shape[0], 3), dtype=np.bool_), begun
+    most, sunk, new_along_rate, known = _deepest_fall(e, state, h), 0.0, 0.0, False
+    _weigh(e, depth + 0.5 * h * state[RATE])
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
@@ -436,34 +532,32 @@ def implicit_step(
         while True:
             status = attend(e, now, (place, place - travel), depth + sinks)
             if status != DONE:
-                return status, begun
+                return status
             first = min(h * state[RATE], sinks)
-            step, runs, sums = _lay(e, law, begun, falling, weights, state, (place, travel), first)
-            runs, sunk = _sink(e, law, step, runs, sums, state)
-            if not sunk > sinks or sinks == most:
-                break
+            theta = _lay(e, law, known, depth, (place, travel), first)
+            sunk = _sink(e, law, theta, first, state)
             # If elements were missed, it sinks too deep, never too little.
+            known = not sunk > sinks or sinks == most
+            if known:
+                break
             sinks = min(most, MORE_ROOM * sinks)
-            falling[:] = False
         if not sprung:
             break
         before = slid
-        slid, new_along_rate = _slide(e, law, step, runs, state, sunk, slid)
+        slid, new_along_rate = _slide(e, law, (place, travel), state, sunk, slid)
         if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
+    if _crowded(e):
+        return LACKING
+    finish(e, law, place - travel, (depth, depth + sunk))
     if math.isfinite(e.mass):
-        new_rate = _velocity(sunk, state[RATE], h, step.theta)
-    finish(e, law, runs, step.place - step.travel, (depth, depth + sunk))
-    state[DEPTH], state[RATE] = depth + sunk, new_rate
+        state[RATE] = _velocity(sunk, state[RATE], h, theta)
+    state[DEPTH] = depth + sunk
     if sprung:
-        state[GAINED] = new_along_rate - state[ALONG_RATE]
+        gained = new_along_rate - state[ALONG_RATE]
+        state[GAINED], state[CURVED] = gained, gained - state[GAINED] if state[LAST] == h else 0.0
         state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
-    count = 0
-    for r in range(runs.shape[0]):
-        if runs[r, 1] < runs[r, 2]:
-            runs[count] = runs[r]
-            count += 1
-    return DONE, runs[:count]
+    return DONE
 
 
 def _deepest_fall(e: Elements, state: Array, h: float) -> float:
@@ -477,54 +571,88 @@ def _deepest_fall(e: Elements, state: Array, h: float) -> float:
 
 
 def _lay(
-    e: Elements, law: ElementStep, begun: Runs, falling: Flags, weights: Array, state: Array,
-    way: tuple[float, float], first: float,
-) -> tuple[Step, Runs, Array]:  # fmt: skip
+    e: Elements, law: ElementStep, known: bool, depth: float, way: tuple[float, float], first: float
+) -> float:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
     There the mean pressure would vanish: at the place of a free element then, and above that of one in
     contact now. An element that passes a kink of the shape is pressed as far as the kink pressed it. Return
-    the step, the runs that are pressed if the indenter sinks by `first`, and the sums of `meets` over them.
+    θ, which depends on the elements that are pressed if the indenter sinks by `first`.
     """
-    depth, (place, travel) = state[DEPTH], way
+    (place, travel), arms = way, e.arms.shape[0]
+    tip = e.law.damping > 0.0 and e.per_width and travel != 0.0
     for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        x = positions(e, low, high, place)
-        e.height[j, low:high] = height_at(e.surface, e.profile, x, j * e.across)
-        e.meets[j, low:high] = left_alone(e, law, j, low, high) - depth
-    for r in range(begun.shape[0] if e.arms.shape[0] else 0):
-        j, low, high = begun[r, 0], begun[r, 1], begun[r, 2]
-        p = e.law.stiffness * e.u[j, low:high]
-        for k in range(e.arms.shape[0]):
-            p += law.weights[k] * e.arms[k, j, low:high]
-        e.meets[j, low:high] = e.u[j, low:high] - p / law.stiffness - depth
-    if e.law.damping and e.per_width and travel:
-        for n in range(e.kinks.size):
+        low, high, height, meets = e.low[j], e.high[j], e.height[j], e.meets[j]
+        heights(e, j, place)
+        for n in range(e.kinks.size if tip else 0):
             # What a damper has of the compression by the tip is left at the end of the step, and so is its
             # mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
-            kink, passed = e.kinks[n], _passed(e, e.kinks[n], place, travel)
-            g = depth - height_at(e.surface, e.profile, np.full(1, kink), 0.0)[0]
-            for i in range(passed[0], passed[1]):
+            passed, kink = _passed(e, e.kinks[n], place, travel), e.kinks[n]
+            g = depth - height_at(e.surface, e.profile, kink, 0.0)
+            for i in over(passed[0], passed[1]):
                 since = law.h * (e.spacing * e.numbers[i] + place - kink) / travel
-                pressed = depth - g * math.exp(-since * e.law.rates[0])
-                e.height[0, i] = min(e.height[0, i], pressed)
+                height[i] = np.minimum(height[i], depth - g * np.exp(-since * e.law.rates[0]))
+        relax(e, law, j, low, high, meets)
+        for i in over(low, high):
+            meets[i] += height[i] - depth
+        for end in (low, high - UNMET):
+            for i in over(end, end + UNMET):
+                meets[i] = math.inf
+    for r in range(e.counts[BEGUN] if arms else 0):
+        j, low, high = e.begun[r, 0], e.begun[r, 1], e.begun[r, 2]
+        u, height, meets = e.u[j], e.height[j], e.meets[j]
+        for i in over(low, high):
+            meets[i] = (1.0 - e.law.stiffness / law.stiffness) * u[i] + height[i] - depth
+        for k in range(arms):
+            arm, share = e.arms[k, j], law.weights[k] / law.stiffness
+            for i in over(low, high):
+                meets[i] -= share * arm[i]
+    _press(e, first)
+    find_runs(e)
+    if arms:
+        _load_late(e, law, place - travel, depth, first)
+    if e.parts:
+        _judge_edges(e, law, known, place - travel, depth, first)
+    wide = (
+        max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN])) * e.spacing
+    )
+    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+
+
+def _judge_edges(
+    e: Elements, law: ElementStep, known: bool, place: float, depth: float, first: float
+) -> None:
+    """Find, unless it is `known`, where the overlap w = g - u outside falls, so that the edge moves inward.
+
+    This is decided once in a step, so that the iteration cannot oscillate. At the other edges, find what
+    relaxes of the kinks at the start.
+    """
+    for j in range(0 if known else e.counts[STRIPS]):
+        e.falling[j, 0] = e.falling[j, 1] = False
+    for r in range(0 if known else e.counts[ENDED]):
+        j, only = e.ended[r, 0], r == 0 or e.ended[r, 0] != e.ended[r - 1, 0]
+        for side in range(2):
+            i = e.ended[r, 2] if side else e.ended[r, 1] - 1
+            falls = first - e.meets[j, i] - gap(e, j, i, place, depth) < -STANDS * e.depth
+            e.falling[j, side] = falls and (only or e.falling[j, side])
+    for r in range(e.counts[BEGUN]):
+        for side in range(2):
+            i, kink = e.begun[r, 2] if side else e.begun[r, 1] - 1, 0.0
+            if not e.falling[e.begun[r, 0], side]:
+                kink = kink_area(gaps(e, e.begun[r, 0], i, 2 * side - 1, place, depth))[0]
+            e.relaxed[r, side] = kink * (e.law.stiffness / law.stiffness - 1.0)
+
+
+def _press(e: Elements, sunk: float) -> bool:
+    """Flag the elements that are pressed if the indenter sinks so far; return whether any flag changed."""
+    moved = 0
     for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        e.meets[j, low:high] += e.height[j, low:high]
-        e.meets[j, low : low + UNMET] = math.inf
-        e.meets[j, high - UNMET : high] = math.inf
-    runs = begun.copy()
-    for r in range(runs.shape[0]):  # outside only if a caller changed the depth
-        low, high = e.low[runs[r, 0]] + UNMET, e.high[runs[r, 0]] - UNMET
-        runs[r, 1] = min(max(runs[r, 1], low), high)
-        runs[r, 2] = max(min(runs[r, 2], high), low)
-    runs, sums, _ = _walk(e, runs, _sums(e, runs), first)
-    late, lack = _late(e, law, runs, weights, place - travel, depth, first)
-    wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
-    theta = exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
-    relaxed = np.full((begun.shape[0], 2), math.nan)
-    step = Step(place, travel, first, theta, weights, begun, relaxed, falling, late, lack)
-    return step, runs, sums
+        meets, pressed = e.meets[j], e.pressed[j]
+        for i in over(e.low[j], e.high[j]):
+            new = meets[i] <= sunk
+            moved += total(new != pressed[i])
+            pressed[i] = new
+    return moved > 0
 
 
 def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
@@ -534,164 +662,96 @@ def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int,
     return max(math.floor(start + NEAR) + 1, e.low[0]), min(math.ceil(end - NEAR), e.high[0])
 
 
-def _sums(e: Elements, runs: Runs) -> Array:
-    """Return the sum of `meets` over each run."""
-    sums = np.zeros(runs.shape[0])
-    for r in range(runs.shape[0]):
-        sums[r] = e.meets[runs[r, 0], runs[r, 1] : runs[r, 2]].sum()
-    return sums
-
-
-def _extent(runs: Runs, weights: Array) -> float:
+def _extent(e: Elements, runs: Runs, count: int) -> float:
     """Return the number of elements in runs, by the weights of their strips."""
-    total = 0.0
-    for r in range(runs.shape[0]):
-        total += weights[runs[r, 0]] * (runs[r, 2] - runs[r, 1])
-    return total
+    width = 0.0
+    for r in range(count):
+        width += e.weights[runs[r, 0]] * (runs[r, 2] - runs[r, 1])
+    return width
 
 
-def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Array, bool]:
-    """Move the ends of runs to their first and last pressed elements; return whether any moved.
+def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first: float) -> None:
+    """Write to `before` the weight of each element: below 1 if it comes into contact within the step.
 
-    If runs merged, or new ones appeared, all runs are found again.
+    Its arms are loaded during part of the step only.
     """
-    meets, moved, count = e.meets, False, 0
-    for r in range(runs.shape[0]):
-        j, low, high, total = runs[r, 0], runs[r, 1], runs[r, 2], sums[r]
-        while meets[j, low - 1] <= sunk:
-            low -= 1
-            total += meets[j, low]
-        while low < high and not meets[j, low] <= sunk:
-            total -= meets[j, low]
-            low += 1
-        while meets[j, high] <= sunk:
-            total += meets[j, high]
-            high += 1
-        while low < high and not meets[j, high - 1] <= sunk:
-            high -= 1
-            total -= meets[j, high]
-        moved = moved or low != runs[r, 1] or high != runs[r, 2]
-        runs[r, 1], runs[r, 2], sums[r] = low, high, total
-        count += high - low
     for j in range(e.counts[STRIPS]):
-        count -= int(np.count_nonzero(meets[j, e.low[j] : e.high[j]] <= sunk))
-    if count == 0:
-        return runs, sums, moved
-    for j in range(e.counts[STRIPS]):
-        e.pressed[j, e.low[j] : e.high[j]] = meets[j, e.low[j] : e.high[j]] <= sunk
-    runs = runs_of(e.pressed, e.low, e.high)
-    return runs, _sums(e, runs), True
+        for i in over(e.low[j], e.high[j]):
+            e.late[j, i] = e.pressed[j, i] > e.touched[j, i]
+            e.before[j, i] = 1.0
+        for i in flagged(e.late[j], e.low[j], e.high[j]):
+            if e.late[j, i]:
+                share = entered(gap(e, j, i, place, depth), first - e.meets[j, i])
+                stiff = 0.5 * e.law.stiffness
+                for k in range(e.arms.shape[0]):
+                    _, phi_2 = ramp_functions(law.h * share / e.law.arm_time[k])
+                    stiff += e.law.arm_stiffness[k] * phi_2
+                e.before[j, i] = share * stiff / law.stiffness
 
 
-def _late(
-    e: Elements, law: ElementStep, runs: Runs, weights: Array, place: float, depth: float, first: float
-) -> tuple[Runs, Array]:  # fmt: skip
-    """Return the elements that come into contact within the step, and the deficits of their weights.
-
-    Their arms are loaded during part of the step only.
-    """
-    count = 0
-    for r in range(runs.shape[0] if e.arms.shape[0] else 0):
-        count += (~e.touched[runs[r, 0], runs[r, 1] : runs[r, 2]]).sum()
-    late, lack = np.empty((count, 2), dtype=np.int64), np.empty(count)
-    for r in range(runs.shape[0] if count else 0):
-        j, low = runs[r, 0], runs[r, 1]
-        for i in low + np.flatnonzero(~e.touched[j, low : runs[r, 2]]):
-            count -= 1
-            share = entered(gaps(e, j, i, 1, place, depth)[0], first - e.meets[j, i])
-            _, phi_2 = ramp_functions(law.h * share / e.law.arm_time)
-            stiff = 0.5 * e.law.stiffness + (e.law.arm_stiffness * phi_2).sum()
-            late[count, 0], late[count, 1] = j, i
-            lack[count] = (1.0 - share * stiff / law.stiffness) * weights[j]
-    return late, lack
-
-
-def _sink(
-    e: Elements, law: ElementStep, step: Step, runs: Runs, sums: Array, state: Array
-) -> tuple[Runs, float]:
+def _sink(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
     method with the second derivative is exact.
     """
-    h, theta, k, sunk = law.h, step.theta, law.stiffness * e.spacing, step.first
-    if math.isinf(e.mass):
-        return runs, 0.0
-    for _ in range(NEWTON_STEPS):
-        width, area, bent = _extent(runs, step.weights), 0.0, 0.0
-        for r in range(runs.shape[0]):
-            area -= step.weights[runs[r, 0]] * sums[r]
-        area += sunk * width
-        for i in range(step.lack.size):
-            overlap = sunk - e.meets[step.late[i, 0], step.late[i, 1]]
-            if overlap > 0.0:
-                area -= step.lack[i] * overlap
-                width -= step.lack[i]
-        if e.parts:
-            kinks = _kinks(e, law, step, runs, sunk, state[DEPTH])
-            area, width, bent = area + kinks[0], width + kinks[1], kinks[2]
+    h, k, arms = law.h, law.stiffness * e.spacing, e.arms.shape[0]
+    for _ in range(NEWTON_STEPS if math.isfinite(e.mass) else 0):
+        width = area = 0.0
+        for r in range(e.counts[ENDED]):
+            j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
+            weight = e.before[j] if arms else e.ones
+            elements = dotted(weight, e.ones, low, high) if arms else 1.0 * (high - low)
+            area += e.weights[j] * (sunk * elements - dotted(weight, e.meets[j], low, high))
+            width += e.weights[j] * elements
+        kinks = _kinks(e, sunk) if e.parts else (0.0, 0.0, 0.0, 0.0)
         mean = state[DEPTH] - e.depth + theta * sunk
         change_of_rate = _velocity(sunk, state[RATE], h, theta) - state[RATE]
-        residual = e.mass * change_of_rate / h - e.weight + e.spring * mean + k * area
+        held = e.mass * change_of_rate / h - e.weight + e.spring * mean
+        residual, width = held + k * (area + kinks[0]), width + kinks[1]
         slope = e.mass / (theta * h * h) + theta * e.spring + k * width
-        root = math.sqrt(max(slope * slope - 2.0 * residual * k * bent, 0.0))
+        root = math.sqrt(max(slope * slope - 2.0 * residual * k * kinks[2], 0.0))
         sunk -= 2.0 * residual / (slope + root)
-        runs, sums, moved = _walk(e, runs, sums, sunk)
-        if not moved:
+        if not _press(e, sunk):
             break
-    return runs, sunk
+        find_runs(e)
+    return sunk
 
 
-def _kinks(
-    e: Elements, law: ElementStep, step: Step, runs: Runs, sunk: float, depth: float
-) -> tuple[float, float, float, float]:
+def _kinks(e: Elements, sunk: float) -> tuple[float, float, float, float]:
     """Return the area of the kinks at edges by dx less what relaxed, its derivatives by depth, and its push.
 
-    A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts
-    where the edge stands or moves outward over the free surface, that is, where the overlap w = g - u
-    just outside does not fall. Where the edge moves inward, the surface has no kink, or one that is left
-    behind and relaxes like all free surface. Each side of each strip is decided separately.
+    A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts where
+    the edge stands or moves outward over the free surface. Where the edge moves inward, the surface has no
+    kink, or one that is left behind and relaxes like all free surface.
     """
-    falling, place = step.falling, step.place - step.travel
-    met = np.zeros(e.u.shape[0], dtype=np.bool_)
-    known = falling[0, 2]  # decided once in a step, so that the iteration cannot oscillate
-    falling[0, 2] = True
     area = wider = bent = push = 0.0
-    for r in range(runs.shape[0]):
-        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        for side in range(2 if not known and low < high else 0):
-            i = high if side else low - 1
-            gap = gaps(e, j, i, 2 * side - 1, place, depth)[0]
-            falls = sunk - e.meets[j, i] - gap < -STANDS * e.depth
-            falling[j, side] = falls and (falling[j, side] or not met[j])
-        met[j] = met[j] or low < high
-    for r in range(runs.shape[0] + step.begun.shape[0]):
-        ended = r < runs.shape[0]
-        q = r if ended else r - runs.shape[0]
-        ends = runs[q] if ended else step.begun[q]
-        j, low, high = ends[0], ends[1], ends[2]
-        for side in range(2 if met[j] and low < high else 0):
-            if falling[j, side]:
-                continue
-            i, out = high if side else low - 1, 2 * side - 1
-            if ended:
+    for r in range(e.counts[ENDED]):
+        j = e.ended[r, 0]
+        for side in range(2):
+            if not e.falling[j, side]:
+                i, out = e.ended[r, 2] if side else e.ended[r, 1] - 1, 2 * side - 1
                 w, far = sunk - e.meets[j, i], sunk - e.meets[j, i + out]
                 added, more, bend = kink_area((w, far, sunk - e.meets[j, i + 2 * out]))
-                wider += step.weights[j] * more
-                bent += step.weights[j] * bend
-            else:
-                if math.isnan(step.relaxed[q, side]):
-                    start = kink_area(gaps(e, j, i, out, place, depth))[0]
-                    step.relaxed[q, side] = start * (e.law.stiffness / law.stiffness - 1.0)
-                added = step.relaxed[q, side]
-            area += step.weights[j] * added
-            push += step.weights[j] * added * e.slope[j, i - out]
+                area += e.weights[j] * added
+                wider += e.weights[j] * more
+                bent += e.weights[j] * bend
+                push += e.weights[j] * added * e.slope[j, i - out]
+    n = 0
+    for r in range(e.counts[BEGUN]):
+        j = e.begun[r, 0]
+        while n < e.counts[ENDED] and e.ended[n, 0] < j:
+            n += 1
+        for side in range(2 if n < e.counts[ENDED] and e.ended[n, 0] == j else 0):
+            i = e.begun[r, 2] - 1 if side else e.begun[r, 1]
+            area += e.weights[j] * e.relaxed[r, side]
+            push += e.weights[j] * e.relaxed[r, side] * e.slope[j, i]
     return area, wider, bent, push
 
 
 def _slide(
-    e: Elements, law: ElementStep, step: Step, runs: Runs, state: Array, sunk: float, slid: float
-) -> tuple[float, float]:
+    e: Elements, law: ElementStep, way: tuple[float, float], state: Array, sunk: float, slid: float
+) -> tuple[float, float]:  # fmt: skip
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
 
     An element pushes along x with its pressure times the slope halfway through the step, so that the
@@ -699,28 +759,24 @@ def _slide(
     """
     h, M_x, c_x, k_x = law.h, e.mass_along, e.damping_along, e.spring_along
     k, width, inclined, tilted, area = law.stiffness * e.spacing, 0.0, 0.0, 0.0, 0.0
+    (place, travel), arms = way, e.arms.shape[0]
     for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        x = positions(e, low, high, step.place - 0.5 * step.travel)
-        e.slope[j, low:high] = slope_at(e.surface, e.profile, x, j * e.across)
-    for n in range(e.kinks.size if e.per_width and e.law.damping and step.travel else 0):
-        passed = _passed(e, e.kinks[n], step.place, step.travel)
-        if passed[0] < passed[1]:  # pressed by the flank that they come from
-            x = positions(e, passed[0], passed[1], step.place - step.travel)
-            e.slope[0, passed[0] : passed[1]] = slope_at(e.surface, e.profile, x, 0.0)
-    for r in range(runs.shape[0]):
-        j, weight = runs[r, 0], step.weights[runs[r, 0]]
-        slope = e.slope[j, runs[r, 1] : runs[r, 2]]
-        width += weight * slope.size
-        inclined += weight * slope.sum()
-        tilted += weight * np.dot(slope, slope)
-        area -= weight * np.dot(slope, e.meets[j, runs[r, 1] : runs[r, 2]])
-    area += sunk * inclined
-    for i in range(step.lack.size):
-        place = step.late[i, 0], step.late[i, 1]
-        area -= step.lack[i] * max(sunk - e.meets[place], 0.0) * e.slope[place]
+        slopes(e, j, e.low[j], e.high[j], place - 0.5 * travel)
+    for n in range(e.kinks.size if e.per_width and e.law.damping and travel else 0):
+        passed = _passed(e, e.kinks[n], place, travel)
+        slopes(
+            e, 0, passed[0], passed[1], place - travel
+        )  # pressed by the flank that they come from
+    for r in range(e.counts[ENDED]):
+        j, weight = e.ended[r, 0], e.weights[e.ended[r, 0]]
+        width += weight * (e.ended[r, 2] - e.ended[r, 1])
+        for i in over(e.ended[r, 1], e.ended[r, 2]):
+            slope, overlap = e.slope[j, i], sunk - e.meets[j, i]
+            inclined += weight * total(slope)
+            tilted += weight * total(slope * slope)
+            area += weight * total(slope * (overlap * e.before[j, i] if arms else overlap))
     if e.parts:
-        area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
+        area += _kinks(e, sunk)[3]
     # Oscillations too fast for the step are damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
@@ -751,34 +807,40 @@ def explicit_step(
     """
     h, M, M_x = laws[2].h, e.mass, e.mass_along
     stages, begin = e.tableau.shape[0] - 1, Y[0] - state[ALONG]
-    rates = np.zeros((stages + 1, 4))  # of depth, its rate, and both along x, at each stage
-    now_at = state[:4].copy()
+    rates, at = (
+        e.stages,
+        e.stages[stages + 1],
+    )  # of depth, its rate, and both along x, at each stage
     for i in range(stages + 1):
         share = e.tableau[i, 0] if i < stages else 1.0
-        now_at[:] = state[:4]
-        for k in range(i):
-            now_at += h * e.tableau[i, k + 1] * rates[k]
-        rates[i, DEPTH], rates[i, ALONG] = now_at[RATE], now_at[ALONG_RATE]
+        for n in range(4):
+            at[n] = state[n]
+            for k in range(i):
+                at[n] += h * e.tableau[i, k + 1] * rates[k, n]
+        rates[i, DEPTH], rates[i, ALONG] = at[RATE], at[ALONG_RATE]
         if i == stages or math.isfinite(M) or math.isfinite(M_x):
             n = int(2.0 * share)
-            places, within = (begin, Y[n] - now_at[ALONG]), share > 0.0 and i < stages
-            status, pull, drag = _press(e, laws[n], state, now_at, now, places, V[n], within)
+            places, within = (begin, Y[n] - at[ALONG]), share > 0.0 and i < stages
+            status, pull, drag = _stage(e, laws[n], state, at, now, places, V[n], within)
             if status != DONE:
                 return status
             rates[i, RATE], rates[i, ALONG_RATE] = pull / M, drag / M_x
-    runs = runs_of(e.pressed, e.low, e.high)
-    finish(e, laws[2], runs, begin, (state[DEPTH], now_at[DEPTH]))
+    find_runs(e)
+    if _crowded(e):
+        return LACKING
+    finish(e, laws[2], begin, (state[DEPTH], at[DEPTH]))
     if math.isfinite(M):
         mean, first, last = 0.0, rates[0, RATE], rates[stages, RATE]
         for k in range(stages):
             mean += e.tableau[stages, k + 1] * rates[k, RATE]
         state[IMBALANCE] = M * abs(mean - 0.5 * (first + last))
         state[FORCE] = e.weight + M * max(abs(first), abs(last))
-    state[:4] = now_at
+    for n in range(4):
+        state[n] = at[n]
     return DONE
 
 
-def _press(
+def _stage(
     e: Elements, law: ElementStep, state: Array, at: Array, now: float,
     places: tuple[float, float], velocity: float, within: bool,
 ) -> tuple[int, float, float]:  # fmt: skip
@@ -787,33 +849,48 @@ def _press(
     status = attend(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
     if status != DONE:
         return status, 0.0, 0.0
-    V, weights = velocity - at[ALONG_RATE], _weights(e, at[DEPTH])
+    V, rule, arms = velocity - at[ALONG_RATE], e.rule, e.arms.shape[0]
+    _weigh(e, at[DEPTH])
     pull = e.weight - e.spring * (at[DEPTH] - e.depth)
     drag = -e.spring_along * at[ALONG] - e.damping_along * at[ALONG_RATE]
     for j in range(e.counts[STRIPS]):
-        low, high, y = e.low[j], e.high[j], j * e.across
-        u, touched = e.u[j, low:high], e.touched[j, low:high]
-        x = positions(e, low, high, place)
-        height, slope = height_at(e.surface, e.profile, x, y), slope_at(e.surface, e.profile, x, y)
-        g, left = at[DEPTH] - height, left_alone(e, law, j, low, high)
-        p = e.law.stiffness * g + e.law.damping * (at[RATE] - V * slope)
-        for k in range(e.arms.shape[0]):
-            p += touched * (law.held[k] * e.arms[k, j, low:high] + law.ramp[k] * (g - u))
-        if e.arms.shape[0]:
-            for i in np.flatnonzero((g > left) & ~touched):
-                gap, rise = gaps(e, j, low + i, 1, places[0], state[DEPTH])[0], g[i] - left[i]
-                phi_1, _ = ramp_functions(law.h * entered(gap, rise) / e.law.arm_time)
-                p[i] += rise * (e.law.arm_stiffness * phi_1).sum() - e.law.stiffness * left[i]
-        free = u if e.rule.stale and within else left
-        if not e.rule.remembers:
-            pressed = (g > 0.0) & (p >= 0.0)
-        else:
-            pressed = g > 0.0 if e.rule.pulls else p >= 0.0
-            pressed &= touched | (g > free) if e.rule.flags else g >= free * (1.0 - TIE)
-        e.height[j, low:high], e.pressed[j, low:high] = height, pressed
-        each = p * pressed
-        pull -= e.spacing * weights[j] * each.sum()
-        drag -= e.spacing * weights[j] * np.dot(slope, each)
+        low, high, left, p = e.low[j], e.high[j], e.before[j], e.meets[j]
+        u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
+        heights(e, j, place)
+        slopes(e, j, low, high, place)
+        relax(e, law, j, low, high, left)
+        for i in over(low, high):
+            g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
+            p[i] = e.law.stiffness * g + e.law.damping * g_rate
+        for k in range(arms):
+            arm = e.arms[k, j]
+            for i in over(low, high):
+                loaded = law.held[k] * arm[i] + law.ramp[k] * (at[DEPTH] - height[i] - u[i])
+                p[i] += choose(held[i], loaded, 0.0)
+        for i in over(low, high if arms else low):
+            e.late[j, i] = (at[DEPTH] - height[i] > left[i]) > held[i]
+        for i in flagged(e.late[j], low, high if arms else 0):
+            if not e.late[j, i]:
+                continue
+            rise, stiff = at[DEPTH] - height[i] - left[i], 0.0
+            share = entered(gap(e, j, i, places[0], state[DEPTH]), rise)
+            for k in range(arms):
+                phi_1, _ = ramp_functions(law.h * share / e.law.arm_time[k])
+                stiff += e.law.arm_stiffness[k] * phi_1
+            p[i] += rise * stiff - e.law.stiffness * left[i]
+        free = u if rule.stale and within else left
+        for i in over(low, high):
+            g = at[DEPTH] - height[i]
+            if not rule.remembers:
+                pressed = (g > 0.0) & (p[i] >= 0.0)
+            else:
+                pressed = g > 0.0 if rule.pulls else p[i] >= 0.0
+                met = held[i] | (g > free[i]) if rule.flags else g >= free[i] * (1.0 - TIE)
+                pressed = pressed & met
+            e.pressed[j, i] = pressed
+            p[i] = choose(pressed, p[i], 0.0)
+        pull -= e.spacing * e.weights[j] * dotted(p, e.ones, low, high)
+        drag -= e.spacing * e.weights[j] * dotted(p, slope, low, high)
     return DONE, pull, drag
 
 
@@ -835,50 +912,48 @@ def report(
     status = attend(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
-    sliding, weights = V - state[ALONG_RATE], _weights(e, state[DEPTH])
+    sliding, peak, doubt, at_edge, edge_doubt = V - state[ALONG_RATE], 0.0, 0.0, 0.0, 0.0
+    _weigh(e, state[DEPTH])
+    _pressure(e, state, law, place, V_before - state[ALONG_RATE])
     for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        if V_before != V:
-            e.before[j, low:high] = _pressure(e, state, law, j, place, V_before - state[ALONG_RATE])
-        p = _pressure(e, state, law, j, place, sliding)
-        e.meets[j, low:high] = p
-        e.pressed[j, low:high] = e.touched[j, low:high] & ((p >= 0.0) | e.rule.pulls)
-    runs = runs_of(e.pressed, e.low, e.high)
-    force, push, sums, peak, edge = 0.0, 0.0, np.zeros(4), np.zeros(2), np.zeros(2)
-    left = right = math.nan
-    for r in range(runs.shape[0]):
-        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        p, slope = e.meets[j], e.slope[j]
-        sums[0], sums[1] = p[low:high].sum(), np.dot(p[low:high], slope[low:high])
-        top = low + np.argmax(p[low:high])
-        if e.parts:
-            reach = np.full(2, 1.0)
-            for side in range(2):
-                p_before = e.meets[j] if V_before == V else e.before[j]
-                share = _end(e, j, low, high, side, p_before, place, state[DEPTH], sums, edge)
-                reach[side] = share if top == (high - 1 if side else low) else 1.0
-            if e.per_width:
-                _split(e, low, high, place, sliding, sums)
-            if p[top] > peak[0] or not peak[0]:
-                peak[0], peak[1] = _peak(e, p, top, reach, low, high)
-        else:
-            x = positions(e, low, high, place)
-            sums[1] = np.dot(p[low:high], slope_at(e.surface, e.profile, x, j * e.across))
-            sums[2], sums[3] = x[0] - 0.5 * e.spacing, x[-1] + 0.5 * e.spacing
-            peak[0] = max(peak[0], p[top])
-        force += weights[j] * sums[0]
-        push += weights[j] * sums[1]
+        for i in over(e.low[j], e.high[j]):
+            e.before[j, i] = e.meets[j, i]
+    if V_before != V:
+        _pressure(e, state, law, place, sliding)
+    force, push, left, right = 0.0, 0.0, math.nan, math.nan
+    find_runs(e)
+    if _crowded(e):
+        return LACKING
+    for r in range(e.counts[ENDED]):
+        j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
+        p, top = e.meets[j], low + np.argmax(e.meets[j, low:high])
+        if not e.parts:
+            slopes(e, j, low, high, place)
+        first = _end(e, j, low, -1, place, state[DEPTH]) if e.parts else WHOLE
+        last = _end(e, j, high - 1, 1, place, state[DEPTH]) if e.parts else WHOLE
+        split = _split(e, low, high, place, sliding) if e.parts and e.per_width else (0.0, 0.0)
+        normal = dotted(p, e.ones, low, high) + first[1] + last[1] + split[0]
+        along = dotted(p, e.slope[j], low, high) + first[2] + last[2] + split[1]
+        for end in (first, last):
+            if end[3] > at_edge:
+                at_edge, edge_doubt = end[3], end[4]
+        if p[top] > peak or not peak:
+            reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
+            peak, doubt = _peak(e, p, top, reach, low, high) if e.parts else (p[top], 0.0)
+        force += e.weights[j] * normal
+        push += e.weights[j] * along
         if j == 0:
-            left, right = sums[2] if math.isnan(left) else left, sums[3]
+            left = e.spacing * (e.numbers[low] - first[0]) + place if math.isnan(left) else left
+            right = e.spacing * (e.numbers[high - 1] + last[0]) + place
     if state[ALONG_RATE] and abs(sliding) > AT_REST * e.rest_velocity:
         forward = 1.0 if sliding > 0.0 else 0.0
     found[0], found[1], found[2], found[3] = time, V, state[DEPTH], state[RATE]
     found[4], found[5] = e.spacing * force, -e.spacing * push
     found[6], found[7] = (left, right) if forward else (right, left)
-    found[8] = max(peak[0], edge[0])
+    found[8] = max(peak, at_edge)
     found[9] = sliding
     found[10] = e.spring_along * state[ALONG] + e.damping_along * state[ALONG_RATE]
-    found[11], found[12] = (0.0, edge[1]) if edge[0] > peak[0] else (peak[1], 0.0)
+    found[11], found[12] = (0.0, edge_doubt) if at_edge > peak else (doubt, 0.0)
     return DONE
 
 
@@ -887,39 +962,43 @@ def _behind(e: Elements, V: float) -> float:
     return math.copysign(NEAR * e.spacing, V) if e.kinks.size and V else 0.0
 
 
-def _pressure(e: Elements, state: Array, law: ElementStep, j: int, place: float, V: float) -> Array:
-    """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12); set `slope`.
+def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: float) -> None:
+    """Write p of the elements to `meets`, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12), and `slope`.
 
     For a detached element, it is the pressure it would have had it followed the indenter in the last step:
     brought down by the gap at the start of the step, and then moving with the indenter.
     """
-    low, high, y = e.low[j], e.high[j], j * e.across
-    x, u = positions(e, low, high, place), e.u[j, low:high]
-    slope = slope_at(e.surface, e.profile, x - _behind(e, V), y)
-    g, g_rate = state[DEPTH] - height_at(e.surface, e.profile, x, y), state[RATE] - V * slope
-    p: Array = e.law.stiffness * g + e.law.damping * g_rate
-    for k in range(e.arms.shape[0]):
-        brought = e.law.arm_stiffness[k] * law.held[k]
-        moved = (law.ramp[k] - brought) * law.h
-        touched, followed = 1.0 * e.touched[j, low:high], brought * (g - u) + moved * g_rate
-        p += touched * e.arms[k, j, low:high] + (1.0 - touched) * followed
-    if e.arms.shape[0]:
-        p -= e.law.stiffness * (~e.touched[j, low:high] * u)
-    e.slope[j, low:high] = slope
-    return p
+    for j in range(e.counts[STRIPS]):
+        low, high, p = e.low[j], e.high[j], e.meets[j]
+        u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
+        heights(e, j, place)
+        slopes(e, j, low, high, place - _behind(e, V))
+        for i in over(low, high):
+            g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
+            p[i] = e.law.stiffness * g + e.law.damping * g_rate
+        for k in range(e.arms.shape[0]):
+            arm, brought = e.arms[k, j], e.law.arm_stiffness[k] * law.held[k]
+            moved = (law.ramp[k] - brought) * law.h
+            for i in over(low, high):
+                g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
+                p[i] += choose(held[i], arm[i], brought * (g - u[i]) + moved * g_rate)
+        lost = e.law.stiffness if e.arms.shape[0] else 0.0
+        for i in over(low, high):
+            p[i] -= choose(held[i], 0.0, lost * u[i])
+            e.pressed[j, i] = held[i] & ((p[i] >= 0.0) | e.rule.pulls)
 
 
 def _end(
-    e: Elements, j: int, low: int, high: int, side: int, p_before: Array, place: float, depth: float,
-    sums: Array, edge: Array,
-) -> float:  # fmt: skip
-    """Extend the sums over a run to its very edge; return how far outward of the last element that is.
+    e: Elements, j: int, i: int, out: int, place: float, depth: float
+) -> tuple[float, float, float, float, float]:
+    """Return how far outward of the last element i of a run the edge is, in elements.
 
-    An edge peels where p falls to zero, between two elements by a straight line, and touches where
-    the indenter meets the free surface. Where V jumps, an edge that peeled until then, by the pressure
-    before, is still where it was, or has gone further in.
+    Then what the sums of p and of p h' gain by ending there, p at the edge, and how much p differs between
+    the elements beside it. An edge peels where p falls to zero, between two elements by a straight line,
+    and touches where the indenter meets the free surface. Where V jumps, an edge that peeled until then, by
+    the pressure before, is still where it was, or has gone further in.
     """
-    i, out, p, slope = high - 1 if side else low, 2 * side - 1, e.meets[j], e.slope[j]
+    p, p_before, slope = e.meets[j], e.before[j], e.slope[j]
     now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
     touches, straight = touching(gaps(e, j, i + out, out, place, depth))
     if math.isinf(before) or straight:
@@ -933,19 +1012,10 @@ def _end(
         p_kink = p[i] + ahead * (p[i] - p[i - out])
         if -NEAR <= ahead < min(before, 1.0) and p[i + out] < 0.0 and p_kink > 0.0:
             share, p_edge = ahead, p_kink
-    x += share * e.spacing * out
-    steep = _slope_of(e, x - NEAR * e.spacing * out, j)
-    sums[0] += 0.5 * (share * (p[i] + p_edge) - p[i])
-    sums[1] += 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
-    sums[2 + side] = x
-    if p_edge > edge[0]:
-        edge[0], edge[1] = p_edge, abs(p[i] - p[i + out])
-    return float(share)
-
-
-def _slope_of(e: Elements, x: float, j: int) -> float:
-    """Return dh/dx at one place of a strip."""
-    return float(slope_at(e.surface, e.profile, np.full(1, x), j * e.across)[0])
+    steep = slope_at(e.surface, e.profile, x + (share - NEAR) * e.spacing * out, j * e.across)
+    gained = 0.5 * (share * (p[i] + p_edge) - p[i])
+    along = 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
+    return share, gained, along, p_edge, abs(p[i] - p[i + out])
 
 
 def _peeling(inside: float, outside: float) -> float:
@@ -967,29 +1037,34 @@ def touching(overlap: Any) -> tuple[float, bool]:
     return share, square > STRAIGHT * slope * slope
 
 
-def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array) -> None:
+def _split(e: Elements, low: int, high: int, place: float, V: float) -> tuple[float, float]:
     """Split the element that contains a kink of the shape: h' jumps there, and p by -C V times as much.
 
-    Without this, the forces under a wedge are of the first order in the spacing.
+    Return what the sums of p and of p h' gain by that. Without this, the forces under a wedge are of the
+    first order in the spacing.
     """
+    normal = along = 0.0
     for n in range(e.kinks.size):
         kink, x_0 = e.kinks[n], e.spacing * e.numbers[0] + place
         k = round((kink - x_0) / e.spacing)
         if not low < k < high - 1:
             continue
         x, p = x_0 + k * e.spacing, e.meets[0, k]
-        here = _slope_of(e, x - _behind(e, V), 0)
-        back = _slope_of(e, kink - NEAR * e.spacing, 0)
-        ahead = _slope_of(e, kink + NEAR * e.spacing, 0)
+        here = slope_at(e.surface, e.profile, x - _behind(e, V), 0.0)
+        back = slope_at(e.surface, e.profile, kink - NEAR * e.spacing, 0.0)
+        ahead = slope_at(e.surface, e.profile, kink + NEAR * e.spacing, 0.0)
         p_back = p - e.law.damping * V * (back - here)
         p_ahead = p - e.law.damping * V * (ahead - here)
         share = (kink - x) / e.spacing + 0.5
         if p_back >= 0.0 and p_ahead >= 0.0:
-            sums[0] += share * p_back + (1.0 - share) * p_ahead - p
-            sums[1] += share * p_back * back + (1.0 - share) * p_ahead * ahead - p * here
+            normal += share * p_back + (1.0 - share) * p_ahead - p
+            along += share * p_back * back + (1.0 - share) * p_ahead * ahead - p * here
+    return normal, along
 
 
-def _peak(e: Elements, p: Array, k: int, reach: Array, low: int, high: int) -> tuple[float, float]:
+def _peak(
+    e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int
+) -> tuple[float, float]:
     """Return the peak near element k, from the parabola through three, and its uncertainty.
 
     A shape with kinks has no such parabola: there the peak is known to within one element. Arms remember
@@ -1064,7 +1139,6 @@ def advance(
     """Run from a step on; return why it ended, the steps done and the instants reported."""
     none = _law_at(course.law, 0)
     law = _law_at(course.law, 2 * course.which[step - 1] + 2) if step else none
-    begun = runs_of(e.touched, e.low, e.high)
     while True:
         now = course.times[step]
         while reported < course.after.size and course.after[reported] == step:
@@ -1079,7 +1153,7 @@ def advance(
             half = _law_at(course.law, 2 * course.which[step] + 1)
             status = explicit_step(e, (none, half, law), state, now, Y, course.V[step])
         else:
-            status, begun = implicit_step(e, law, begun, state, now, (Y[0], Y[2]))
+            status = implicit_step(e, law, state, now, (Y[0], Y[2]))
         if status != DONE:
             return status, step, reported
         state[LAST] = law.h
@@ -1094,6 +1168,12 @@ def advance(
             return THROWN_UP, step, reported
         if not abs(state[ALONG_RATE]) <= course.limits[1]:
             return THROWN_ALONG, step, reported
-        forces = balances[1].sum() if e.explicit and balances[1].min() > 0.0 else 0.0
-        if forces and balances[0].sum() > course.limits[2] * forces:
+        imbalance = forces = 0.0
+        for n in range(WINDOW if e.explicit else 0):
+            known = balances[1, n] > 0.0
+            imbalance, forces = (
+                imbalance + balances[0, n],
+                forces + balances[1, n] if known else math.inf,
+            )
+        if e.explicit and imbalance > course.limits[2] * forces:
             return UNBALANCED, step, reported

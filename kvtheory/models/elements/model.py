@@ -182,14 +182,14 @@ class Model:
         x, area, weights = self.spacing * (numbers + self.shift), 0.0, np.ones(1)
         if self.across:
             rim = self.half_width(depth) if self.parts else 0.0
-            weights = kernels.weights_across(self.across, self.strips(depth), rim)
+            weights = kernels.weigh(np.empty(self.strips(depth)), self.across, rim)
         for j, weight in enumerate(weights):
             overlap = depth - self.height(x, j * self.across)
-            sums, flags = float(overlap[overlap > 0.0].sum()), (overlap > 0.0)[None, :]
-            ends = np.zeros(1, dtype=int), np.array([x.size])
-            for _, start, stop in kernels.runs_of(flags, *ends) if self.parts else ():
-                sums += kernels.kink_area(overlap[start - 3 : start][::-1])[0]
-                sums += kernels.kink_area(overlap[stop : stop + 3])[0]
+            pressed = overlap > 0.0
+            sums = float(overlap[pressed].sum())
+            for i in kernels.changed(pressed, 1, x.size) if self.parts else ():
+                out = overlap[i : i + 3] if pressed[i - 1] else overlap[i - 3 : i][::-1]
+                sums += kernels.kink_area(out)[0]
             area += weight * sums
         return self.law.stiffness * self.spacing * float(area)
 
@@ -226,7 +226,7 @@ class Model:
         dx, dy = (high - low) / (along - 1), self.half_width(depth) / strips
         x = np.tile(np.linspace(low, high, along), strips)
         y = np.repeat(dy * np.arange(strips), along)
-        return x, y, dx * np.repeat(kernels.weights_across(dy, strips, 0.0), along)
+        return x, y, dx * np.repeat(kernels.weigh(np.empty(strips), dy, 0.0), along)
 
 
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:

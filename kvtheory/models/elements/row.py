@@ -26,7 +26,7 @@ KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
 """Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
-kernels takes half a second; compiling them, once per installation, about a minute."""
+kernels takes half a second; compiling them, once per installation, about twenty seconds."""
 COLUMNS = 13
 """Numbers of a report, see `error_estimate.COLUMNS`."""
 
@@ -59,7 +59,8 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    return compilation.kept(kernels.advance, kernels)
+    compilation.register(kernels, kernels.INLINED, compiled=kernels.COMPILED, _nrt=False)
+    return compilation.cached(kernels.advance, _nrt=False)
 
 
 class ElementRow:
@@ -73,7 +74,7 @@ class ElementRow:
         longest = model.law.longest_time if model.rule.relaxes else math.inf
         self.memory = -longest * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
-        self.state = np.zeros(kernels.GAINED + 1)
+        self.state = np.zeros(kernels.CURVED + 1)
         self.use(SCHEMES[DEFAULT])
         self.stored = self._empty(0, 1, 1)
         depth = model.start * model.depth
@@ -109,9 +110,10 @@ class ElementRow:
             each[...] = 0
         for j in range(row.u.shape[0]):
             part = slice(row.low[j], row.high[j])
-            x = kernels.positions(row, row.low[j], row.high[j], 0.0)
+            x = row.spacing * row.numbers[part]
             row.u[j, part] = surface(x, j * row.across)
             row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
+        self._begin()
 
     def run(
         self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
@@ -158,38 +160,50 @@ class ElementRow:
         free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
         return u, np.where(row.touched, row.arms, free)
 
-    def _empty(self, first: int, width: int, strips: int) -> Elements:
+    def _empty(self, first: int, width: int, strips: int, runs: int = 0) -> Elements:
         """Return elements that are undisturbed."""
-        arms = np.zeros((self.model.law.arm_stiffness.size, strips, width))
-        work, flags = np.zeros((6, strips, width)), np.zeros((2, strips, width), dtype=bool)
+        size, runs = self.model.law.arm_stiffness.size, max(runs, 2 * strips)
+        state, flags = np.zeros((6, strips, width)), np.zeros((3, strips, width), dtype=bool)
         counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
-        counts[kernels.FIRST] = first
-        numbers = np.arange(float(first), first + width) + self.model.shift
-        ends = np.zeros((4, strips), dtype=np.int64)
+        counts[kernels.FIRST], ends = first, np.zeros((4, strips), dtype=np.int64)
         return Elements(
-            u=work[0], arms=arms, since=work[1], touched=flags[0], low=ends[0], high=ends[1], first=ends[2],
-            last=ends[3], counts=counts, height=work[2], meets=work[3], slope=work[4], before=work[5],
-            pressed=flags[1], numbers=numbers, **self.constants,
+            u=state[0], arms=np.zeros((size, strips, width)), since=state[1], touched=flags[0], low=ends[0],
+            high=ends[1], first=ends[2], last=ends[3], counts=counts,
+            numbers=np.arange(float(first), first + width) + self.model.shift, ones=np.ones(width),
+            height=state[2], meets=state[3], slope=state[4], before=state[5], pressed=flags[1], late=flags[2],
+            falling=np.zeros((strips, 2), dtype=bool), weights=np.ones(strips),
+            begun=np.zeros((runs, 3), dtype=np.int64), ended=np.zeros((runs, 3), dtype=np.int64),
+            relaxed=np.zeros((runs, 2)), modes=np.zeros(size), stages=np.zeros((6, 4)), **self.constants,
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
-        (first, low, high, strips, _), (rows, width) = old.counts.tolist(), old.u.shape
+        (first, low, high, strips, runs, *_), (rows, width) = old.counts.tolist(), old.u.shape
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows))
-        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
+        new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
+        new.counts[kernels.STRIPS], new.counts[kernels.UPDATES] = (
+            strips,
+            old.counts[kernels.UPDATES],
+        )
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
             for name in ("u", "arms", "since", "touched"):
                 getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
-            for name in ("low", "high", "first", "last"):
+            for name in ("low", "high"):
                 moved = getattr(old, name) + first - start
                 getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
         self.stored = new
+        self._begin()
+
+    def _begin(self) -> None:
+        """Find the runs of elements in contact."""
+        self.stored.pressed[...] = self.stored.touched
+        kernels.find_runs(self.stored)
+        kernels.begin(self.stored)
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
