@@ -1,21 +1,17 @@
 """Speed of the discrete simulator, measured side by side in one run: `make benchmark`.
 
 Ratios to a plain C loop over the same elements by the paper's scheme (`paper_scheme.c`), compiled on the spot
-where there is a compiler; and of balls, arms and springs to a row of Kelvin-Voigt elements on a rigid drive.
-Times are the least of several in random order, in one process, after one call each.
+where there is a compiler, with as many elements and at the same error; and of balls, arms and springs to a
+row of Kelvin-Voigt elements on a rigid drive. Times are the least of several in random order, in one
+process, after one call each.
 """
 
-import ctypes
 import os
 import random
-import shutil
-import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -23,41 +19,19 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 import kvtheory as kv
+from figures.paper_scheme import compiled_loop
 from kvtheory.models.elements import row
 
 REPEATS = 5
 END = 0.2
 """Of Table 1, in s."""
 DENSITIES = (200, 800)
+COARSE = (5, 10, 20, 40, 80)
 """Elements per mm."""
 BALL = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
 FIVE: Any = [(3e10, 10.0**-k) for k in range(5)]
 ARMS = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=FIVE))
 SPRING = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e6))
-
-
-def c_loop() -> Callable[[int], float] | None:
-    """Return the C loop over Table 1, which returns the depth at its end; None without a compiler."""
-    compiler = shutil.which("cc") or shutil.which("gcc")
-    if compiler is None:
-        return None
-    source = Path(__file__).with_name("paper_scheme.c")
-    with tempfile.TemporaryDirectory() as folder:
-        library = f"{folder}/paper_scheme.so"
-        command = [compiler, "-O3", "-shared", "-fPIC", str(source), "-o", library, "-lm"]
-        subprocess.run(command, check=True)
-        run = ctypes.CDLL(library).run
-    run.restype, run.argtypes = ctypes.c_double, [ctypes.c_double] * 8 + [ctypes.c_long]
-    scene: Any = kv.Scene()
-    R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
-    M, W, V = scene.support.mass, scene.support.weight, scene.drive.velocity
-    depth = float(kv.transient(at=0.0).depth[0])
-
-    def loop(density: int) -> float:
-        steps = round(END * V * density * 1e3 / 2.0)
-        return float(run(R, K, tau, M, W, V, 1e-3 / density, depth, steps))
-
-    return loop
 
 
 def least(calls: dict[str, Callable[[], object]]) -> dict[str, float]:
@@ -91,9 +65,10 @@ def main() -> None:
         "five arms, 200 per mm": partial(table, ARMS),
         "spring, 200 per mm": partial(table, SPRING),
     }
-    loop = c_loop()
+    loop = compiled_loop()
     if loop is not None:
-        calls |= {f"C loop, {n} per mm": partial(loop, n) for n in DENSITIES}
+        calls |= {f"C loop, {n} per mm": partial(loop, kv.Scene(), 1e3 * n, END) for n in DENSITIES}
+        calls |= {f"Table 1, {n} per mm": partial(table, per_length=1e3 * n) for n in COARSE}
     seconds = least(calls)
     for name, each in seconds.items():
         print(f"{name:32}{each * 1e3:10.1f} ms")
@@ -107,13 +82,21 @@ def main() -> None:
     if loop is None:
         print("no C compiler: no ratio to a C loop")
         return
-    truth = float(kv.transient(at=END, rtol=1e-10).depth[0])
+    times = np.linspace(0.0, END, 201)
+    truth = kv.transient(at=times, rtol=1e-10).depth
+
+    def error(n: int) -> float:
+        """Return the largest relative error of the depth."""
+        return float(np.abs(table(per_length=1e3 * n, at=times).depth / truth - 1.0).max())
+
     for n in DENSITIES:
-        ratio = seconds[f"Table 1, {n} per mm"] / seconds[f"C loop, {n} per mm"]
-        ours = float(table(per_length=1e3 * n, at=END).depth[0])
-        errors = [abs(depth / truth - 1.0) for depth in (loop(n), ours)]
-        print(f"Table 1, {n} per mm{ratio:22.2f} times the C loop; "
-              f"errors of the depth {errors[0]:.1e} (C), {errors[1]:.1e} (ours)")  # fmt: skip
+        instants, depths, *_ = loop(kv.Scene(), 1e3 * n, END)
+        theirs = float(np.abs(np.interp(times, instants, depths) / truth - 1.0).max())
+        seconds_in_c = seconds[f"C loop, {n} per mm"]
+        fewest = next((k for k in COARSE if error(k) <= theirs), n)
+        print(f"Table 1, {n} per mm: {seconds[f'Table 1, {n} per mm'] / seconds_in_c:.2f} times the C loop; "
+              f"errors of the depth {error(n):.1e} and {theirs:.1e} (C). {fewest} per mm are as good as it: "
+              f"{seconds[f'Table 1, {fewest} per mm'] / seconds_in_c:.3f} times the C loop")  # fmt: skip
     ratio = seconds["ball, 200 per mm, certified"] / seconds["C loop, 200 per mm"]
     print(f"{'ball, 200 per mm, certified':32}{ratio:10.1f} times the C loop of a line contact")
 

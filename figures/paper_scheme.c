@@ -4,22 +4,27 @@
 #include <stdlib.h>
 
 static double force(int n, double first, double dx, const double *u, const char *touched, double decay,
-                    double R, double K, double C, double V, double depth, double rate)
+                    double R, double K, double C, double V, double depth, double rate, double *friction)
 {
-    double sum = 0.0;
+    double sum = 0.0, along = 0.0;
     for (int i = 0; i < n; i++) {
         double x = first + i * dx, g = depth - x * x / (2.0 * R);
         if (touched[i] || g > u[i] * decay) {
             double p = K * g + C * (rate - V * x / R);
-            if (p >= 0.0)
+            if (p >= 0.0) {
                 sum += p;
+                along += p * x;
+            }
         }
     }
+    *friction = -dx * along / R;
     return dx * sum;
 }
 
-/* Return the depth after so many steps; the base moves on by two elements in each. */
-double run(double R, double K, double tau, double M, double W, double V, double dx, double depth, long steps)
+/* Write depth and friction force before each of so many steps and after the last; return the element updates.
+   The base moves on by two elements in a step. */
+long run(double R, double K, double tau, double M, double W, double V, double dx, double depth, long steps,
+         double *depths, double *frictions)
 {
     double h = 2.0 * dx / V, C = K * tau, rate = 0.0, half = exp(-0.5 * h / tau), whole = exp(-h / tau);
     int m = (int)ceil(sqrt(2.0 * R * depth) / dx) + 4, n = 2 * m + 1;
@@ -30,7 +35,9 @@ double run(double R, double K, double tau, double M, double W, double V, double 
         touched[i] = g > 0.0;
         u[i] = g > 0.0 ? g : 0.0;
     }
+    double last;
     for (long k = 0; k < steps; k++) {
+        depths[k] = depth;
         double a[4], v[4], d = depth, w = rate, share[4] = {0.0, 0.5, 0.5, 1.0};
         for (int s = 0; s < 4; s++) {
             double back = s ? share[s] * h : 0.0;
@@ -38,7 +45,7 @@ double run(double R, double K, double tau, double M, double W, double V, double 
             w = rate + (s ? back * a[s - 1] : 0.0);
             v[s] = w;
             a[s] = (W - force(n, first + V * back, dx, u, touched, s == 0 ? 1.0 : s == 3 ? whole : half,
-                              R, K, C, V, d, w)) / M;
+                              R, K, C, V, d, w, s ? &last : &frictions[k])) / M;
         }
         depth += h * (v[0] + 2.0 * v[1] + 2.0 * v[2] + v[3]) / 6.0;
         rate += h * (a[0] + 2.0 * a[1] + 2.0 * a[2] + a[3]) / 6.0;
@@ -51,7 +58,9 @@ double run(double R, double K, double tau, double M, double W, double V, double 
             u[i] = touched[i] ? g : free_u;
         }
     }
+    depths[steps] = depth;
+    force(n, first, dx, u, touched, 1.0, R, K, C, V, depth, rate, &frictions[steps]);
     free(u);
     free(touched);
-    return depth;
+    return 4 * steps * n;
 }

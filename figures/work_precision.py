@@ -5,17 +5,23 @@ The script writes the quick version; `kvtheory chart work-precision` makes other
 
 import os
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from figures import drawing
-from kvtheory.charts.collection import chosen, measure
-from kvtheory.charts.work_precision import Chart
+from figures.paper_scheme import compiled_loop, suits
+from kvtheory.charts.collection import measure
+from kvtheory.charts.methods import DENSITIES, transient_methods
+from kvtheory.charts.problems import Curves, Problem, standard_scene
+from kvtheory.charts.work_precision import Chart, Clock, Method, make_chart
+from kvtheory.models.elements import row
 from kvtheory.plots.work_precision import default_errors, draw_work_precision
-from kvtheory.scene.model import Scene
+from kvtheory.results import DivergenceError
 
 SCENES = "table-1", "stop-and-go"
 
@@ -30,7 +36,27 @@ class Data:
 
 def compute() -> Data:
     """Measure all methods; the chart of steady sliding is left to the command."""
-    charts = measure(chosen(Scene(), SCENES, quick=True)[1:], quick=True)
+    loop: Any = compiled_loop()
+    row.Tally.steps = row.WORTHWHILE  # all elements compiled, as the C loop is
+
+    def in_c(problem: Problem, density: float, _: Clock) -> tuple[Curves, int]:
+        """Solve a scene by the C loop, with so many elements per static half length."""
+        units = problem.units
+        times, depth, friction, work = loop(
+            problem.scene, density / units.half_length, problem.times[-1]
+        )
+        if not np.abs(depth).max() < 10.0 * depth[0]:
+            raise DivergenceError("the C loop diverged")
+        at = (np.interp(problem.times, times, each) for each in (depth, friction))
+        return Curves(next(at) / units.depth, next(at) / units.friction_force), work
+
+    peer = Method(
+        "elements in C, paper", "elements per a_0", DENSITIES, "element updates", in_c,
+        suits=lambda problem: suits(problem.scene),
+    )  # fmt: skip
+    methods = [*transient_methods().values(), *([peer] if loop else [])]
+    problems = [Problem(name, standard_scene(name), quick=True) for name in SCENES]
+    charts = measure([partial(make_chart, each, methods) for each in problems], quick=True)
     rows: list[tuple[Any, ...]] = []
     for chart, error in zip(charts, default_errors(charts), strict=True):
         for series in chart.series:

@@ -26,7 +26,7 @@ LOOKS = {
     "method of lines": (GREY, "x"),
     "elements, paper": (GREY, "s"), "elements, explicit-euler": (GREY, "D"),
     "elements, semi-implicit": (GREEN, "s"), "elements, exponential": (GREEN, "D"),
-    "elements, edge-corrected": (GREEN, "o"),
+    "elements, edge-corrected": (GREEN, "o"), "elements in C, paper": (BLACK, "s"),
 }  # fmt: skip
 """Colour and marker of each method."""
 SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “success”"}
