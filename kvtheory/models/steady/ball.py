@@ -38,8 +38,11 @@ NEAR = 1.0
 """Largest l for the closed form of T: cancellation costs a bit of the sums that contain T."""
 NODES = 24
 """Nodes of Gauss's rule for the integral from -1 to 1, whose error is below rounding from l = 1 on."""
-V, WEIGHTS = (half[NODES // 2 :] for half in leggauss(NODES))
-SQUARES, WEIGHTS = V * V, 2.0 * WEIGHTS * (1.0 - V * V) ** 2
+RULE = [
+    (v * v, 2.0 * weight * (1.0 - v * v) ** 2)
+    for v, weight in zip(*(half[NODES // 2 :].tolist() for half in leggauss(NODES)), strict=True)
+]
+"""v^2 and weight of its nodes v > 0."""
 
 MOST_STEPS, LAST_STEP = 12, 1e-5
 """Most iterations, of which three to five are needed; a step as small as this leaves an error of its cube."""
@@ -67,7 +70,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     0.061896 mm, mu = 0.063679
     """
     R, stretch, K = scene.indenter.radius, scene.indenter.stretch, scene.foundation.stiffness
-    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     delta = depth(scene)
     a = np.sqrt(2.0 * R * delta)
     l = l_r / a
@@ -95,7 +98,7 @@ def depth(scene: Scene) -> Any:
         return scene.support.depth
     stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)
     delta_0 = np.sqrt(load / stiffness)
-    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     s = scaled_root(l_r / np.sqrt(2.0 * R * delta_0), scene.support.spring * (delta_0 / load))
     return s * s * delta_0
 
@@ -106,16 +109,19 @@ def angle_and_tail(l: Any) -> tuple[Any, Any]:
     >>> angle_and_tail(np.array([0.0, 1e8]))[1].round(12).tolist()
     [3.14159265359, 1.0667e-08]
     """
-    l = np.asarray(l)
-    near, far = np.minimum(l, NEAR), l > NEAR
-    tail = np.asarray(cf.ball_tail(near, np.arctan2(1.0, near)))
-    if far.any():
-        large = l[far]
-        square, total = 1.0 / (large * large), np.zeros_like(large)
-        for node, weight in zip(SQUARES, WEIGHTS, strict=True):
-            total += weight / (1.0 + square * node)
-        tail[far] = total / large
-    return np.arctan2(1.0, l), tail[()]
+    if not (isinstance(l, np.ndarray) and l.ndim):
+        l = float(l)
+        theta = math.atan2(1.0, l)
+        return theta, cf.ball_tail(l, theta) if l <= NEAR else _integrated_tail(l)
+    theta, far = np.arctan2(1.0, l), l > NEAR
+    tail = cf.ball_tail(np.minimum(l, NEAR), theta)
+    tail[far] = _integrated_tail(l[far])
+    return theta, tail
+
+
+def _integrated_tail(l: Any) -> Any:
+    square = 1.0 / (l * l)
+    return sum(weight / (1.0 + square * node) for node, weight in RULE) / l
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:

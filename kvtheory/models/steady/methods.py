@@ -26,7 +26,7 @@ CLOSED: Mapping[str, Any] = {
 MOMENTS: Mapping[str, Any] = {"parabola": viscoelastic, "sphere": ball_viscoelastic}
 """The same on any foundation, by the moments of its relaxation function."""
 
-BLOCK, COLUMN = 16384, 256
+BLOCK, COLUMN = 16384, 1024
 """Scenes evaluated together by formulas and by quadrature, so that intermediate arrays stay in the cache."""
 ROUNDING = 64 * 2.0**-52
 """Rounding error of an asymptote and of the exact state it is compared with, about twenty operations each."""
@@ -45,9 +45,9 @@ Formula = Callable[[Scene], Sequence[Any]]
 def solve_exact(scene: Scene) -> SteadyState:
     """Evaluate the closed forms, or the moments of the relaxation function."""
     family = (MOMENTS if lacks_kelvin_voigt(scene) else CLOSED)[scene.indenter.shape]
-    parabola = family is exact
-    certificate = exact.HELD if parabola and scene.held else family.CERTIFICATE
-    return _evaluate(family.quantities, scene, certificate, family.OWN_ERRORS, floats=parabola)
+    certificate = exact.HELD if family is exact and scene.held else family.CERTIFICATE
+    floats = family in (exact, ball)
+    return _evaluate(family.quantities, scene, certificate, family.OWN_ERRORS, floats=floats)
 
 
 def solve_quadrature(scene: Scene) -> SteadyState:

@@ -37,6 +37,8 @@ from kvtheory.scene.model import Scene
 Array = NDArray[np.float64]
 Formula = Callable[[Scene], Any]
 """A formula of a quantity, in the shape of the scene, for |V|."""
+Excess = Callable[[Scene, Mapping[str, Array]], Array]
+"""A function of a scene and of the magnitudes of its exact state, in the shape of the scene."""
 
 DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
 """Decades from V* within which the end of a range is searched for; times 1/alpha for a springpot."""
@@ -61,6 +63,8 @@ NOTE = (
 )
 
 MU = "friction_coefficient"
+EXACT = MU, "depth", "load", "friction_force", "half_length", "trailing_edge"
+"""Quantities of the exact state that lines and bounds are compared with."""
 LISTED = {
     "fixed": (MU, "load", "friction_force"),
     "dead-weight": (MU, "depth"),
@@ -131,7 +135,7 @@ class Line(NamedTuple):
     equation: int | None
     formula: str
     at: Formula
-    bound: Formula | None = None
+    bound: Excess | None = None
 
 
 def lines(scene: Scene) -> list[Line]:
@@ -181,11 +185,9 @@ def _sum(scene: Scene, power: int) -> Any:
     return sum(arm.stiffness * arm.relaxation_time**power for arm in scene.foundation.arms)
 
 
-def _passing(scene: Scene) -> Array:
+def _passing(scene: Scene, exact: Mapping[str, Array]) -> Array:
     """Return the rate V/c at which elements pass the contact."""
-    state = solve_exact(scene)
-    length = state.half_length + np.abs(state.trailing_edge)
-    return np.abs(scene.drive.final_velocity) / np.asarray(length)
+    return np.abs(scene.drive.final_velocity) / (exact["half_length"] + exact["trailing_edge"])
 
 
 def _within(off: Array, most: float, factor: float) -> Array:
@@ -194,16 +196,18 @@ def _within(off: Array, most: float, factor: float) -> Array:
     return np.where(off <= most, wrong / (1.0 - wrong), np.inf)
 
 
-def _voigt_bound(scene: Scene) -> Array:
-    return _within(_passing(scene) * (_sum(scene, 2) / _sum(scene, 1)), MOST_DELAY, VOIGT)
+def _voigt_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    delay = _passing(scene, exact) * (_sum(scene, 2) / _sum(scene, 1))
+    return _within(delay, MOST_DELAY, VOIGT)
 
 
-def _slow_bound(scene: Scene) -> Array:
-    return _limit(MU, "low", scene) / _voigt(scene) * (1.0 + _voigt_bound(scene)) - 1.0
+def _slow_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    return _limit(MU, "low", scene) / _voigt(scene) * (1.0 + _voigt_bound(scene, exact)) - 1.0
 
 
-def _glassy_bound(scene: Scene) -> Array:
-    return _within(_sum(scene, -2) / _sum(scene, -1) / _passing(scene), MOST_HASTE, GLASSY)
+def _glassy_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    haste = _sum(scene, -2) / _sum(scene, -1) / _passing(scene, exact)
+    return _within(haste, MOST_HASTE, GLASSY)
 
 
 def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
@@ -215,12 +219,8 @@ def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> Asympto
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         critical = np.broadcast_to(asymptotes.critical_velocity(scene), scene.shape)
         truth = solve_exact(scene)
-        ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
-        proved = ends if monotonic else [_proved(scene, one, critical, tolerance) for one in shown]
-        found = [
-            _line(scene, line, truth, *pair)
-            for line, *pair in zip(shown, ends, proved, strict=True)
-        ]
+        ranges = _ranges(scene, shown, critical, tolerance, monotonic)
+        found = [_line(scene, line, truth, *ranges[line]) for line in shown]
     use = np.full(scene.shape, "exact", dtype=object)
     for line in reversed(found):
         if line.quantity == MU:
@@ -254,74 +254,78 @@ def _line(
     )
 
 
-def _proved(scene: Scene, line: Line, critical: Array, tolerance: float) -> Array:
-    """Return the velocity up to which, or from which on, a range is proved; none without a bound."""
-    none, bound = 0.0 if line.regime == "low" else np.inf, line.bound
-    if bound is None:
-        return np.full_like(critical, none)
-    far = _far(scene, critical)
-    return _crossing(
-        scene, lambda scene: np.minimum(bound(scene), 2.0) - tolerance, critical, (-far, far), none
-    )
+def _exact(scene: Scene) -> dict[str, Array]:
+    """Return the magnitudes of the exact values that lines and bounds need."""
+    state = solve_exact(scene)
+    return {name: np.abs(getattr(state, name)) for name in EXACT}
 
 
-def _far(scene: Scene, critical: Array) -> Array:
-    """Return the number of decades from V* within which the end of a range is searched for."""
-    order = getattr(scene.foundation, "order", 1.0)
-    decades = (ON_ARMS if scene.foundation.arms else DECADES) / order
-    return np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
+def _ranges(
+    scene: Scene, shown: Sequence[Line], critical: Array, tolerance: float, monotonic: bool
+) -> dict[Line, tuple[Array, Array]]:
+    """Return the velocity at which the range of each line ends, and up to or from which it is proved.
 
-
-def _ends(
-    scene: Scene, shown: Sequence[Line], critical: Array, tolerance: float, points: int
-) -> list[Array]:
-    """Return the velocities at which the error of each line first passes the tolerance, from its limit on.
-
-    If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
-    spring). If it is above the tolerance at the limit already, the range is empty.
+    A range ends where the error first passes the tolerance, from the limit on. If it does not on the way to
+    the far end, the limit holds at every velocity (such as the load on a soft spring). If it is above the
+    tolerance at the limit already, the range is empty. All ends are found together.
     """
-    grid = _far(scene, critical)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
+    decades = (ON_ARMS if scene.foundation.arms else DECADES) / getattr(
+        scene.foundation, "order", 1.0
+    )
+    far = np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
+    grid = far[..., np.newaxis] * np.linspace(-1.0, 1.0, 2 if monotonic else POINTS)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
     wide = wide.at(critical[..., np.newaxis] * 10.0**grid)
-    exact = solve_exact(wide)
-    ends = []
+    exact, doubt = _exact(wide), solve_exact(scene).certificate.relative_error
+
+    def wrong_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Array:
+        error = np.abs(asymptotes.error(line.at(scene), exact[line.quantity]))
+        return error + (ROUNDING + doubt[line.quantity]) * (1.0 + error) - tolerance
+
+    def unproved_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Array:
+        bound = line.bound
+        return np.minimum(bound(scene, exact), 2.0) - tolerance if bound else np.inf
+
+    searches, brackets, wrong = [], [], {}
     for line in shown:
-
-        def excess(scene: Scene, exact: SteadyState | None = None, line: Line = line) -> Array:
-            exact = solve_exact(scene) if exact is None else exact
-            truth = np.abs(getattr(exact, line.quantity))
-            doubt = ROUNDING + exact.certificate.relative_error[line.quantity]
-            error = np.abs(asymptotes.error(line.at(scene), truth))
-            return np.broadcast_to(error + doubt * (1.0 + error), scene.shape) - tolerance
-
-        low = line.regime == "low"
-        order = slice(None, None, 1 if low else -1)
-        wrong, steps = (excess(wide, exact) > 0.0)[..., order], grid[..., order]
-        first = wrong.argmax(axis=-1)[..., np.newaxis]
-        bracket = tuple(
-            np.take_along_axis(steps, np.maximum(first - 1 + next_, next_), axis=-1)[..., 0]
-            for next_ in (0, 1)
+        order = slice(None, None, 1 if line.regime == "low" else -1)
+        wrong[line] = (wrong_by(line, wide, exact) > 0.0)[..., order]
+        first = np.maximum(wrong[line].argmax(axis=-1), 1)[..., np.newaxis]
+        searches.append(partial(wrong_by, line))
+        brackets.append(
+            [np.take_along_axis(grid[..., order], first - back, -1)[..., 0] for back in (1, 0)]
         )
-        edge = _crossing(scene, excess, critical, bracket, np.nan)
-        nowhere, everywhere = (0.0, np.inf) if low else (np.inf, 0.0)
-        edge = np.where(first[..., 0] > 0, edge, nowhere)
-        ends.append(np.where(wrong.any(axis=-1), edge, everywhere))
-    return ends
+    if not monotonic:
+        searches += [partial(unproved_by, line) for line in shown]
+        brackets += [[-far, far] for _ in shown]
+    edges = _crossings(scene, searches, critical, np.moveaxis(brackets, 1, 0))
+    ranges = {}
+    for line, edge, proved in zip(shown, edges, edges[-len(shown) :], strict=False):
+        nowhere, everywhere = (0.0, np.inf) if line.regime == "low" else (np.inf, 0.0)
+        end = np.where(wrong[line][..., 0], nowhere, edge)
+        end = np.where(wrong[line].any(axis=-1), end, everywhere)
+        known = end if monotonic else np.where(np.isnan(proved), nowhere, proved)
+        ranges[line] = end, known
+    return ranges
 
 
-def _crossing(
-    scene: Scene, excess: Formula, critical: Array, bracket: tuple[Array, ...], otherwise: float
-) -> Array:
-    """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
+def _crossings(scene: Scene, searches: Sequence[Excess], critical: Array, brackets: Array) -> Array:
+    """Return the velocities at which functions vanish, between powers of ten away from V*; NaN without."""
     flat = scene.flat()
 
-    def at(decades: Array, index: Array, critical: Array) -> Array:
-        there = flat.rows(index) if scene.shape else flat
-        return excess(there.at(critical * 10.0**decades))
+    def excess(decades: Array, which: Array, index: Array, critical: Array) -> Array:
+        there = (flat.rows(index) if scene.shape else flat).at(critical * 10.0**decades)
+        exact, found = _exact(there), np.empty_like(decades)
+        for i, search in enumerate(searches):
+            mine = which == i
+            if mine.any():
+                found[mine] = search(there.rows(mine), {name: x[mine] for name, x in exact.items()})
+        return found
 
+    which = np.arange(len(searches)).reshape(-1, *(1,) * critical.ndim)
     index = np.arange(critical.size).reshape(critical.shape)
-    found = elementwise.find_root(at, bracket, args=(index, critical))
-    return np.where(found.success, critical * 10.0**found.x, otherwise)
+    found = elementwise.find_root(excess, tuple(brackets), args=(which, index, critical))
+    return np.where(found.success, critical * 10.0**found.x, np.nan)
 
 
 def unknown(

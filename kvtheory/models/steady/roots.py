@@ -1,4 +1,4 @@
-"""Roots of arrays of scenes, element by element."""
+"""Roots of scenes, floats or arrays of them, element by element."""
 
 from collections.abc import Callable
 
@@ -11,17 +11,17 @@ Array = NDArray[np.float64]
 def converge(
     step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
 ) -> Array:
-    """Return the roots from `value` by steps of the logarithm.
+    """Return the roots from `value` > 0 by steps of the logarithm.
 
     An element is final after its first step that is no longer than `last_step`, so that no result depends on
     the others of its block.
     """
-    active = np.full(value.shape, True)
+    active = value > 0.0
     for _ in range(most_steps):
         step = step_of(value)
-        value = np.where(active, value * np.exp(-step), value)
-        active &= np.abs(step) > last_step
-        if not active.any():
+        value = np.where(active, value * np.exp(-step), value)[()]
+        active = active & (abs(step) > last_step)
+        if not np.any(active):
             break
     return value
 
