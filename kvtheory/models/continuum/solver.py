@@ -154,11 +154,12 @@ class Trajectory:
 
     @property
     def natural(self) -> NDArray[np.float64]:
-        """Times at which to show the motion: those of the steps, subdivided."""
+        """Times at which to show the motion, in order: those of the steps, subdivided."""
         return np.asarray(self._natural[0])
 
     @cached_property
     def _natural(self) -> tuple[Any, Any]:
+        """These times, and the states there."""
         times, found = self._room(evaluation.SUBDIVISIONS * self.counts.steps + 1)
         count = self._perform(bulk.NATURAL, times, found)
         return times[:count], found[:count]
@@ -175,7 +176,7 @@ class Trajectory:
         times = np.asarray(s, dtype=float)
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        _, found = self._room(len(times))
+        found = self._rows(np.empty((len(times), evaluation.SIZE)))
         self._perform(bulk.STATES, self._rows(times), found)
         return np.asarray(found).reshape(-1, evaluation.SIZE)
 
@@ -193,7 +194,7 @@ class Trajectory:
             found = self._rows(self.states(at))
         worst = self._rows(np.zeros(deviation.SIZE))
         self._perform(bulk.DEVIATIONS, self._rows(at), found, worst, other=other.run)
-        return [float(x) for x in worst]
+        return list(np.asarray(worst).tolist())
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
@@ -218,26 +219,25 @@ class Trajectory:
     def _perform(
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
     ) -> int:  # fmt: skip
-        rows = self._workspace
-        values = rows[0] if values is None else values
+        _, rows = self._two
         return compiled.chosen(self.run)(
-            task, self.run, other or self.run, times, found, rows, values, count, bulk.NO_BULK
-        )
+            task, self.run, other or self.run, times, found, rows,
+            rows[0] if values is None else values, count, bulk.NO_BULK,
+        )  # fmt: skip
 
     @cached_property
-    def _workspace(self) -> Any:
-        """Room for two states."""
-        return self._room(2)[1]
+    def _two(self) -> tuple[Any, Any]:
+        return self._room(2)
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
         return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
 
     def _rows(self, array: Any) -> Any:
-        """Return an array as the kernels need it: as lists if they are interpreted."""
-        if self.compiled:
-            return np.ascontiguousarray(array)
-        return array if isinstance(array, list) else array.tolist()
+        """Return an array as the kernels need it: contiguous, or as lists if they are interpreted."""
+        if not self.compiled:
+            return array if isinstance(array, list) else array.tolist()
+        return array if array.flags.c_contiguous else np.ascontiguousarray(array)
 
 
 def solve(

@@ -110,11 +110,11 @@ def angle_and_tail(l: Any) -> tuple[Any, Any]:
     [3.14159265359, 1.0667e-08]
     """
     if not (isinstance(l, np.ndarray) and l.ndim):
-        l = float(l)
-        theta = math.atan2(1.0, l)
-        return theta, cf.ball_tail(l, theta) if l <= NEAR else _integrated_tail(l)
+        number = float(l)
+        angle = math.atan2(1.0, number)
+        return angle, cf.ball_tail(number, angle) if number <= NEAR else _integrated_tail(number)
     theta, far = np.arctan2(1.0, l), l > NEAR
-    tail = cf.ball_tail(np.minimum(l, NEAR), theta)
+    tail: Array = cf.ball_tail(np.minimum(l, NEAR), theta)
     tail[far] = _integrated_tail(l[far])
     return theta, tail
 

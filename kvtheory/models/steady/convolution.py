@@ -241,6 +241,28 @@ class Contact:
         )
         return max(float(self.pressure[best]), -float(found.fun))
 
+    def friction(self) -> tuple[float, float, float]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        if self.memory is None:
+            return 0.0, 0.0, self.load_error
+        left, _ = self.remembered(np.array([self.x_te]))
+        work, lost = self.memory.works(self, left)
+        # K u = -(memory) at the trailing edge, unless the pressure jumps there.
+        rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
+        rest = held if abs(rest - held) > JUMP * self.depth else rest
+        return work + 0.5 * rest * rest, lost, self.load_error
+
+    def quantities(self) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
+        friction, lost, error = self.friction()
+        edges, share = (-self.a, self.x_te), share_lost(friction, lost)
+        values = self.half_length, *edges, self.load, friction, self.peak(), share
+        edge = self.edge_power
+        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
+        own["trailing_edge"] += FLOOR * edge
+        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(self) | {"trailing_edge": edge}
+        return dict(zip(OF_LINE, values, strict=True)), own, powers
+
 
 class ViscoelasticLine:
     """A convex shape on a foundation with a memory: one scene."""
@@ -274,25 +296,3 @@ class ViscoelasticLine:
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
         """Return the contact at a depth."""
         return Contact(self.shape, self.memory, depth)
-
-    def friction(self, contact: Contact) -> tuple[float, float, float]:
-        """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        if self.memory is None:
-            return 0.0, 0.0, contact.load_error
-        left, _ = contact.remembered(np.array([contact.x_te]))
-        work, lost = self.memory.works(contact, left)
-        # K u = -(memory) at the trailing edge, unless the pressure jumps there.
-        rest, held = -float(left.sum()), contact.depth - float(self.shape.height(contact.x_te))
-        rest = held if abs(rest - held) > JUMP * contact.depth else rest
-        return work + 0.5 * rest * rest, lost, contact.load_error
-
-    def quantities(self, contact: Contact) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
-        friction, lost, error = self.friction(contact)
-        edges, share = (-contact.a, contact.x_te), share_lost(friction, lost)
-        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
-        edge = contact.edge_power
-        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
-        own["trailing_edge"] += FLOOR * edge
-        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(contact) | {"trailing_edge": edge}
-        return dict(zip(OF_LINE, values, strict=True)), own, powers

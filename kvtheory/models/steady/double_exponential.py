@@ -85,11 +85,12 @@ def integral(
     result, accuracy, active = 0.0, 0.0, one >= 0.0
     for to_left, to_right, weights in _SIDES if smooth else _SIDES[1:]:
         values = function(ends[0] * to_left + ends[1] * to_right)
-        # Unlike a product of matrices, this sums in one order on every processor for any number of rows.
-        sums = np.einsum("...j,kj->k...", values.reshape(*values.shape[:-1], 2, -1), weights)
-        (left, right), (left_coarse, right_coarse) = (
-            sums.tolist() if values.ndim == 1 else sums.transpose(0, 2, 1)[..., None]
-        )
+        if values.ndim == 1:
+            pairs = (values.reshape(2, -1) @ weights.T).tolist()
+        else:  # unlike a product of matrices, this sums in one order for any number of rows
+            rows = values.reshape(len(values), 2, -1)
+            pairs = np.einsum("...j,kj->k...", rows, weights).transpose(2, 0, 1)[..., None]
+        (left, left_coarse), (right, right_coarse) = pairs
         total = one * left + two * right
         apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
         error = (apart / total) ** 1.5

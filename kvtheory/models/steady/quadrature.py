@@ -108,7 +108,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
             contact, depth_error = line.at(depth), 0.0 * depth
         else:
             line, contact, depth_error = _carrying(line_at, l_r, load / K, spring / K)
-        values, own, powers = line.quantities(contact)
+        values, own, powers = contact.quantities()
         values |= {"depth": contact.depth, "retardation_length": l_r}
         values["friction_coefficient"] = values["friction_force"] / values["load"]
         own.setdefault("friction_coefficient", own["load"] + own["friction_force"])

@@ -280,13 +280,14 @@ def _ranges(
 
     def wrong_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Array:
         error = np.abs(asymptotes.error(line.at(scene), exact[line.quantity]))
-        return error + (ROUNDING + doubt[line.quantity]) * (1.0 + error) - tolerance
+        wrong: Array = error + (ROUNDING + doubt[line.quantity]) * (1.0 + error) - tolerance
+        return wrong
 
-    def unproved_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Array:
-        bound = line.bound
-        return np.minimum(bound(scene, exact), 2.0) - tolerance if bound else np.inf
+    def unproved_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Any:
+        return np.minimum(line.bound(scene, exact), 2.0) - tolerance if line.bound else np.inf
 
-    searches, brackets, wrong = [], [], {}
+    searches: list[Excess] = []
+    brackets, wrong = [], {}
     for line in shown:
         order = slice(None, None, 1 if line.regime == "low" else -1)
         wrong[line] = (wrong_by(line, wide, exact) > 0.0)[..., order]
@@ -298,7 +299,7 @@ def _ranges(
     if not monotonic:
         searches += [partial(unproved_by, line) for line in shown]
         brackets += [[-far, far] for _ in shown]
-    edges = _crossings(scene, searches, critical, np.moveaxis(brackets, 1, 0))
+    edges = _crossings(scene, searches, critical, np.moveaxis(np.array(brackets), 1, 0))
     ranges = {}
     for line, edge, proved in zip(shown, edges, edges[-len(shown) :], strict=False):
         nowhere, everywhere = (0.0, np.inf) if line.regime == "low" else (np.inf, 0.0)
