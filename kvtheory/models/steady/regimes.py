@@ -65,57 +65,44 @@ NOTE = (
 MU = "friction_coefficient"
 EXACT = MU, "depth", "load", "friction_force", "half_length", "trailing_edge"
 """Quantities of the exact state that lines and bounds are compared with."""
-LISTED = {
-    "fixed": (MU, "load", "friction_force"),
-    "dead-weight": (MU, "depth"),
-    "suspended": (MU, "depth", "load"),
+LISTED: dict[str, tuple[tuple[str, int | None, int | None], ...]] = {
+    "fixed": ((MU, 42, 45), ("load", 40, 43), ("friction_force", 41, 44)),
+    "dead-weight": ((MU, 42, 46), ("depth", None, 49)),
+    "suspended": ((MU, 42, None), ("depth", None, None), ("load", None, None)),
 }
-"""The quantities listed for each support, each at low and then at high velocity."""
-EQUATIONS = {
-    "fixed": (42, 45, 40, 43, 41, 44),
-    "dead-weight": (42, 46, None, 49),
-    "suspended": (42, None, None, None, None, None),
-}
-"""Their equation numbers in the paper, for a parabola."""
-LIFTED = "W/(C V)", "(M g + k_s delta_0)/(C V)", "M g", "M g + k_s delta_0"
-SLOPE_N = "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)"
-FORMULAS = {
-    ("parabola", "fixed"): (
+"""The quantities listed for each support, with the equations in the paper of their limits at low and at high
+velocity, for a parabola."""
+FIXED = {
+    "parabola": (
         "C V/(R K)", "alpha sqrt(delta/R)", "2 alpha R^(1/2) K delta^(3/2)", "C V delta",
         "2 alpha R^(-1/2) C V delta^(3/2)", "alpha R^(-1/2) C V delta^(3/2)",
     ),
-    ("parabola", "dead-weight"): (
-        "C V/(R K)", "alpha sqrt(W/(R C V))", "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)", LIFTED[0],
-    ),
-    ("parabola", "suspended"): (
-        "C V/(R K)", "alpha sqrt((M g + k_s delta_0)/(R C V))", "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
-        *LIFTED[1:],
-    ),
-    ("power-law", "fixed"): (
+    "power-law": (
         "n (n+1)/(2n-1) delta C V/(K a^2)", "n^2/(2n-1) delta/a", "2n/(n+1) K delta a", "C V delta",
         "2n^2/(2n-1) C V delta^2/a", "n^2/(2n-1) C V delta^2/a",
     ),
-    ("power-law", "dead-weight"): (
-        SLOPE_N, "n^2/(2n-1) delta/a, delta = W/(C V)", "delta_0 = (n+1)/(2n) W/(K a_0)", LIFTED[0],
-    ),
-    ("power-law", "suspended"): (
-        SLOPE_N, "n^2/(2n-1) delta/a, delta as below", "delta_0 = (n+1)/(2n) M g/(K a_0)", *LIFTED[1:],
-    ),
-    ("sphere", "fixed"): (
+    "sphere": (
         "C V/(R K)", "(3 pi/16) a/R", "pi K R delta^2", "(4/3) C V delta a", "pi C V delta^2",
         "(pi/4) C V delta a^2/R",
     ),
-    ("sphere", "dead-weight"): (
+}  # fmt: skip
+LOADED = {
+    "parabola": (
+        "C V/(R K)", "alpha sqrt(W/(R C V))", "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)", "W/(C V)",
+    ),
+    "power-law": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)", "n^2/(2n-1) delta/a, delta = W/(C V)",
+        "delta_0 = (n+1)/(2n) W/(K a_0)", "W/(C V)",
+    ),
+    "sphere": (
         "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R W/(2 C V)", "delta_0 = (W/(pi K R))^(1/2)",
         "a^2/(2 R), a as above",
     ),
-    ("sphere", "suspended"): (
-        "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R (M g + k_s delta_0)/(2 C V)",
-        "delta_0 = (M g/(pi K R))^(1/2)", "a^2/(2 R), a as above", *LIFTED[2:],
-    ),
 }  # fmt: skip
-"""The formulas on Kelvin-Voigt by shape and support; n = 1 for a wedge, W = M g is the load of a dead weight.
-Of a ball with a radius R' across, K and C are multiplied by sqrt(R'/R) where W or F are involved."""
+"""Formulas on Kelvin-Voigt by shape, of a fixed indenter and under the load W; n = 1 for a wedge. Of a ball
+with a radius R' across, K and C are multiplied by sqrt(R'/R) where W or F are involved."""
+SUSPENDED = "M g", "(M g + k_s delta_0)"
+"""W of a suspended indenter at low and at high velocity."""
 ON_SPRINGPOT = (
     "6 A/((4-A) Gamma(3-A)) (a/R) (V tau/(2 a))^A, A = order",
     "A (3-A)/(4-A) a/R",
@@ -159,15 +146,20 @@ def lines(scene: Scene) -> list[Line]:
             Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
             Line("glassy", MU, "high", None, glassy, high, bounds[2]),
         ]
-    places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
-    formulas = FORMULAS[shape if shape in ("parabola", "sphere") else "power-law", support]
-    equations = EQUATIONS[support] if shape == "parabola" else (None,) * len(formulas)
-    names = [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places]
-    names[:2] = "L1", "L2"
-    return [
-        Line(name, *place, equation, formula, partial(_limit, *place))
-        for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
-    ]
+    kind = shape if shape in FIXED else "power-law"
+    formulas = list(FIXED[kind] if support == "fixed" else LOADED[kind])
+    if support == "suspended":
+        formulas = [text.replace("W", SUSPENDED[i % 2]) for i, text in enumerate(formulas)]
+        formulas += [text.strip("()") for text in SUSPENDED]
+    found: list[Line] = []
+    for quantity, *numbers in LISTED[support]:
+        for regime, number in zip(("low", "high"), numbers, strict=True):
+            name = f"{quantity.removesuffix('_force')}, {regime} V"
+            name = f"L{len(found) + 1}" if quantity == MU else name
+            equation = number if shape == "parabola" else None
+            limit = partial(_limit, quantity, regime)
+            found.append(Line(name, quantity, regime, equation, formulas[len(found)], limit))
+    return found
 
 
 def _limit(quantity: str, regime: str, scene: Scene) -> Any:
