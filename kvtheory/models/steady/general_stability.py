@@ -6,7 +6,7 @@ its strips, by Gauss's rule in the angle whose cosine is the half length of a st
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. As it softens, two rates enter or leave the right half plane at each frequency
 where k_x(i omega) is real and positive: they enter where its imaginary part falls through zero over the
-frequency, and leave where it rises. These frequencies, found on a grid and bisected, give the
+frequency, and leave where it rises. These frequencies, found in the cells of a grid, give the
 ranges of stable stiffness.
 
 The equation for the rates is transcendental and has infinitely many roots, finitely many to the right of any
@@ -41,7 +41,6 @@ LOWER, LOWER_COUNT = 10.0, 16
 """Further decades for soft springs near the maximum of friction, and their number of frequencies."""
 TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
 """Phase change above which a cell is halved, most halvings, and halvings of the cells at a zero."""
-BISECTIONS = 52
 NEARBY = 1e-5
 """Relative step of frequencies, rates and velocities in difference quotients."""
 ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
@@ -141,7 +140,9 @@ class Contact(NamedTuple):
 
 
 def _zeros(given: Contact, per_decade: int = PER_DECADE) -> Zeros:
-    """Return the zeros of all scenes, by bisection on a grid that is refined at resonances."""
+    """Return the zeros of all scenes, each in a cell of a grid that is refined at resonances."""
+    from scipy.optimize import elementwise  # slow to import
+
     own = given.scales()
     low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
     high = np.log(own.max(axis=0)) + BEYOND * np.log(10.0)
@@ -153,11 +154,12 @@ def _zeros(given: Contact, per_decade: int = PER_DECADE) -> Zeros:
     cell = (rows[1:] == rows[:-1]) & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
     row, start, end = rows[:-1][cell], log[:-1][cell], log[1:][cell]
     way = np.where(k.imag[:-1][cell] > 0.0, 1, -1)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (start + end)
-        before = (given.on_axis(row, middle)[0].imag > 0.0) == (way > 0)
-        start, end = np.where(before, middle, start), np.where(before, end, middle)
-    return row, 0.5 * (start + end), way
+
+    def imaginary(log: Array, row: Any) -> Array:
+        k, _, _ = given.on_axis(row, log)
+        return k.imag
+
+    return row, elementwise.find_root(imaginary, (start, end), args=(row,)).x, way
 
 
 def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex]:
@@ -287,8 +289,8 @@ class SmallMotions:
         return np.array(s), np.array(errors)
 
 
-Value = Callable[..., tuple[Any, Any]]
-"""The function whose zeros are the rates, in the strips of a contact, and the magnitude of its terms."""
+Value = Callable[..., Complex]
+"""The function whose zeros are the rates, in the strips of a contact."""
 
 
 def _rates(
@@ -300,37 +302,40 @@ def _rates(
     if spring is not None:
         own = np.append(own, np.sqrt(spring / given.scene.drive_mass))
 
-    def value(s: Complex, given: Contact = given) -> tuple[Any, Any]:
-        k, across, size = given.rows(np.zeros(s.shape, int)).stiffness(s)
-        if spring is None:
-            return across, np.abs(s * s) * given.scene.support.mass + np.abs(across)
-        return across * (spring - k), np.abs(across) * (spring + np.abs(k) + size)
+    def value(s: Complex, given: Contact = given) -> Complex:
+        k, across, _ = given.stiffness(s)
+        return across if spring is None else across * (spring - k)
+
+    def slope(s: Complex) -> Complex:
+        h = NEARBY * s
+        return (value(s + h, fine) - value(s - h, fine)) / (2.0 * h)
 
     with np.errstate(all="ignore"):
-        found = _newton(given, value, own)
-        for _ in range(POLISHING if fine is not given else 0):
-            h = NEARBY * found
-            rise = value(found + h, fine)[0] - value(found - h, fine)[0]
-            found = found - 2.0 * h * value(found, fine)[0] / rise
-        found = found[np.isfinite(found)]
-        (f, size), h = value(found, fine), NEARBY * found
-        slope = (value(found + h, fine)[0] - value(found - h, fine)[0]) / (2.0 * h)
-        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(found, finer)[0] - f)
-        error = off / np.abs(slope * found) + ROUNDING
-    upper = found.imag > SAME * np.abs(found)
-    found = np.concatenate([found, found[upper].conj()])
-    error = np.concatenate([error, error[upper]])
-    order = np.lexsort((found.imag, -found.real))
-    found, error = found[order], error[order]
-    if found.size:
-        last = found[min(degree, len(found)) - 1].real
-        left = found.real[found.real < last - SAME * abs(last)]
+        s = _newton(given, value, own)
+        for _ in range(POLISHING):
+            s = s - value(s, fine) / slope(s)
+        s = s[np.isfinite(s)]
+        k, across, size = fine.stiffness(s)
+        if spring is None:
+            size = np.abs(s * s) * given.scene.support.mass + np.abs(across)
+        else:
+            size = np.abs(across) * (spring + np.abs(k) + size)
+        f = value(s, fine)
+        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(s, finer) - f)
+        error = off / np.abs(slope(s) * s) + ROUNDING
+    upper = s.imag > SAME * np.abs(s)
+    s, error = np.append(s, s[upper].conj()), np.append(error, error[upper])
+    order = np.lexsort((s.imag, -s.real))
+    s, error = s[order], error[order]
+    if s.size:
+        last = s[min(degree, len(s)) - 1].real
+        left = s.real[s.real < last - SAME * abs(last)]
         line = 0.5 * (last + left[0]) if left.size else 1.05 * last
-        if _count(value, line, degree, own) != np.count_nonzero(found.real > line):
+        if _count(value, line, degree, own) != np.count_nonzero(s.real > line):
             error = np.full_like(error, np.inf)
-    short = max(degree - len(found), 0)
-    found = np.append(found, np.full(short, np.nan, complex))
-    return found[:degree], np.append(error, np.full(short, np.inf))[:degree]
+    found, errors = np.full(degree, np.nan, complex), np.full(degree, np.inf)
+    found[: s.size], errors[: s.size] = s[:degree], error[:degree]
+    return found, errors
 
 
 def _newton(given: Contact, value: Value, own: Array) -> Complex:
@@ -338,15 +343,16 @@ def _newton(given: Contact, value: Value, own: Array) -> Complex:
     low, high = np.log10(own).min() - BEYOND, np.log10(own).max() + BEYOND
     radii = np.logspace(low, high, int(RADII * (high - low)))
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
-    passing = (given.scene.drive.final_velocity / given.c).min()
+    V = given.scene.drive.final_velocity
+    passing = (V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
-    arms = (given.scene.drive.final_velocity / given.law.time)[:, 0]
+    arms = (V / given.law.time)[:, 0]
     s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in arms)])
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
         here = s[moving]
-        f, h = value(here)[0], NEARBY * here
-        step = h * f / (value(here + h)[0] - f)
+        f, h = value(here), NEARBY * here
+        step = h * f / (value(here + h) - f)
         limited = np.minimum(1.0, 0.5 * np.abs(here) / np.abs(step))
         s[moving] = np.where(np.isfinite(step), here - limited * step, np.nan)
         moving = moving[np.abs(step) > SETTLED * np.abs(here)]
@@ -368,13 +374,13 @@ def _count(value: Value, line: float, degree: int, own: Array) -> int:
     omega = np.exp(np.linspace(logs.min() - 7.0, logs.max() + 9.0, 2000))
     omega = np.insert(omega, 0, 0.0)
     with np.errstate(all="ignore"):
-        f = value(line + 1j * omega)[0]
+        f = value(line + 1j * omega)
         for _ in range(REFINEMENTS):
             (at,) = np.nonzero(np.abs(np.angle(f[1:] / f[:-1])) > TURN)
             if not at.size:
                 break
             middle = 0.5 * (omega[at] + omega[at + 1])
-            f = np.insert(f, at + 1, value(line + 1j * middle)[0])
+            f = np.insert(f, at + 1, value(line + 1j * middle))
             omega = np.insert(omega, at + 1, middle)
     turned = np.angle(f[1:] / f[:-1]).sum()
     return round(0.5 * degree - turned / np.pi) if np.isfinite(turned) else -1
