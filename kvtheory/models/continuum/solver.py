@@ -252,15 +252,8 @@ def solve(
     infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
     1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
     steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
-    reached. Rejected steps count towards `max_steps`.
+    reached. Rejected steps count towards `max_steps`. TransientError if a step fails, or too many are needed.
 
-    Raises
-    ------
-    TransientError
-        If a step fails, or too many would be needed.
-
-    Examples
-    --------
     >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
     >>> print(f"{motion.at(2.0).depth:.6f}")
     0.303968

@@ -57,14 +57,7 @@ class Start:
 
 
 def start(number: float, eps: float, kappa: float) -> Start:
-    """Return the slow manifold at d = 1, after a start from rest to lambda = `number` > 0.
-
-    Examples
-    --------
-    >>> found = start(4.0, 1e-3, 0.0)
-    >>> print(f"{found.width:.4f} {found.rate:.4f} {found.ratio:.4f}")
-    0.6247 -3.8615 0.0092
-    """
+    """Return the slow manifold at d = 1, after a start from rest to lambda = `number` > 0."""
     b = _width(number)
     v = b * (b - 2.0 + 2.0 * number) - 2.0 * number
     at_rest = 1.0 - number + math.sqrt(1.0 + number * number)
@@ -80,17 +73,8 @@ def half_length(number: float, support_number: float) -> float:
     """Return a/a_0 of steady sliding, the root s of the convex balance f + kappa (s^2 - 1) = 1.
 
     f = s^2 (lambda^2/(lambda + r) + r + s)/2 with r = sqrt(lambda^2 + s^2) (theorem "scaled-load"). The
-    residual is not negative at s = 1, from where Newton's method converges monotonically.
-
-    Raises
-    ------
-    ArithmeticError
-        If it does not converge, as where lambda is not finite.
-
-    Examples
-    --------
-    >>> print(f"{half_length(4.0, 0.0):.6f}")
-    0.551329
+    residual is not negative at s = 1, from where Newton's method converges monotonically; ArithmeticError
+    if it does not, as where lambda is not finite.
     """
     s, kappa = 1.0, support_number
     for _ in range(NEWTON_STEPS):

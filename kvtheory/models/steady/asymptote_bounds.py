@@ -101,11 +101,8 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
 
     A regime whose bound is above `enough` may be left out.
 
-    Examples
-    --------
-    >>> found = choose(enclose("parabola", 1e-3, 0.0), ("friction_coefficient",))
-    >>> found.regime, round(found.error, 7)
-    ('low', 0.0007506)
+    >>> choose(enclose("parabola", 1e-3, 0.0), ("friction_coefficient",)).regime
+    'low'
     """
     fixed = math.isinf(bounds.support_number)
     yielding = 1.0 if fixed else 1.0 + bounds.support_number

@@ -69,16 +69,7 @@ class Sums(NamedTuple):
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
-
-    Kelvin-Voigt is the springpot of order 1:
-
-    >>> from kvtheory.scene import DeadWeight, FractionalKelvinVoigt, Sphere
-    >>> springpot = FractionalKelvinVoigt(1e10, 0.1, 1.0)
-    >>> found = quantities(Scene(Sphere(0.01), springpot, DeadWeight(mass=[1.0])))
-    >>> print(f"{1e3 * found[0][0]:.6f} mm, mu = {found[7][0]:.6f}")
-    0.061896 mm, mu = 0.063679
-    """
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one."""
     row = viscoelastic.law(scene)
     c = contact_length(scene, row)
     plane, sums = viscoelastic.state(scene, row, c), _sums(scene, row, c)

@@ -71,11 +71,9 @@ def integral(
 ) -> tuple[Value, Value]:
     """Return the sum of the means of a positive function from 0 to either end, times the widths.
 
-    If it is smooth, analytic at both ends of each interval, Gauss's rule is tried first.
-
-    Return also an estimate of the relative error: halving the step squares that of the trapezoidal
-    rule for an analytic integrand (Trefethen and Weideman 2014, doi:10.1137/130932132); the power
-    3/2 leaves a margin.
+    If it is smooth, analytic at both ends of each interval, Gauss's rule is tried first. Return also an
+    estimate of the relative error: halving the step squares that of the trapezoidal rule for an analytic
+    integrand (Trefethen and Weideman 2014, doi:10.1137/130932132); the power 3/2 leaves a margin.
 
     >>> value, error = integral(lambda x: x**0.5, (4.0, 1.0), (4.0, 1.0))
     >>> print(f"{value:.14g}", error < 1e-14)

@@ -84,10 +84,6 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
     `QuadratureError` if a quadrature or a root fails, contact or load go beyond the reach of the indenter,
     or a callable shape is not smooth where it touches.
-
-    >>> found = quantities(Scene.table1("fixed"))
-    >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
-    0.00029563, 35344.6, 5344.58, 0.151214
     """
     size, indenter = scene.shape, scene.indenter
     if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):

@@ -27,20 +27,12 @@ def converge(
 
 
 def cube_root(value: Array) -> Array:
-    """Return the cube root to a unit in the last place; some C libraries are off by four.
-
-    >>> float(cube_root(np.array(27.0)))
-    3.0
-    """
+    """Return the cube root to a unit in the last place; some C libraries are off by four."""
     root = np.cbrt(value)
     return root - (root - value / (root * root)) / 3.0
 
 
 def root(base: Array, degree: Array) -> Array:
-    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree.
-
-    >>> float(root(np.array(1000.0), np.array(3.0)))
-    10.0
-    """
+    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree."""
     found = base ** (1.0 / degree)
     return found * (1.0 - (found**degree / base - 1.0) / degree)

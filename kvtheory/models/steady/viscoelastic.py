@@ -59,16 +59,7 @@ def law(scene: Scene) -> Law:
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
-
-    Kelvin-Voigt is the springpot of order 1, and a stiff, fast arm:
-
-    >>> from kvtheory.scene import GeneralizedMaxwell
-    >>> springpot = Scene(foundation=FractionalKelvinVoigt([1e10], 0.1, 1.0))
-    >>> arm = Scene(foundation=GeneralizedMaxwell([1e10], arms=[(1e19, 1e-10)]))
-    >>> print(f"{quantities(springpot)[7][0]:.6f} {quantities(arm)[7][0]:.6f}")
-    0.085709 0.085709
-    """
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one."""
     row = law(scene)
     return state(scene, row, contact_length(scene, row))
 

@@ -73,13 +73,8 @@ class HeldBall:
 def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Transient:
     """Return the transient of a ball whose depth is constant, at the times `at` (s).
 
-    Raises
-    ------
-    ValueError
-        If an edge re-enters surface that it left earlier: the drive slows down too fast, stops or reverses.
+    ValueError if an edge re-enters surface that it left: the drive slows down too fast, stops or reverses.
 
-    Examples
-    --------
     >>> from kvtheory.scene import Fixed, Scene, Sphere
     >>> found = transient(Scene(indenter=Sphere("10 mm"), support=Fixed(depth="0.3 mm")), [0.0, 0.2])
     >>> found.normal_force.round(3).tolist()
