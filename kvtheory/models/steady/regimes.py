@@ -30,7 +30,7 @@ from kvtheory.results import (
     SteadyState,
     units_for,
 )
-from kvtheory.scene.capabilities import lacks_kelvin_voigt
+from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_limits
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
 
@@ -202,9 +202,19 @@ def _glassy_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
     return _within(haste, MOST_HASTE, GLASSY)
 
 
-def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
-    """Make the report of `kvtheory.asymptotes`, which documents it."""
+def report(
+    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str = "asymptote"
+) -> AsymptoteReport:
+    """Make the report of `kvtheory.asymptotes`, which documents it; `method` found the maxima."""
     signed = np.broadcast_to(scene.drive.final_velocity, scene.shape)
+    known = {"velocity": plain(signed), "tolerance": tolerance, **maxima}
+    known["units"] = units_for(scene.indenter, STEADY_UNITS)
+    if lacks_limits(scene):
+        nothing, unknown, exact = (plain(np.full(scene.shape, x)) for x in (np.nan, None, "exact"))
+        return AsymptoteReport(
+            **known, critical_velocity=nothing, regime=unknown, use=exact, lines=(), model=method,
+            certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
+        )  # fmt: skip
     V, shown = np.abs(signed), lines(scene)
     springpot = isinstance(scene.foundation, FractionalKelvinVoigt)
     monotonic = not scene.foundation.arms and (scene.indenter.per_width or not springpot)
@@ -219,10 +229,9 @@ def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> Asympto
             use = np.where(np.abs(line.relative_error) <= tolerance, line.name, use)
     kind, statement = ("proved", MONOTONIC) if monotonic else ("estimated", SCANNED)
     return AsymptoteReport(
-        velocity=plain(signed), critical_velocity=plain(critical), **maxima,
-        regime=plain(np.where(critical >= V, "low", "high")), use=plain(use), tolerance=tolerance,
-        lines=tuple(found), model="asymptote", certificate=Certificate(kind, statement, {}),
-        units=units_for(scene.indenter, STEADY_UNITS),
+        **known, critical_velocity=plain(critical), use=plain(use), lines=tuple(found),
+        regime=plain(np.where(critical >= V, "low", "high")), model="asymptote",
+        certificate=Certificate(kind, statement, {}),
     )  # fmt: skip
 
 
@@ -319,19 +328,3 @@ def _crossings(scene: Scene, searches: Sequence[Excess], critical: Array, bracke
     index = np.arange(critical.size).reshape(critical.shape)
     found = elementwise.find_root(excess, tuple(brackets), args=(which, index, critical))
     return np.where(found.success, critical * 10.0**found.x, np.nan)
-
-
-def unknown(
-    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
-) -> AsymptoteReport:
-    """Return the report of a scene whose limits are not known: its maxima, and a note."""
-
-    def each(value: Any) -> Any:
-        return plain(np.full(scene.shape, value))
-
-    return AsymptoteReport(
-        velocity=plain(np.broadcast_to(scene.drive.final_velocity, scene.shape)),
-        critical_velocity=each(np.nan), **maxima, regime=each(None), use=each("exact"),
-        tolerance=tolerance, lines=(), model=method,
-        certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
-    )  # fmt: skip
