@@ -216,19 +216,6 @@ class Contact:
             return back
         return float(brentq(self.pressure_at, near, back, xtol=TINY, rtol=ROOT, maxiter=2000))
 
-    @property
-    def edge_power(self) -> float:
-        """Relative shift of the trailing edge over that of all pressures: at least that over the depth's.
-
-        Ahead of the lowest point u' >= 0: the pressure there is at least delta times G/K at the trailing
-        edge, as G does not rise.
-        """
-        x = self.x_te
-        if x in (0.0, self.back):
-            return 1.0
-        near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
-        return float(np.abs(self.pressure).max() * STRIDE / (near - far))
-
     def peak(self) -> float:
         """Return the greatest pressure: at the highest node, or between its neighbours."""
         x, best = self.x, int(self.pressure.argmax())
@@ -257,7 +244,12 @@ class Contact:
         friction, lost, error = self.friction()
         edges, share = (-self.a, self.x_te), share_lost(friction, lost)
         values = self.half_length, *edges, self.load, friction, self.peak(), share
-        edge = self.edge_power
+        # Relative shift of the trailing edge over that of all pressures: at least that over the depth's, as
+        # ahead of the lowest point u' >= 0, where the pressure is at least delta G/K of the trailing edge.
+        edge, x = 1.0, self.x_te
+        if x not in (0.0, self.back):
+            near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
+            edge = float(np.abs(self.pressure).max() * STRIDE / (near - far))
         own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
         own["trailing_edge"] += FLOOR * edge
         powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(self) | {"trailing_edge": edge}

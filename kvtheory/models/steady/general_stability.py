@@ -170,9 +170,7 @@ def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex
         wide = np.abs(np.angle(across[1:] / across[:-1])) > TURN
         if turn < CLOSER:
             zero = same & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
-            wide |= zero
-            wide[1:] |= zero[:-1]
-            wide[:-1] |= zero[1:]
+            wide |= np.convolve(zero, np.ones(3), "same") > 0.0  # with both neighbours
         (at,) = np.nonzero(same & wide)
         if not at.size:
             break
