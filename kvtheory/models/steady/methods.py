@@ -107,17 +107,18 @@ def _evaluate(
     shape, V = scene.shape, scene.drive.final_velocity
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
         if shape:
-            flat = _blocks(formula, scene.flat(), len(own_errors), block or BLOCK)
+            flat = _blocks(formula, scene.flat(), own_errors, block or BLOCK)
             rows: Any = flat.reshape(len(flat), *shape)
         elif floats:
             rows = [float(each) for each in formula(scene)]
         else:
             rows = [float(np.ravel(each)[0]) for each in formula(scene.at(np.array([V])))]
-    if not shape and V < 0.0:
-        _mirror(rows, -1.0)
     values = rows[: len(QUANTITIES)]
-    if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
-        _check_range(np.asarray(values), V, own_errors)
+    if not shape:
+        if V < 0.0:
+            _mirror(values, -1.0)
+        if not all(SMALLEST <= abs(each) < math.inf for each in values):
+            _check_range(np.asarray(values), V, own_errors)
     own = dict(zip(own_errors, rows[len(values) :], strict=True))
     errors = {**certificate.relative_error, **own}
     certificate = Certificate(certificate.kind, certificate.statement, errors)
@@ -126,10 +127,10 @@ def _evaluate(
     return SteadyState(**named, model=model, certificate=certificate, units=units)
 
 
-def _blocks(formula: Formula, flat: Scene, own: int, block: int) -> Array:
+def _blocks(formula: Formula, flat: Scene, own_errors: tuple[str, ...], block: int) -> Array:
     """Evaluate a formula for flat scenes, block by block."""
     (size,) = flat.shape
-    result = np.empty((len(QUANTITIES) + own, size))
+    result = np.empty((len(QUANTITIES) + len(own_errors), size))
     for start in range(0, size, block):
         part = slice(start, start + block)
         some = flat.rows(part)
@@ -138,6 +139,7 @@ def _blocks(formula: Formula, flat: Scene, own: int, block: int) -> Array:
         backwards = some.drive.final_velocity < 0.0
         if np.any(backwards):
             _mirror(result[:, part], np.where(backwards, -1.0, 1.0))
+        _check_range(result[: len(QUANTITIES), part], some.drive.final_velocity, own_errors)
     return result
 
 
