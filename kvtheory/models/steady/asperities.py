@@ -254,13 +254,11 @@ class Contact:
         friction, lost, error = self.friction()
         edges, share = (self.patches[0].x_le, self.patches[-1].x_te), share_lost(friction, lost)
         values = self.half_length, *edges, self.load, friction, self.peak(), share
-        lost = 0.0
-        if (
-            abs(edges[1]) < SMALLEST
-        ):  # at the lowest point it is not resolved, unless that is a corner
+        unresolved = 0.0
+        if abs(edges[1]) < SMALLEST:  # at the lowest point, unless that is a corner
             near, nearer = (self.surface.slope(-part * edges[0]) for part in CORNER)
-            lost = 0.0 if math.isclose(near, nearer, rel_tol=AT_CORNER) else math.inf
-        own = {"trailing_edge": lost, "load": self.load_error, "friction_force": error}
+            unresolved = 0.0 if math.isclose(near, nearer, rel_tol=AT_CORNER) else math.inf
+        own = {"trailing_edge": unresolved, "load": self.load_error, "friction_force": error}
         return dict(zip(OF_LINE, values, strict=True)), own
 
 

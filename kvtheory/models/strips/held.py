@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.results import AT_REST, TRANSIENT_UNITS, Certificate, Event, Transient, units_for
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.theory.closed_forms import trailing_edge_ratio
+from kvtheory.theory.closed_forms import peak_pressure_factor, trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
         "friction_force": side * friction + 0.0,
         "leading_edge": -side * a,
         "trailing_edge": side * a * trailing_edge_ratio(l_r / a),
-        "peak_pressure": units.pressure * np.where(l_r < a, 1.0 + (l_r / a) ** 2, 2.0 * l_r / a),
+        "peak_pressure": units.pressure * peak_pressure_factor(l_r / a),
     }
     kind, errors = ("estimated", dict.fromkeys(series, ROUNDING)) if certify else ("none", {})
     if certify:
