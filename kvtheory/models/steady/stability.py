@@ -45,7 +45,7 @@ POLISHES = 3
 """Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
 DECADES, PER_DECADE = (-8.0, 20.0), 16
 """Powers of ten of the drive number V tau/a_0 between which the critical velocity is searched for."""
-BISECTIONS = 60
+BISECTIONS = 50
 """Enough to find a velocity in a cell of the grid to the last digit."""
 NEARBY = 1e-5
 """Relative step of velocity in the difference quotient of the critical stiffness."""
