@@ -20,7 +20,7 @@ two numbers satisfy four limits. In between the difference is small.
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -180,21 +180,17 @@ class Footprint:
         return np.where(inside, 0.5 * self.stiffness / self.radius * rise, 0.0)
 
 
-class EquivalentLine(NamedTuple):
-    """A line contact equivalent to a ball at one depth, in SI."""
+def equivalent_line(ball: SteadyState, stretch: float) -> tuple[float, float, float]:
+    """Return width, depth and load per unit width of a line contact equivalent to a ball in steady sliding.
 
-    width: float
-    depth: float
-    load: float
-    """Per unit width."""
+    It has the radius R; `stretch` is sqrt(R'/R), 1 for a ball. The friction coefficient is that of the ball,
+    within `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and
+    width change with velocity.
 
-
-def equivalent_line(ball: SteadyState, stretch: float) -> EquivalentLine:
-    """Return the line contact with the radius R equivalent to a ball in steady sliding.
-
-    `stretch` is sqrt(R'/R), 1 for a ball. The friction coefficient is that of the ball, within
-    `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and width
-    change with velocity.
+    >>> import kvtheory as kv
+    >>> ball = kv.steady(kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg")))
+    >>> print("{:.4g} m, {:.4g} m, {:.4g} N/m".format(*equivalent_line(ball, 1.0)))
+    0.0019 m, 4.832e-05 m, 5161 N/m
     """
     width = WIDTH * ball.half_length * stretch
-    return EquivalentLine(width, SHORTER**2 * ball.depth, ball.load / width)
+    return width, SHORTER**2 * ball.depth, ball.load / width
