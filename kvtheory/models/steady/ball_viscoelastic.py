@@ -129,7 +129,7 @@ def _part(scene: Scene, row: Law, middle: Array, with_friction: bool) -> tuple[A
         return found
     work = M.E + eta * eta * M.P
     friction = dy * (size * size * work)
-    inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
+    inside, error = row.dissipated(M, c, np.where(work > 0.0, work, 1.0))
     lost = (friction * inside).sum(axis=1)
     doubt = (friction * inside * error).sum(axis=1) / np.where(lost > 0.0, lost, 1.0)
     return *found, friction.sum(axis=1), lost, doubt

@@ -120,7 +120,7 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
     A, eta, slope = M.P + M.Q, M.eta, c / R
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
-    inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
+    inside, error = row.dissipated(M, c, np.where(work > 0.0, work, 1.0))
     return (
         a * (a / (2.0 * R)) if delta is None else delta,
         a,
