@@ -270,10 +270,11 @@ def _ranges(
     the far end, the limit holds at every velocity (such as the load on a soft spring). If it is above the
     tolerance at the limit already, the range is empty. All ends are found together.
     """
-    decades = (ON_ARMS if scene.foundation.arms else DECADES) / getattr(
-        scene.foundation, "order", 1.0
+    decades, order = (
+        ON_ARMS if scene.foundation.arms else DECADES,
+        getattr(scene.foundation, "order", 1.0),
     )
-    far = np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
+    far = np.broadcast_to(np.minimum(decades / order, MOST_DECADES), critical.shape)
     grid = far[..., np.newaxis] * np.linspace(-1.0, 1.0, 2 if monotonic else POINTS)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
     wide = wide.at(critical[..., np.newaxis] * 10.0**grid)
@@ -290,12 +291,12 @@ def _ranges(
     searches: list[Excess] = []
     brackets, wrong = [], {}
     for line in shown:
-        order = slice(None, None, 1 if line.regime == "low" else -1)
-        wrong[line] = (wrong_by(line, wide, exact) > 0.0)[..., order]
+        way = slice(None, None, 1 if line.regime == "low" else -1)
+        wrong[line] = (wrong_by(line, wide, exact) > 0.0)[..., way]
         first = np.maximum(wrong[line].argmax(axis=-1), 1)[..., np.newaxis]
         searches.append(partial(wrong_by, line))
         brackets.append(
-            [np.take_along_axis(grid[..., order], first - back, -1)[..., 0] for back in (1, 0)]
+            [np.take_along_axis(grid[..., way], first - back, -1)[..., 0] for back in (1, 0)]
         )
     if not monotonic:
         searches += [partial(unproved_by, line) for line in shown]
