@@ -26,6 +26,7 @@ X_3 loses digits for l >> 1, where it is negligible beside A_3.
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import ball, exact
@@ -172,27 +173,20 @@ def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], A
     companion[..., range(1, degree), range(degree - 1)] = 1.0
     companion[..., -1] = -scaled[..., :-1] / scaled[..., -1:]
     found = np.linalg.eigvals(companion).astype(complex)
+    terms, sizes = (np.moveaxis(each, -1, 0)[..., np.newaxis] for each in (scaled, bounds))
+    pair = terms, polyder(terms)
     for _ in range(POLISHES):
-        value, slope = _horner(scaled, found)
+        value, slope = (polyval(found, each, tensor=False) for each in pair)
         step = np.divide(value, slope, out=np.zeros_like(found), where=slope != 0.0)
-        better = np.abs(_horner(scaled, found - step)[0]) < np.abs(value)
+        better = np.abs(polyval(found - step, terms, tensor=False)) < np.abs(value)
         found = np.where(better, found - step, found)
-    value, slope = map(np.abs, _horner(scaled, found))
-    value = value + ROUNDING * np.abs(_horner(bounds, np.abs(found))[0])
+    value, slope = (np.abs(polyval(found, each, tensor=False)) for each in pair)
+    value = value + ROUNDING * polyval(np.abs(found), sizes, tensor=False)
     with np.errstate(divide="ignore", over="ignore"):  # infinite for a double root
         error = degree * value / (slope * np.abs(found))
     order = np.lexsort((found.imag, -found.real))
     found, error = (np.take_along_axis(each, order, axis=-1) for each in (found, error))
     return found * unit, error
-
-
-def _horner(coefficients: Array, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the values and derivatives of polynomials at given points, along the last axis."""
-    value, slope = np.zeros_like(places), np.zeros_like(places)
-    for each in np.moveaxis(coefficients, -1, 0)[::-1]:
-        slope = slope * places + value
-        value = value * places + each[..., np.newaxis]
-    return value, slope
 
 
 def critical_velocity(scene: Scene) -> tuple[Array, Array]:
