@@ -71,7 +71,9 @@ class SolvedScene:
     def natural_times(self) -> Array:
         """Times (s) that show the whole series: the solver's steps, subdivided."""
         s = self.motion.natural
-        return np.append(s[s < self.end], self.end) * self.units.time
+        s = s[: np.searchsorted(s, self.end) + 1].copy()
+        s[-1] = self.end
+        return s * self.units.time
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -121,7 +123,7 @@ class SolvedScene:
     def scaled(self, time: Any) -> Any:
         """Return times in units of tau; those beyond the end by rounding only are set to the end."""
         s, end = np.asarray(time, dtype=float) / self.units.time, self.end
-        if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
+        if not ((s >= 0.0) & (s <= end * (1.0 + AFTER_END))).all():
             raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
         return np.minimum(s, end)[()]
 

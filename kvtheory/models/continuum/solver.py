@@ -174,7 +174,7 @@ class Trajectory:
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
         """Return the states at an array of times: a row for each, with the columns of `evaluation`."""
         times = np.asarray(s, dtype=float)
-        if not np.all((times >= 0.0) & (times <= self.end)):
+        if not ((times >= 0.0) & (times <= self.end)).all():
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
         found = self._rows(np.empty((len(times), evaluation.SIZE)))
         self._perform(bulk.STATES, self._rows(times), found)
