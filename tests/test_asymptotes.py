@@ -132,6 +132,13 @@ def test_a_limit_is_within_the_tolerance_over_its_range(shape, law, kind):
         assert off[6] < 1e-2 * tolerance or line.quantity == "load"
 
 
+def test_a_limit_that_nowhere_holds_to_the_tolerance_has_an_empty_range():
+    slow, fast = reported(
+        kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.02)), 1e-6
+    ).lines
+    assert (slow.velocity_max, fast.velocity_min) == (0.0, np.inf)
+
+
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_the_regimes_are_told_apart_at_the_critical_velocity(kind):
     scene = kv.Scene.table1(kind)

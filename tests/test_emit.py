@@ -189,6 +189,7 @@ def test_constants_are_rounded_once(form):
 @pytest.mark.parametrize("number", OF_BALL)
 def test_the_tail_of_a_ball_is_known_relative_to_what_it_is_added_to(number):
     theta, found = angle_and_tail(np.array([number]))
+    assert angle_and_tail(number) == pytest.approx((theta[0], found[0]), rel=1e-15)
     truth = tail(mp.mpf(number))
     assert abs(mp.mpf(float(found[0])) - truth) <= 6 * np.spacing(1.0) * (mp.pi + truth) / 4
     if number >= 1.0:

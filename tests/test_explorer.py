@@ -269,7 +269,7 @@ def test_stability_on_a_spring_is_that_of_python(browser, ball, rubber, count):
     assert {(True, True), (False, True)} <= kinds or count < 8
 
 
-BACK = "the trailing edge comes back over ground that it left"
+BACK = "the trailing edge re-enters surface that it left earlier"
 STARTS = [
     (support, speed, {}, "")
     for support in ("dead-weight", "suspended")

@@ -184,6 +184,11 @@ def test_a_ball_gets_as_many_strips_as_its_error_needs(monkeypatch):
     assert few.error.max() > 1e-8
 
 
+def test_an_empty_array_of_scenes_has_an_empty_answer():
+    found = kv.stability(rubber(ZENER, 0.05), over={"drive.velocity": np.empty(0)})
+    assert (found.stable.shape, found.rates.shape) == ((0,), (0, 4, 2))
+
+
 def test_the_critical_velocity_is_where_the_stiffness_is_critical():
     found = kv.stability(rubber(ZENER, 0.05), quantity="critical_velocity")
     there = kv.stability(rubber(ZENER, found.critical_velocity), quantity=QUICK)

@@ -83,7 +83,7 @@ def two_states(scene: Scene, tolerance: float) -> Solution:
     Raises
     ------
     ValueError
-        If an edge moves back over ground that it left, so that memory is needed.
+        If an edge re-enters surface that it left earlier, so that memory is needed.
     """
     law = _two_state_law(scene, float, np.sqrt)
     span = (0.0, scene.times[-1])
@@ -100,7 +100,7 @@ def two_states(scene: Scene, tolerance: float) -> Solution:
         np.all(v + 2.0 * rate * np.sqrt(d) >= 0.0)
         and np.all(v + acceleration <= 2.0 * rate * (r + rate))
     ):
-        raise ValueError("an edge moves back over ground that it left: the scene needs memory")
+        raise ValueError("an edge re-enters surface that it left earlier: the scene needs memory")
     d, v = found.sol(np.array(scene.times))
     edges = edges_in_closed_form(d, v, rate, np.sqrt)
     rows = (d, v, *forces_in_closed_form(d, v, rate, *edges), *edges)

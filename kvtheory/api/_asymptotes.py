@@ -7,7 +7,6 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import method_for
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
-from kvtheory.scene.capabilities import lacks_limits
 from kvtheory.scene.model import Scene
 
 MINIMUM_TOLERANCE = 1e-10
@@ -71,6 +70,4 @@ def asymptotes(
 
     with double_precision(scene):
         found = maxima.report(scene, method)
-        if lacks_limits(scene):
-            return regimes.unknown(scene, tolerance, found, method)
-        return regimes.report(scene, tolerance, found)
+        return regimes.report(scene, tolerance, found, method)

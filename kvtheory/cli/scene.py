@@ -103,11 +103,11 @@ def _print_equivalent_line(scene: Any) -> None:
     from kvtheory.api import steady
     from kvtheory.models.steady import ball
 
-    line = ball.equivalent_line(steady(scene), scene.indenter.stretch)
-    width, depth = console.text(line.width, "m"), console.text(line.depth, "m")
+    *lengths, load = ball.equivalent_line(steady(scene), scene.indenter.stretch)
+    width, depth = (console.text(length, "m") for length in lengths)
     click.echo(
         f"\nEquivalent line contact in steady sliding at this velocity: a parabola of the same radius, "
-        f"{width} wide,\nunder {console.text(line.load, 'N/m')}, at the depth {depth}. Its load is right "
+        f"{width} wide,\nunder {console.text(load, 'N/m')}, at the depth {depth}. Its load is right "
         f"within {ball.LOAD_ERROR:.1%}, its friction\ncoefficient within "
         f"{ball.FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every velocity if the depth is "
         "kept; the depth\nof a dead weight changes with velocity, and with it the width."

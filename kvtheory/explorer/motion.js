@@ -64,7 +64,7 @@ function remembers(y, number) {
   const slows = now.rate_along;  // -lambda'
   const peels = (v + now.rate - 2 * lam * slows) / (2 * now.rho) + slows - lam;  // X' of the right edge
   const touches = -v / (2 * now.a) - lam;  // X' of the left edge
-  if (peels > 1e-9 && now.r < now.a) return "the trailing edge comes back over ground that it left";
+  if (peels > 1e-9 && now.r < now.a) return "the trailing edge re-enters surface that it left earlier";
   if (touches > 1e-9) return "the leading edge peels";
   return "";
 }

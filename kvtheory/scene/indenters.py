@@ -56,6 +56,10 @@ class Parabola(_Power):
     exponent = 2.0
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return x * (x / (2.0 * self.radius))
+
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return x / self.radius

@@ -64,6 +64,8 @@ class Moments(NamedTuple):
     """G at the trailing edge."""
     end_slope: Array
     """c dG/dc there."""
+    arms: tuple[Array, ...] = ()
+    """P, Q and E over the stiffness, and z, of each arm."""
 
     @property
     def eta(self) -> Array:
@@ -103,12 +105,12 @@ class Prony(NamedTuple):
         if self.damping is not None:
             first, last = first + self.damping / c, last + self.damping / (12.0 * c)
         second, third = 0.5 * K + rows[1], K / 12.0 + rows[2]
-        return Moments(first, second, third, last, K + self._sum(end), -self._sum(z * end))
+        ends = K + self._sum(end), -self._sum(z * end)
+        return Moments(first, second, third, last, *ends, (P, Q, E, z))
 
-    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+    def dissipated(self, M: Moments, c: Array, work: Array) -> tuple[Array, Array]:
         """Return the share of the work that is lost in the contact, all terms positive, and its error."""
-        z = np.minimum(c / self.time, FAR)
-        P, Q, _, E, _ = exponential_moments(z)
+        (P, Q, E, z), eta = M.arms, M.eta
         lost = self._sum(cf.arm_lost(P + Q, 0.5 * (P - Q), E, P, eta, z))
         if self.damping is not None:
             lost = lost + self.damping / c * (1.0 / 12.0 + eta * eta)
@@ -222,12 +224,12 @@ class Fractional:
         end = part * self.known[0]
         return Moments(0.5 * K + P, 0.5 * K + Q, K / 12.0 + D, E, K + end, -self.alpha * end)
 
-    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+    def dissipated(self, M: Moments, c: Array, work: Array) -> tuple[Array, Array]:
         """Return the share of the work lost in the contact: that not stored at the trailing edge.
 
         Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
         """
-        rest, two = 1.0 - self.alpha, 2.0**-self.alpha
+        eta, rest, two = M.eta, 1.0 - self.alpha, 2.0**-self.alpha
         third, fourth = self.known[2:4]
         none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w
         once = rest * (4.0 * two - 1.0) * fourth  # and times w

@@ -78,13 +78,7 @@ def chosen(run: Any) -> Callable[..., int]:
 
 @cache
 def kernel() -> Any:
-    """Return the compiled entry of the kernels; it releases the interpreter lock.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If numba is not installed.
-    """
+    """Return the compiled entry of the kernels, which releases the interpreter lock; it needs numba."""
     for module in MODULES:
         inlined = [*vars(module)] if module in INLINED else SHORT
         compilation.register(module, inlined, **OPTIONS, no_cfunc_wrapper=True)

@@ -57,23 +57,13 @@ class Ledger:
 
 
 def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
-    """Return the energy ledger at the times `s`; entries have their shape.
+    """Return the energy ledger at the times `s`, in their shape.
 
-    Raises
-    ------
-    ValueError
-        If a time lies outside the motion.
-
-    Examples
-    --------
     >>> from kvtheory.models.continuum.solver import solve
     >>> from kvtheory.scene.base_motion import BaseMotion
-    >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
-    >>> books = ledger(motion, 1.0)
-    >>> print(f"{books.work:.6f} {books.dissipated_contact:.6f} {books.dissipated_surface:.6f}")
-    3.589813 2.722622 0.443824
-    >>> bool(abs(books.balance) < 1e-9)
-    True
+    >>> books = ledger(solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0), 1.0)
+    >>> print(f"{books.work:.6f} {books.dissipated_contact:.6f} {abs(books.balance) < 1e-9}")
+    3.589813 2.722622 True
     """
     times, memory, given = np.asarray(s, dtype=float), kept(motion, 2), motion.given
     flat = times.reshape(-1)

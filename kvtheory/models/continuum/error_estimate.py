@@ -30,12 +30,12 @@ a smaller one is a coincidence, for the error of the other solution may be as la
 
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
-    "steps, and what rounding may do. A jump, as at a landing, is compared with the jump, and `jump_time` "
-    "says how far its time may be off, relative to the retardation time; `pressure` is that inside the "
-    "contact, `surface` that of the whole foundation"
+    "step sizes, plus a bound of rounding. Values at a jump, as at a landing, are compared at the same time "
+    "from it; `jump_time` is the error of that time, relative to the retardation time; `pressure` holds "
+    "inside the contact, `surface` for the whole foundation"
 )
-NOTHING = "not known: the solution with a tighter tolerance could not be followed to the end"
-NOT_ASKED = "not known: not asked for"
+NOTHING = "not known: the solution with a tighter tolerance failed"
+NOT_ASKED = "not known: not requested"
 
 
 def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepControl]]:

@@ -9,18 +9,11 @@ every stage: the method is stiffly accurate (Hairer and Wanner, Solving Ordinary
 sections IV.5, IV.8 and VI.1).
 
 Why so many stages (`STAGES`): the error must be small all along the step, since memory is evaluated from its
-polynomial, and a step has large costs besides its stages. Steps and evaluations of F for the start from rest
-of Table 1, with an error of the depth of about 1e-4 (seven stages give less at any tolerance), 1e-7 and
-1e-11:
-
-    stages   about 1e-4   about 1e-7    about 1e-11
-    3        16, 198      54, 552       548, 4965
-    4        13, 207      30, 445       106, 1181
-    5        11, 253      22, 386       56, 826
-    7        11, 341      11, 341       27, 634
-
-Beyond seven, the linear algebra costs what the evaluations save. `make benchmark` compares it with LSODA,
-`kvtheory chart work-precision` with SciPy's other methods and CVODE.
+polynomial, and a step has large costs besides its stages. For the start from rest of Table 1, with an error
+of the depth of about 1e-4, 1e-7 and 1e-11, three stages need 198, 552 and 4965 evaluations of F, four 207,
+445 and 1181, five 253, 386 and 826, seven at most 341, 341 and 634. Beyond seven, the linear algebra costs
+what the evaluations save. `make benchmark` compares it with LSODA, `kvtheory chart work-precision` with
+SciPy's other methods and CVODE.
 """
 
 import math

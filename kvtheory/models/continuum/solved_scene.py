@@ -70,7 +70,10 @@ class SolvedScene:
     @property
     def natural_times(self) -> Array:
         """Times (s) that show the whole series: the solver's steps, subdivided."""
-        return np.unique(np.minimum(self.motion.natural, self.end)) * self.units.time
+        s = self.motion.natural
+        s = s[: np.searchsorted(s, self.end) + 1].copy()
+        s[-1] = self.end
+        return s * self.units.time
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -84,16 +87,15 @@ class SolvedScene:
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        found = self.states(time)
+        found, own = self.states(time), scales(self.units)
+        left, right = found[e_.LEFT_STATE], found[e_.RIGHT_STATE]
         leads = found[e_.LEADING] == found[e_.LEFT]
-        states = found[e_.LEFT_STATE], found[e_.RIGHT_STATE]
-        leading, trailing = np.where(leads, states, states[::-1]).tolist()
-        measures = {name: scale for name, scale in scales(self.units).items() if name != "time"}
+        leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
         return {
             "time": np.asarray(time, dtype=float),
-            **{name: found[COLUMNS[name]] * scale for name, scale in measures.items()},
-            "leading_state": tuple(STATE_NAMES[state] for state in leading),
-            "trailing_state": tuple(STATE_NAMES[state] for state in trailing),
+            **{name: found[at] * own[name] for name, at in COLUMNS.items() if name in own},
+            "leading_state": tuple(map(STATE_NAMES.__getitem__, leading.tolist())),
+            "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
         }
 
     def states(self, time: ArrayLike) -> Array:
@@ -121,7 +123,7 @@ class SolvedScene:
     def scaled(self, time: Any) -> Any:
         """Return times in units of tau; those beyond the end by rounding only are set to the end."""
         s, end = np.asarray(time, dtype=float) / self.units.time, self.end
-        if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
+        if not ((s >= 0.0) & (s <= end * (1.0 + AFTER_END))).all():
             raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
         return np.minimum(s, end)[()]
 

@@ -154,11 +154,12 @@ class Trajectory:
 
     @property
     def natural(self) -> NDArray[np.float64]:
-        """Times at which to show the motion: those of the steps, subdivided."""
+        """Times at which to show the motion, in order: those of the steps, subdivided."""
         return np.asarray(self._natural[0])
 
     @cached_property
     def _natural(self) -> tuple[Any, Any]:
+        """These times, and the states there."""
         times, found = self._room(evaluation.SUBDIVISIONS * self.counts.steps + 1)
         count = self._perform(bulk.NATURAL, times, found)
         return times[:count], found[:count]
@@ -173,9 +174,9 @@ class Trajectory:
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
         """Return the states at an array of times: a row for each, with the columns of `evaluation`."""
         times = np.asarray(s, dtype=float)
-        if not np.all((times >= 0.0) & (times <= self.end)):
+        if not ((times >= 0.0) & (times <= self.end)).all():
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        _, found = self._room(len(times))
+        found = self._rows(np.empty((len(times), evaluation.SIZE)))
         self._perform(bulk.STATES, self._rows(times), found)
         return np.asarray(found).reshape(-1, evaluation.SIZE)
 
@@ -193,7 +194,7 @@ class Trajectory:
             found = self._rows(self.states(at))
         worst = self._rows(np.zeros(deviation.SIZE))
         self._perform(bulk.DEVIATIONS, self._rows(at), found, worst, other=other.run)
-        return [float(x) for x in worst]
+        return list(np.asarray(worst).tolist())
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
@@ -218,26 +219,25 @@ class Trajectory:
     def _perform(
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
     ) -> int:  # fmt: skip
-        rows = self._workspace
-        values = rows[0] if values is None else values
+        _, rows = self._two
         return compiled.chosen(self.run)(
-            task, self.run, other or self.run, times, found, rows, values, count, bulk.NO_BULK
-        )
+            task, self.run, other or self.run, times, found, rows,
+            rows[0] if values is None else values, count, bulk.NO_BULK,
+        )  # fmt: skip
 
     @cached_property
-    def _workspace(self) -> Any:
-        """Room for two states."""
-        return self._room(2)[1]
+    def _two(self) -> tuple[Any, Any]:
+        return self._room(2)
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
         return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
 
     def _rows(self, array: Any) -> Any:
-        """Return an array as the kernels need it: as lists if they are interpreted."""
-        if self.compiled:
-            return np.ascontiguousarray(array)
-        return array if isinstance(array, list) else array.tolist()
+        """Return an array as the kernels need it: contiguous, or as lists if they are interpreted."""
+        if not self.compiled:
+            return array if isinstance(array, list) else array.tolist()
+        return array if array.flags.c_contiguous else np.ascontiguousarray(array)
 
 
 def solve(
@@ -252,15 +252,8 @@ def solve(
     infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
     1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
     steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
-    reached. Rejected steps count towards `max_steps`.
+    reached. Rejected steps count towards `max_steps`. TransientError if a step fails, or too many are needed.
 
-    Raises
-    ------
-    TransientError
-        If a step fails, or too many would be needed.
-
-    Examples
-    --------
     >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
     >>> print(f"{motion.at(2.0).depth:.6f}")
     0.303968

@@ -47,14 +47,6 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     Under the indenter u = d - xi^2. Outside u = e^-(s - sigma) g(X, sigma), where sigma is the instant
     at which X = xi - Y was left: known for a strip, the root of X_e(sigma) = X for ground that a
     peeling edge swept. Ground that was never touched has u = 0.
-
-    Examples
-    --------
-    >>> from kvtheory.models.continuum.solver import solve
-    >>> from kvtheory.scene.base_motion import BaseMotion
-    >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
-    >>> height(motion, [-1.0, 0.0, 1.0, 3.0], 1.0).round(6)
-    array([0.      , 0.307843, 0.23703 , 0.23551 ])
     """
     run, now = motion.interpreted, motion.at(s)
     Y = instant(run, evaluation.step_at(run, s), s)[3]
@@ -224,30 +216,11 @@ def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) ->
 def integrals(function: Callable[[Any, Array], Array], low: Array, high: Array) -> Array:
     """Return the integral of each function k over s from `low[k]` to `high[k]`, by Gauss's rule.
 
-    An integrand may be singular at its ends as sqrt or 1/sqrt: with s = low + (high - low) x^2
-    (3 - 2 x), the integrand over x in [0, 1] is smooth at both ends. A panel of x is halved until its
-    rule agrees with that on its halves.
+    `function` returns the values of the functions `which`, shape (n,), at the points `s`, shape (n, m), in
+    that shape, or (n, m, c) for c integrands each. An integrand may be singular at its ends as sqrt or
+    1/sqrt: with s = low + (high - low) x^2 (3 - 2 x), it is smooth over x in [0, 1]. A panel of x is halved
+    until its rule agrees with that on its halves; ArithmeticError if too many panels are needed.
 
-    Parameters
-    ----------
-    function
-        Returns the values of the functions `which`, shape (n,), at the points `s`, shape (n, m); their
-        shape is (n, m), or (n, m, c) of c integrands each.
-    low, high
-        Limits, shape (count,).
-
-    Returns
-    -------
-    Array
-        Shape (count,) or (count, c).
-
-    Raises
-    ------
-    ArithmeticError
-        If an integral needs too many panels: its integrand is not piecewise smooth, or not finite.
-
-    Examples
-    --------
     >>> ends = np.array([1.0, 4.0])
     >>> integrals(lambda _, s: 1.0 / np.sqrt(s), 0.0 * ends, ends).round(12)
     array([2., 4.])

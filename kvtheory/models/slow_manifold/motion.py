@@ -58,17 +58,11 @@ class SlowMotion:
 def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
     """Return the slow motion at the times `s` (in units of tau), for lambda > 0.
 
-    Raises
-    ------
-    ArithmeticError
-        If the path is not resolved, or an edge would re-enter deformed foundation.
+    ArithmeticError if the path is not resolved, or an edge would re-enter surface that it left.
 
-    Examples
-    --------
     >>> from kvtheory.models.slow_manifold.start import start
-    >>> found = follow(start(4.0, 1e-4, 0.0), np.array([0.0, 5.0]), 1e-6)
-    >>> print(found.values["depth"].round(6))
-    [1.       0.303964]
+    >>> follow(start(4.0, 1e-4, 0.0), np.array([0.0, 5.0]), 1e-6).values["depth"].round(6)
+    array([1.      , 0.303964])
     """
     path = _path(given, tolerance)
     u = path.when(np.minimum(s, path.length))
@@ -89,13 +83,7 @@ def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
 
 
 def depth_rate(depth: Array, number: float, support_number: float = 0.0) -> Array:
-    """Return d' on the slow manifold at scaled depths.
-
-    Examples
-    --------
-    >>> depth_rate(np.array([1.0]), 0.0).tolist()
-    [0.0]
-    """
+    """Return d' on the slow manifold at scaled depths."""
     a = np.sqrt(depth)
     r = _widths(a, number, support_number) - a
     return np.asarray(r * (r + 2.0 * number) - depth)

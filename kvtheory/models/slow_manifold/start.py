@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 NEWTON_STEPS = 60
-"""Iterations: Newton's method converges from above in less than ten."""
+"""Most Newton steps; fewer than ten are needed from above the root."""
 
 ROUNDING = 4e-16
 """Relative size of a Newton step after which the iteration stops."""
@@ -19,7 +19,7 @@ ROUNDING = 4e-16
 
 @dataclass(frozen=True)
 class Start:
-    """The slow manifold just after the start: scalars, cheap enough to choose a model by."""
+    """The slow manifold just after the start, in scaled form: d = 1, d' = `rate`, contact length `width`."""
 
     number: float
     eps: float
@@ -27,9 +27,9 @@ class Start:
     width: float
     rate: float
     stiff: float
-    """f_v = df_z/dd' on the slow manifold, the lowest that it is in the fast motion towards it."""
+    """f_v = df_z/dd' on the slow manifold: the least value during the fast initial motion."""
     stiffest: float
-    """f_v at d' = 0, the highest."""
+    """f_v at d' = 0: the largest value during that motion."""
     relaxation: float
     """-G'(1), the rate of the slow motion."""
     steady: float
@@ -42,29 +42,22 @@ class Start:
 
     @property
     def goes_back(self) -> bool:
-        """Whether the trailing edge would immediately move back over its own trace (see `outruns`)."""
+        """Whether the trailing edge would at once re-enter surface that it left (see `outruns`)."""
         a, b = 1.0, self.width
         return bool(outruns(a, b, self.rate, -self.relaxation, self.number) > 0.0)
 
     @property
     def least_error(self) -> float:
-        """A lower bound, to first order, of the error of the depth just after the fast motion."""
+        """Lower bound, to first order, of the depth error just after the fast initial motion."""
         return self.eps * abs(self.rate) / self.stiffest
 
     def layer(self, s: Any) -> Any:
-        """Return a bound of d' - G at the times s, from the fast motion after the start."""
+        """Return a bound of d' - G at the times s, due to the fast initial motion."""
         return abs(self.rate) * np.exp(-self.stiff * np.asarray(s, dtype=float) / self.eps)
 
 
 def start(number: float, eps: float, kappa: float) -> Start:
-    """Return the slow manifold at d = 1, after a start from rest to lambda = `number` > 0.
-
-    Examples
-    --------
-    >>> found = start(4.0, 1e-3, 0.0)
-    >>> print(f"{found.width:.4f} {found.rate:.4f} {found.ratio:.4f}")
-    0.6247 -3.8615 0.0092
-    """
+    """Return the slow manifold at d = 1, after a start from rest to lambda = `number` > 0."""
     b = _width(number)
     v = b * (b - 2.0 + 2.0 * number) - 2.0 * number
     at_rest = 1.0 - number + math.sqrt(1.0 + number * number)
@@ -79,18 +72,9 @@ def start(number: float, eps: float, kappa: float) -> Start:
 def half_length(number: float, support_number: float) -> float:
     """Return a/a_0 of steady sliding, the root s of the convex balance f + kappa (s^2 - 1) = 1.
 
-    f = s^2 (lambda^2/(lambda + r) + r + s)/2 with r = sqrt(lambda^2 + s^2) (theorem "scaled-load"); from
-    s = 1, where the balance is not below zero, Newton's method falls on it.
-
-    Raises
-    ------
-    ArithmeticError
-        If it does not converge, as where lambda is not finite.
-
-    Examples
-    --------
-    >>> print(f"{half_length(4.0, 0.0):.6f}")
-    0.551329
+    f = s^2 (lambda^2/(lambda + r) + r + s)/2 with r = sqrt(lambda^2 + s^2) (theorem "scaled-load"). The
+    residual is not negative at s = 1, from where Newton's method converges monotonically; ArithmeticError
+    if it does not, as where lambda is not finite.
     """
     s, kappa = 1.0, support_number
     for _ in range(NEWTON_STEPS):
@@ -121,9 +105,9 @@ def depth_slope(a: Any, b: Any, v: Any, number: float) -> Any:
 
 
 def outruns(a: Any, b: Any, rate: Any, slope: Any, number: float) -> Any:
-    """Return a number that is positive if the trailing edge moves outward faster than the material.
+    """Return a number that is positive if the trailing edge moves outward faster than the foundation.
 
-    (r + lambda) r' = (d' + d'')/2 (Eq. 33 differentiated) with d'' = G' d', and r' is to be at most
-    lambda; `slope` is G'.
+    (r + lambda) r' = (d' + d'')/2 (Eq. 33 differentiated) with d'' = G' d'; r' must not exceed lambda.
+    `slope` is G'.
     """
     return rate * (1.0 + slope) - 2.0 * number * (b - a + number)

@@ -192,14 +192,6 @@ class Contact:
         return 0.5 * (rest[-1].x_te - rest[0].x_le)
 
     @property
-    def edge_error(self) -> float:
-        """Relative error of the trailing edge: infinite at the lowest point, unless that is a corner."""
-        if abs(self.patches[-1].x_te) >= SMALLEST:
-            return 0.0
-        near, nearer = (self.surface.slope(-share * self.patches[0].x_le) for share in CORNER)
-        return 0.0 if math.isclose(near, nearer, rel_tol=AT_CORNER) else math.inf
-
-    @property
     def noise(self) -> float:
         """Relative error of the depth equivalent to rounding: of edges, of h and of h'."""
         c, edges = self.cells, np.array(self.patches)[:, :2]
@@ -237,6 +229,37 @@ class Contact:
             values = [self.pressure(y, self.l_r) for y in (start, end) if y not in kinks]
             highest = max(highest, -float(found.fun), *values)
         return float(highest)
+
+    def friction(self) -> tuple[float, float, float]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        drags = np.array([self.integral(patch, 2) for patch in self.patches])
+        drag, error = drags.sum(axis=0).tolist()
+        left = sum(0.5 * (patch.u_te**2 - patch.u_le**2) for patch in self.patches)
+        return left + self.l_r * drag, self.l_r * drag, error / drag
+
+    def quantities(self) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
+
+        The edges are those of all contacts together.
+        """
+        nearby = Contact(self.surface, self.l_r, self.depth * (1.0 - DEPTH_STEP))
+        (values, own), (others, _) = self._values(), nearby._values()
+        powers = {
+            name: (1.0 - others[name] / value) / DEPTH_STEP if value else 0.0
+            for name, value in values.items()
+        }
+        return values, own, powers
+
+    def _values(self) -> tuple[dict[str, float], dict[str, float]]:
+        friction, lost, error = self.friction()
+        edges, share = (self.patches[0].x_le, self.patches[-1].x_te), share_lost(friction, lost)
+        values = self.half_length, *edges, self.load, friction, self.peak(), share
+        unresolved = 0.0
+        if abs(edges[1]) < SMALLEST:  # at the lowest point, unless that is a corner
+            near, nearer = (self.surface.slope(-part * edges[0]) for part in CORNER)
+            unresolved = 0.0 if math.isclose(near, nearer, rel_tol=AT_CORNER) else math.inf
+        own = {"trailing_edge": unresolved, "load": self.load_error, "friction_force": error}
+        return dict(zip(OF_LINE, values, strict=True)), own
 
 
 def _root(function: Callable[[float], float], low: float, high: float, ends: Any = None) -> float:
@@ -285,31 +308,3 @@ class AnyLine:
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
         """Return the contacts at a depth."""
         return Contact(self.surface, self.l_r, depth)
-
-    def friction(self, contact: Contact) -> tuple[float, float, float]:
-        """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        drags = np.array([contact.integral(patch, 2) for patch in contact.patches])
-        drag, error = drags.sum(axis=0).tolist()
-        left = sum(0.5 * (patch.u_te**2 - patch.u_le**2) for patch in contact.patches)
-        return left + self.l_r * drag, self.l_r * drag, error / drag
-
-    def quantities(self, contact: Contact) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
-
-        The edges are those of all contacts together.
-        """
-        values, own = self._values(contact)
-        nearby, _ = self._values(self.at(contact.depth * (1.0 - DEPTH_STEP)))
-        powers = {
-            name: (1.0 - nearby[name] / value) / DEPTH_STEP if value else 0.0
-            for name, value in values.items()
-        }
-        return values, own, powers
-
-    def _values(self, contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
-        friction, lost, error = self.friction(contact)
-        edges = contact.patches[0].x_le, contact.patches[-1].x_te
-        share = share_lost(friction, lost)
-        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
-        own = {"trailing_edge": contact.edge_error, "load": contact.load_error}
-        return dict(zip(OF_LINE, values, strict=True)), own | {"friction_force": error}

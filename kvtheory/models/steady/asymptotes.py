@@ -21,7 +21,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.steady.roots import root
-from kvtheory.results import SteadyState
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.indenters import Parabola, Sphere, power_of
 from kvtheory.scene.model import Scene
@@ -186,16 +185,11 @@ def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
 
 
 def error(limit: Value, exact: Value) -> Value:
-    """Return limit/exact - 1, or 0 where both are zero."""
-    return np.where(limit == exact, 0.0, limit / exact - 1.0)
+    """Return limit/exact - 1, or 0 where both are equal, as at rest."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(limit == exact, 0.0, limit / np.asarray(exact) - 1.0)
 
 
-def errors(
-    scene: Scene, limit: Limit, values: dict[str, Value], exact: SteadyState
-) -> dict[str, Value]:
-    """Return limit/exact - 1 of each quantity; `values` are the limits."""
-    found = {name: error(value, getattr(exact, name)) for name, value in values.items()}
-    if not limit.slow:  # only a wedge has its edge at the tip; others may underflow
-        at_tip = (_shape(scene)[2] == 1.0) & (np.asarray(exact.trailing_edge) == 0.0)
-        found["trailing_edge"] = np.where(at_tip, 0.0, -1.0)
-    return found
+def exponent(scene: Scene) -> Value:
+    """Return n of the shape h ~ |x|^n."""
+    return _shape(scene)[2]

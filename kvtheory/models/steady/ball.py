@@ -20,7 +20,7 @@ two numbers satisfy four limits. In between the difference is small.
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -38,8 +38,11 @@ NEAR = 1.0
 """Largest l for the closed form of T: cancellation costs a bit of the sums that contain T."""
 NODES = 24
 """Nodes of Gauss's rule for the integral from -1 to 1, whose error is below rounding from l = 1 on."""
-V, WEIGHTS = (half[NODES // 2 :] for half in leggauss(NODES))
-SQUARES, WEIGHTS = V * V, 2.0 * WEIGHTS * (1.0 - V * V) ** 2
+RULE = [
+    (v * v, 2.0 * weight * (1.0 - v * v) ** 2)
+    for v, weight in zip(*(half[NODES // 2 :].tolist() for half in leggauss(NODES)), strict=True)
+]
+"""v^2 and weight of its nodes v > 0."""
 
 MOST_STEPS, LAST_STEP = 12, 1e-5
 """Most iterations, of which three to five are needed; a step as small as this leaves an error of its cube."""
@@ -59,15 +62,9 @@ LOAD_ERROR, FRICTION_COEFFICIENT_ERROR = 0.002, 0.0025
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities at |V| in the order of `STEADY_UNITS`, forces in N (derivations F20).
-
-    >>> from kvtheory.scene import DeadWeight, Sphere
-    >>> found = quantities(Scene(Sphere(0.01), support=DeadWeight(mass=1.0)))
-    >>> print(f"{1e3 * found[0]:.6f} mm, mu = {found[7]:.6f}")
-    0.061896 mm, mu = 0.063679
-    """
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, forces in N (derivations F20)."""
     R, stretch, K = scene.indenter.radius, scene.indenter.stretch, scene.foundation.stiffness
-    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     delta = depth(scene)
     a = np.sqrt(2.0 * R * delta)
     l = l_r / a
@@ -95,27 +92,26 @@ def depth(scene: Scene) -> Any:
         return scene.support.depth
     stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)
     delta_0 = np.sqrt(load / stiffness)
-    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     s = scaled_root(l_r / np.sqrt(2.0 * R * delta_0), scene.support.spring * (delta_0 / load))
     return s * s * delta_0
 
 
 def angle_and_tail(l: Any) -> tuple[Any, Any]:
-    """Return theta = arctan(1/l) and T to a few units in the last place of pi + T, for l >= 0.
+    """Return theta = arctan(1/l) and T to a few units in the last place of pi + T, for l >= 0."""
+    if not (isinstance(l, np.ndarray) and l.ndim):
+        number = float(l)
+        angle = math.atan2(1.0, number)
+        return angle, cf.ball_tail(number, angle) if number <= NEAR else _integrated_tail(number)
+    theta, far = np.arctan2(1.0, l), l > NEAR
+    tail: Array = cf.ball_tail(np.minimum(l, NEAR), theta)
+    tail[far] = _integrated_tail(l[far])
+    return theta, tail
 
-    >>> angle_and_tail(np.array([0.0, 1e8]))[1].round(12).tolist()
-    [3.14159265359, 1.0667e-08]
-    """
-    l = np.asarray(l)
-    near, far = np.minimum(l, NEAR), l > NEAR
-    tail = np.asarray(cf.ball_tail(near, np.arctan2(1.0, near)))
-    if far.any():
-        large = l[far]
-        square, total = 1.0 / (large * large), np.zeros_like(large)
-        for node, weight in zip(SQUARES, WEIGHTS, strict=True):
-            total += weight / (1.0 + square * node)
-        tail[far] = total / large
-    return np.arctan2(1.0, l), tail[()]
+
+def _integrated_tail(l: Any) -> Any:
+    square = 1.0 / (l * l)
+    return sum(weight / (1.0 + square * node) for node, weight in RULE) / l
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
@@ -184,27 +180,17 @@ class Footprint:
         return np.where(inside, 0.5 * self.stiffness / self.radius * rise, 0.0)
 
 
-class EquivalentLine(NamedTuple):
-    """A line contact equivalent to a ball at one depth, in SI."""
+def equivalent_line(ball: SteadyState, stretch: float) -> tuple[float, float, float]:
+    """Return width, depth and load per unit width of a line contact equivalent to a ball in steady sliding.
 
-    width: float
-    depth: float
-    load: float
-    """Per unit width."""
-
-
-def equivalent_line(ball: SteadyState, stretch: float) -> EquivalentLine:
-    """Return the line contact with the radius R equivalent to a ball in steady sliding.
-
-    `stretch` is sqrt(R'/R), 1 for a ball. The friction coefficient is that of the ball, within
-    `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and width
-    change with velocity.
+    It has the radius R; `stretch` is sqrt(R'/R), 1 for a ball. The friction coefficient is that of the ball,
+    within `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and
+    width change with velocity.
 
     >>> import kvtheory as kv
-    >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
-    >>> line = equivalent_line(kv.steady(ball), 1.0)
-    >>> print(f"{line.width * 1e3:.4f} mm, {line.load / 1e3:.4f} N/mm")
-    1.9002 mm, 5.1608 N/mm
+    >>> ball = kv.steady(kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg")))
+    >>> print("{:.4g} m, {:.4g} m, {:.4g} N/m".format(*equivalent_line(ball, 1.0)))
+    0.0019 m, 4.832e-05 m, 5161 N/m
     """
     width = WIDTH * ball.half_length * stretch
-    return EquivalentLine(width, SHORTER**2 * ball.depth, ball.load / width)
+    return width, SHORTER**2 * ball.depth, ball.load / width

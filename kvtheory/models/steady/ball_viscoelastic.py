@@ -14,7 +14,7 @@ follows from the derivatives of a. The load grows with the depth as
 which gives Newton's method for the length that carries a load.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,42 +55,21 @@ CERTIFICATE = Certificate(
 )
 
 
-class Sums(NamedTuple):
-    """Sums over the strips of a ball, and the half length at rest of its middle plane."""
-
-    a: Array
-    load: Array
-    friction: Array
-    lost: Array
-    """Energy dissipated inside the contact per sliding distance, with its relative error."""
-    lost_error: Array
-    growth: Array
-    """d ln W/d ln c."""
-
-
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
-
-    Kelvin-Voigt is the springpot of order 1:
-
-    >>> from kvtheory.scene import DeadWeight, FractionalKelvinVoigt, Sphere
-    >>> springpot = FractionalKelvinVoigt(1e10, 0.1, 1.0)
-    >>> found = quantities(Scene(Sphere(0.01), springpot, DeadWeight(mass=[1.0])))
-    >>> print(f"{1e3 * found[0][0]:.6f} mm, mu = {found[7][0]:.6f}")
-    0.061896 mm, mu = 0.063679
-    """
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one."""
     row = viscoelastic.law(scene)
     c = contact_length(scene, row)
-    plane, sums = viscoelastic.state(scene, row, c), _sums(scene, row, c)
-    moving = sums.friction > 0.0
+    plane = viscoelastic.state(scene, row, c)
+    _, load, _, friction, lost, error = _sums(scene, row, c, friction=True)
+    moving = friction > 0.0
     return (
         *plane[:5],
-        sums.load,
-        sums.friction,
-        sums.friction / sums.load,
+        load,
+        friction,
+        friction / load,
         plane[8],
-        np.where(moving, sums.lost / np.where(moving, sums.friction, 1.0), 1.0),
-        np.where(moving, sums.lost_error, 0.0) + RELATIVE_ERROR,
+        np.where(moving, lost / np.where(moving, friction, 1.0), 1.0),
+        np.where(moving, error, 0.0) + RELATIVE_ERROR,
     )
 
 
@@ -109,26 +88,30 @@ def contact_length(scene: Scene, row: Law) -> Array:
     first = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
 
     def step(c: Array) -> Array:
-        sums = _sums(scene, row, c)
-        held = spring * sums.a * (sums.a / (2.0 * R))
-        total = sums.load + held
+        a, carried, growth = _sums(scene, row, c)
+        held = spring * a * (a / (2.0 * R))
+        total = carried + held
         share, slope, _ = viscoelastic.growth(row.moments(c))
-        rise = (sums.growth * sums.load + 2.0 * (slope / share) * held) / total
+        rise = (growth * carried + 2.0 * (slope / share) * held) / total
         return np.log(total / target) / rise
 
     return converge(step, first, LAST_STEP, MOST_STEPS)
 
 
-def _sums(scene: Scene, row: Law, c: Array) -> Sums:
-    """Return the sums over strips, a part of the scenes at a time."""
+def _sums(scene: Scene, row: Law, c: Array, *, friction: bool = False) -> Array:
+    """Return the half length at rest of the middle plane, the load over the strips and d ln W/d ln c.
+
+    With `friction` also that, and the energy dissipated inside the contact per sliding distance with its
+    relative error. A part of the scenes is treated at a time.
+    """
     parts = []
     for i in range(0, c.size, PART):
         part = slice(i, i + PART), None
-        parts.append(_part(scene.rows(part), row.at(*part), c[part]))
-    return Sums(*np.concatenate(parts, axis=1))
+        parts.append(_part(scene.rows(part), row.at(*part), c[part], friction))
+    return np.concatenate(parts, axis=1)
 
 
-def _part(scene: Scene, row: Law, middle: Array) -> Sums:
+def _part(scene: Scene, row: Law, middle: Array, with_friction: bool) -> tuple[Array, ...]:
     R = scene.indenter.radius
     share, slope, bend = viscoelastic.growth(row.moments(middle))
     a_0, c = middle * share, middle * NODES
@@ -139,12 +122,14 @@ def _part(scene: Scene, row: Law, middle: Array) -> Sums:
     y = np.sqrt(gap * (a_0 + a))
     dy = 2.0 * scene.indenter.stretch * a * rise * (middle * WEIGHTS) / y
     size = c * (c / R)
+    load = (dy * (size * c * (M.D + eta * M.P))).sum(axis=1)
+    deeper = (dy * size * M.P / a).sum(axis=1) * a_0[:, 0]  # dW/da_0
+    found = a_0[:, 0], load, deeper * (slope * middle)[:, 0] / load
+    if not with_friction:
+        return found
     work = M.E + eta * eta * M.P
     friction = dy * (size * size * work)
-    inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
-    load = (dy * (size * c * (M.D + eta * M.P))).sum(axis=1)
+    inside, error = row.dissipated(M, c, np.where(work > 0.0, work, 1.0))
     lost = (friction * inside).sum(axis=1)
     doubt = (friction * inside * error).sum(axis=1) / np.where(lost > 0.0, lost, 1.0)
-    deeper = (dy * size * M.P / a).sum(axis=1) * a_0[:, 0]  # dW/da_0
-    growth = deeper * (slope * middle)[:, 0] / load
-    return Sums(a_0[:, 0], load, friction.sum(axis=1), lost, doubt, growth)
+    return *found, friction.sum(axis=1), lost, doubt

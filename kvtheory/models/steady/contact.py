@@ -23,7 +23,7 @@ All operations work for floats and for columns, of shape (n, 1).
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -63,30 +63,74 @@ TINY = 1e-300
 """Added to a divisor that may vanish together with its dividend."""
 
 
-class Contact(NamedTuple):
-    """A contact at one depth; forces are over the stiffness."""
+class Contact:
+    """The contact of a line at one depth; forces are over the stiffness."""
 
-    depth: Value
-    half_length: Value
-    """At rest; it ends at the leading edge."""
-    x: Value
-    """The trailing edge, unless it is at the vertex."""
-    a_moves: Value
-    x_moves: Value
-    """d a/d(delta), d(x_TE)/d(delta)."""
-    rolls: Value
-    """1, or 0 where the trailing edge is at the vertex, where the pressure jumps through zero."""
-    u_te: Value
-    load: Value
-    load_error: Value
-    """Relative error of the load at this very depth."""
-    load_slope: Value
-    load_curvature: Value
-    """d(W/K)/d(delta), d^2(W/K)/d(delta)^2."""
-    guess: tuple[Value, Value]
-    """Edges, as initial guess for another depth."""
-    noise: Value
-    """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
+    def __init__(self, line: "ConvexLine", depth: Value, guess: tuple[Value, ...]) -> None:
+        self.shape, self.l_r, self.depth = shape, l_r, _ = line.shape, line.l_r, depth
+        start, x = guess or (line.start(depth),) * 2
+        self.half_length, self.a_moves = a, a_moves = _leading(shape, depth, start)
+        # 0 where the trailing edge is at the vertex, where the pressure jumps through zero
+        self.rolls = rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
+        self.x, x_moves = x, _ = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
+        self.guess, self.x_moves = (a, x), rolls * x_moves
+        below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
+        # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
+        self.u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
+        length = a + rolls * x
+        self.load = depth * length - below + l_r * self.u_te
+        self.load_error = error * below / self.load  # relative, at this very depth
+        self.load_slope, self.load_curvature = length + l_r, a_moves + self.x_moves
+        # Relative error of the depth equivalent to rounding: of x_LE, and of u.
+        self.noise = ROUNDING * (1.0 + a / (a_moves * depth))
+
+    def friction(self) -> tuple[Value, Value, Value]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        drag, error, left = self._drag()
+        return self.l_r * (drag + 0.5 * self.u_te * left), self.l_r * drag, error
+
+    def _drag(self) -> tuple[Value, Value, Value]:
+        """Return int h'^2 dx with its relative error, and u_TE/l_r."""
+        shape, rolls, a, x = self.shape, self.rolls, self.half_length, self.x
+        squared = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks)
+        left = rolls * shape.slope(x) + (1.0 - rolls) * self.depth / (self.l_r + rolls)
+        return *squared, left
+
+    def quantities(self) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
+
+        The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
+        """
+        shape, l_r, depth, rolls = self.shape, self.l_r, self.depth, self.rolls
+        a, x, load, a_moves, x_moves = (
+            self.half_length,
+            self.x,
+            self.load,
+            self.a_moves,
+            self.x_moves,
+        )
+        drag, drag_error, left = self._drag()
+        at_a, at_x, spring = shape.slope(a), shape.slope(x), 0.5 * self.u_te * left
+        total = drag + spring
+        # Both edges are rounded independently: what they contribute to the share of the drag does not cancel.
+        by_a = at_a * (spring / drag)
+        by_x = left - at_x * at_x * x_moves * (total / drag)
+        peak = _peak(shape, l_r, depth, a)
+        edge = depth * a_moves / a
+        # The trailing edge is exactly 0 at a corner; at a rounded tip, 0 means too close to be resolved.
+        lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
+        values = a, -a, rolls * x, load, l_r * total, peak, drag / total
+        own = {"trailing_edge": lost, "load": self.load_error, "friction_force": drag_error}
+        powers = (
+            edge,
+            edge,
+            depth * x_moves / x,
+            depth * self.load_slope / load,
+            depth * (left + at_a) / total,
+            depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
+            depth * (by_a + abs(by_x)) / total,
+        )
+        return dict(zip(OF_LINE, values, strict=True)), own, dict(zip(OF_LINE, powers, strict=True))
 
 
 class ConvexLine:
@@ -128,73 +172,17 @@ class ConvexLine:
 
     def at(self, depth: Value, guess: tuple[Value, ...] = ()) -> Contact:
         """Return the contact at a depth, from guesses of its edges."""
-        shape, l_r = self.shape, self.l_r
-        start, x = guess or (self._start(depth),) * 2
-        a, a_moves = _leading(shape, depth, start)
-        rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
-        x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
-        below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
-        # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
-        u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
-        length, x_moves = a + rolls * x, rolls * x_moves
-        load = depth * length - below + l_r * u_te
-        noise = ROUNDING * (1.0 + a / (a_moves * depth))
-        return Contact(
-            depth, a, x, a_moves, x_moves, rolls, u_te, load, error * below / load,
-            length + l_r, a_moves + x_moves, (a, x), noise,
-        )  # fmt: skip
+        return Contact(self, depth, guess)
 
     def half_length(self, depth: Value) -> Value:
         """Return a > 0 with h(a) = depth."""
-        return _leading(self.shape, depth, self._start(depth))[0]
+        return _leading(self.shape, depth, self.start(depth))[0]
 
-    def _start(self, depth: Value) -> Value:
+    def start(self, depth: Value) -> Value:
         """Return where the search for the half length of a contact at a depth begins."""
         if not largest(depth - self.deepest) < 0.0:
             raise QuadratureError("the leading edge lies beyond the indenter's reach")
         return _spaced(self.shape, depth, depth, lambda x: 1.0)
-
-    def friction(self, contact: Contact) -> tuple[Value, Value, Value]:
-        """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        drag, error, left = self._drag(contact)
-        return self.l_r * (drag + 0.5 * contact.u_te * left), self.l_r * drag, error
-
-    def _drag(self, contact: Contact) -> tuple[Value, Value, Value]:
-        """Return int h'^2 dx with its relative error, and u_TE/l_r."""
-        shape, rolls, a, x = self.shape, contact.rolls, contact.half_length, contact.x
-        squared = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks)
-        left = rolls * shape.slope(x) + (1.0 - rolls) * contact.depth / (self.l_r + rolls)
-        return *squared, left
-
-    def quantities(self, contact: Contact) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
-
-        The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
-        """
-        shape, l_r = self.shape, self.l_r
-        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope, *_ = contact
-        drag, drag_error, left = self._drag(contact)
-        at_a, at_x = shape.slope(a), shape.slope(x)
-        total = drag + 0.5 * u_te * left
-        # Both edges are rounded independently: what they contribute to the share of the drag does not cancel.
-        by_a = at_a * (0.5 * u_te * left / drag)
-        by_x = left - at_x * at_x * x_moves * (total / drag)
-        peak = _peak(shape, l_r, contact)
-        edge = depth * a_moves / a
-        # The trailing edge is exactly 0 at a corner; at a rounded tip, 0 means too close to be resolved.
-        lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
-        values = a, -a, rolls * x, load, l_r * total, peak, drag / total
-        own = {"trailing_edge": lost, "load": load_error, "friction_force": drag_error}
-        powers = (
-            edge,
-            edge,
-            depth * x_moves / x,
-            depth * load_slope / load,
-            depth * (left + at_a) / total,
-            depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
-            depth * (by_a + abs(by_x)) / total,
-        )
-        return dict(zip(OF_LINE, values, strict=True)), own, dict(zip(OF_LINE, powers, strict=True))
 
 
 def _spaced(
@@ -249,19 +237,18 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
 
-def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
+def _peak(shape: Convex, l_r: Value, depth: Value, a: Value) -> Value:
     """Return the highest p/K.
 
     It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
     for a power and rises with y for the circle, or else the peak is at the leading edge. Every iterate
     is a pressure of this contact, so that the highest of them is never too high.
     """
-    a = contact.half_length
     peak, last = l_r * shape.slope(a), (a, 0.0 * l_r)
     y, active = least(l_r, a) + FLOOR * a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
-        peak = -least(-peak, -(contact.depth - shape.height(y) + l_r * slope))
+        peak = -least(-peak, -(depth - shape.height(y) + l_r * slope))
         to = l_r * shape.bend(y) + FLOOR * a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to

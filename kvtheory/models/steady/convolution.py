@@ -216,19 +216,6 @@ class Contact:
             return back
         return float(brentq(self.pressure_at, near, back, xtol=TINY, rtol=ROOT, maxiter=2000))
 
-    @property
-    def edge_power(self) -> float:
-        """Relative shift of the trailing edge over that of all pressures: at least that over the depth's.
-
-        Ahead of the lowest point u' >= 0: the pressure there is at least delta times G/K at the trailing
-        edge, as G does not rise.
-        """
-        x = self.x_te
-        if x in (0.0, self.back):
-            return 1.0
-        near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
-        return float(np.abs(self.pressure).max() * STRIDE / (near - far))
-
     def peak(self) -> float:
         """Return the greatest pressure: at the highest node, or between its neighbours."""
         x, best = self.x, int(self.pressure.argmax())
@@ -240,6 +227,33 @@ class Contact:
             options={"xatol": PEAK_RTOL * (high - low)},
         )
         return max(float(self.pressure[best]), -float(found.fun))
+
+    def friction(self) -> tuple[float, float, float]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        if self.memory is None:
+            return 0.0, 0.0, self.load_error
+        left, _ = self.remembered(np.array([self.x_te]))
+        work, lost = self.memory.works(self, left)
+        # K u = -(memory) at the trailing edge, unless the pressure jumps there.
+        rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
+        rest = held if abs(rest - held) > JUMP * self.depth else rest
+        return work + 0.5 * rest * rest, lost, self.load_error
+
+    def quantities(self) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
+        friction, lost, error = self.friction()
+        edges, share = (-self.a, self.x_te), share_lost(friction, lost)
+        values = self.half_length, *edges, self.load, friction, self.peak(), share
+        # Relative shift of the trailing edge over that of all pressures: at least that over the depth's, as
+        # ahead of the lowest point u' >= 0, where the pressure is at least delta G/K of the trailing edge.
+        edge, x = 1.0, self.x_te
+        if x not in (0.0, self.back):
+            near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
+            edge = float(np.abs(self.pressure).max() * STRIDE / (near - far))
+        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
+        own["trailing_edge"] += FLOOR * edge
+        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(self) | {"trailing_edge": edge}
+        return dict(zip(OF_LINE, values, strict=True)), own, powers
 
 
 class ViscoelasticLine:
@@ -274,25 +288,3 @@ class ViscoelasticLine:
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
         """Return the contact at a depth."""
         return Contact(self.shape, self.memory, depth)
-
-    def friction(self, contact: Contact) -> tuple[float, float, float]:
-        """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        if self.memory is None:
-            return 0.0, 0.0, contact.load_error
-        left, _ = contact.remembered(np.array([contact.x_te]))
-        work, lost = self.memory.works(contact, left)
-        # K u = -(memory) at the trailing edge, unless the pressure jumps there.
-        rest, held = -float(left.sum()), contact.depth - float(self.shape.height(contact.x_te))
-        rest = held if abs(rest - held) > JUMP * contact.depth else rest
-        return work + 0.5 * rest * rest, lost, contact.load_error
-
-    def quantities(self, contact: Contact) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
-        friction, lost, error = self.friction(contact)
-        edges, share = (-contact.a, contact.x_te), share_lost(friction, lost)
-        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
-        edge = contact.edge_power
-        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
-        own["trailing_edge"] += FLOOR * edge
-        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(contact) | {"trailing_edge": edge}
-        return dict(zip(OF_LINE, values, strict=True)), own, powers

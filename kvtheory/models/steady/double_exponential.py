@@ -71,11 +71,9 @@ def integral(
 ) -> tuple[Value, Value]:
     """Return the sum of the means of a positive function from 0 to either end, times the widths.
 
-    If it is smooth, analytic at both ends of each interval, Gauss's rule is tried first.
-
-    Return also an estimate of the relative error: halving the step squares that of the trapezoidal
-    rule for an analytic integrand (Trefethen and Weideman 2014, doi:10.1137/130932132); the power
-    3/2 leaves a margin.
+    If it is smooth, analytic at both ends of each interval, Gauss's rule is tried first. Return also an
+    estimate of the relative error: halving the step squares that of the trapezoidal rule for an analytic
+    integrand (Trefethen and Weideman 2014, doi:10.1137/130932132); the power 3/2 leaves a margin.
 
     >>> value, error = integral(lambda x: x**0.5, (4.0, 1.0), (4.0, 1.0))
     >>> print(f"{value:.14g}", error < 1e-14)
@@ -85,11 +83,12 @@ def integral(
     result, accuracy, active = 0.0, 0.0, one >= 0.0
     for to_left, to_right, weights in _SIDES if smooth else _SIDES[1:]:
         values = function(ends[0] * to_left + ends[1] * to_right)
-        # Unlike a product of matrices, this sums in one order on every processor for any number of rows.
-        sums = np.einsum("...j,kj->k...", values.reshape(*values.shape[:-1], 2, -1), weights)
-        (left, right), (left_coarse, right_coarse) = (
-            sums.tolist() if values.ndim == 1 else sums.transpose(0, 2, 1)[..., None]
-        )
+        if values.ndim == 1:
+            pairs = (values.reshape(2, -1) @ weights.T).tolist()
+        else:  # unlike a product of matrices, this sums in one order for any number of rows
+            rows = values.reshape(len(values), 2, -1)
+            pairs = np.einsum("...j,kj->k...", rows, weights).transpose(2, 0, 1)[..., None]
+        (left, left_coarse), (right, right_coarse) = pairs
         total = one * left + two * right
         apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
         error = (apart / total) ** 1.5

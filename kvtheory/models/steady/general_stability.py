@@ -6,7 +6,7 @@ its strips, by Gauss's rule in the angle whose cosine is the half length of a st
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. As it softens, two rates enter or leave the right half plane at each frequency
 where k_x(i omega) is real and positive: they enter where its imaginary part falls through zero over the
-frequency, and leave where it rises. These frequencies, found on a grid and bisected, give the
+frequency, and leave where it rises. These frequencies, found in the cells of a grid, give the
 ranges of stable stiffness.
 
 The equation for the rates is transcendental and has infinitely many roots, finitely many to the right of any
@@ -15,7 +15,7 @@ whether any is missing.
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,7 +41,6 @@ LOWER, LOWER_COUNT = 10.0, 16
 """Further decades for soft springs near the maximum of friction, and their number of frequencies."""
 TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
 """Phase change above which a cell is halved, most halvings, and halvings of the cells at a zero."""
-BISECTIONS = 52
 NEARBY = 1e-5
 """Relative step of frequencies, rates and velocities in difference quotients."""
 ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
@@ -57,6 +56,9 @@ NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 """Most Newton steps, tolerance of the relative step, and relative distance of roots taken as equal."""
 ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
+Zeros = tuple[NDArray[np.int_], Array, NDArray[np.int_]]
+"""Zeros of the imaginary part of k_x: their scenes, logarithms of frequency, and directions: 1 where softer
+springs have two more unstable rates, and -1 where they have two fewer."""
 FAR = 100.0
 """Stands for |ln(critical stiffness/stiffness)| where there is no critical stiffness."""
 SPEEDS, SPEED_DECADES = 6, 4.0
@@ -64,40 +66,55 @@ SPEEDS, SPEED_DECADES = 6, 4.0
 
 
 class Contact(NamedTuple):
-    """Steady contacts of flat scenes, for small motions; strips along the first axis, if there are any."""
+    """Steady contacts of flat scenes, in strips along the first axis; a line is one strip."""
 
-    V: Array
-    R: Array
+    scene: Scene
+    """At velocities above zero."""
+    law: Law
+    """Over the distance travelled."""
     c: Array
     eta: Array
     width: Array
     """Of the strips; 1 for a line."""
-    mass: Array
-    spring: Array
-    mass_along: Array
-    damping: Array
-    law: Law
-    """Over the distance travelled."""
-    held: bool
+
+    @classmethod
+    def of(cls, scene: Scene, strips: int = 1) -> "Contact":
+        """Return the contacts of parabolas, or of balls in strips."""
+        law, foundation = viscoelastic.law(scene), scene.foundation
+        if scene.indenter.per_width:
+            c = viscoelastic.contact_length(scene, law)[np.newaxis]
+            width = np.ones_like(c)
+        else:
+            middle = ball_viscoelastic.contact_length(scene, law)
+            half = middle * viscoelastic.growth(law.moments(middle))[0]
+            angles, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(strips))
+            cosines = np.cos(0.25 * np.pi + angles)
+            c = np.stack([viscoelastic.length_at_half(law, half * cosine) for cosine in cosines])
+            width = 2.0 * scene.indenter.stretch * half * (cosines * weights)[:, np.newaxis]
+        eta = np.stack([law.moments(each).eta for each in c])
+        times = [arm.relaxation_time for arm in foundation.arms] or [foundation.retardation_time]
+        least = AT_REST * c.max(axis=0) / reduce(np.maximum, times)
+        moving = scene.at(np.maximum(np.abs(scene.drive.final_velocity), least))
+        return cls(moving, viscoelastic.law(moving), c, eta, width)
 
     def rows(self, index: Any) -> "Contact":
         """Return some of the scenes."""
-        parts: list[Any] = [each[..., index] for each in self[:-2]]
-        parts += [self.law.at(index), self.held]
-        return Contact(*parts)
+        c, eta, width = (each[:, index] for each in self[2:])
+        return Contact(self.scene.rows(index), self.law.at(index), c, eta, width)
 
     def stiffness(self, s: Complex) -> tuple[Complex, Complex, Array]:
         """Return k_x at the rate s, the vertical dynamic stiffness, and the magnitude of the terms of k_x."""
-        slope, share = self.c / self.R, self.c * self.width
-        A, B, C, D = self.law.response(self.c, self.eta, s * (self.c / self.V))
+        scene, support = self.scene, self.scene.support
+        slope, share = self.c / scene.indenter.radius, self.c * self.width
+        A, B, C, D = self.law.response(self.c, self.eta, s * (self.c / scene.drive.final_velocity))
         each = A, slope * B, slope * C, slope * slope * D
         A, B, C, D = ((share * term).sum(axis=0) for term in each)
-        along = D - s * (self.mass_along * s + self.damping)
-        if self.held:
+        along = D - s * (scene.drive_mass * s + scene.drive.damping)
+        if scene.held:
             return along, np.ones_like(s), np.abs(D)
-        across = s * s * self.mass + self.spring + A
+        across = s * s * support.mass + support.spring + A
         coupled = B * C / across
-        size = np.abs(s * s) * self.mass + self.spring + np.abs(A)
+        size = np.abs(s * s) * support.mass + support.spring + np.abs(A)
         return along - coupled, across, np.abs(D) + np.abs(coupled) * (1.0 + size / np.abs(across))
 
     def on_axis(self, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
@@ -111,86 +128,38 @@ class Contact(NamedTuple):
 
     def scales(self) -> Array:
         """Return the characteristic rates of each scene in 1/s, along the first axis."""
-        passing, law = self.V / self.c, self.law
-        found = [*(self.V / law.time), passing.min(axis=0), passing.max(axis=0)]
+        V, law, support = self.scene.drive.final_velocity, self.law, self.scene.support
+        found = [*(V / law.time), (V / self.c).min(axis=0), (V / self.c).max(axis=0)]
         if law.damping is not None:
-            found.append(self.V * law.K / law.damping)
-        if not self.held:
+            found.append(V * law.K / law.damping)
+        if not self.scene.held:
             soft = (self.c * self.width).sum(axis=0) * law.K
             stiff = soft * (1.0 + law.stiffness.sum(axis=0) / law.K)
-            found += [np.sqrt((self.spring + each) / self.mass) for each in (soft, stiff)]
+            found += [np.sqrt((support.spring + each) / support.mass) for each in (soft, stiff)]
         return np.stack(found)
 
 
-def contact(scene: Scene, strips: int = 1) -> Contact:
-    """Return the contact of flat scenes for small motions: of a parabola, or of a ball in strips."""
-    shape, support, foundation = scene.shape, scene.support, scene.foundation
-    law = viscoelastic.law(scene)
-    if scene.indenter.per_width:
-        c = viscoelastic.contact_length(scene, law)[np.newaxis]
-        width = np.ones_like(c)
-    else:
-        middle = ball_viscoelastic.contact_length(scene, law)
-        half = middle * viscoelastic.growth(law.moments(middle))[0]
-        angles, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(strips))
-        cosines = np.cos(0.25 * np.pi + angles)
-        c = np.stack([viscoelastic.length_at_half(law, half * cosine) for cosine in cosines])
-        width = 2.0 * scene.indenter.stretch * half * (cosines * weights)[:, np.newaxis]
-    eta = np.stack([law.moments(each).eta for each in c])
+def _zeros(given: Contact, per_decade: int = PER_DECADE) -> Zeros:
+    """Return the zeros of all scenes, each in a cell of a grid that is refined at resonances."""
+    from scipy.optimize import elementwise  # slow to import
 
-    def full(value: Any) -> Array:
-        return np.broadcast_to(value, shape).astype(float)
+    own = given.scales()
+    low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
+    high = np.log(own.max(axis=0)) + BEYOND * np.log(10.0)
+    fine = np.linspace(low, high, 2 + int(per_decade * np.max(high - low) / np.log(10.0)))
+    soft = np.linspace(low - LOWER * np.log(10.0), low, LOWER_COUNT, endpoint=False)
+    grid = np.concatenate([soft, fine]).T
+    rows = np.broadcast_to(np.arange(len(grid))[:, np.newaxis], grid.shape).ravel()
+    rows, log, k = _refined(given, rows, grid.ravel())
+    cell = (rows[1:] == rows[:-1]) & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
+    row, start, end = rows[:-1][cell], log[:-1][cell], log[1:][cell]
+    way = np.where(k.imag[:-1][cell] > 0.0, 1, -1)
 
-    times = [full(arm.relaxation_time) for arm in foundation.arms]
-    slowest = np.maximum.reduce(times or [full(foundation.retardation_time)])
-    V = np.maximum(np.abs(scene.drive.final_velocity), AT_REST * c.max(axis=0) / slowest)
-    return Contact(
-        full(V), full(scene.indenter.radius), c, eta, width,
-        full(support.mass), full(support.spring), full(scene.drive_mass), full(scene.drive.damping),
-        viscoelastic.law(scene.at(V)), held=scene.held,
-    )  # fmt: skip
+    def imaginary(log: Array, row: Any) -> Array:
+        k, _, _ = given.on_axis(row, log)
+        return k.imag
 
-
-class Places(NamedTuple):
-    """Zeros of the imaginary part of k_x: their scenes, logarithms of frequency, and directions.
-
-    `way` is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
-    """
-
-    row: NDArray[np.int_]
-    log: Array
-    way: NDArray[np.int_]
-
-    @classmethod
-    def search(cls, given: Contact, per_decade: int = PER_DECADE) -> "Places":
-        """Return the zeros of all scenes, by bisection on a grid that is refined at resonances."""
-        own = given.scales()
-        low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
-        high = np.log(own.max(axis=0)) + BEYOND * np.log(10.0)
-        fine = np.linspace(low, high, 2 + int(per_decade * np.max(high - low) / np.log(10.0)))
-        soft = np.linspace(low - LOWER * np.log(10.0), low, LOWER_COUNT, endpoint=False)
-        grid = np.concatenate([soft, fine]).T
-        rows = np.broadcast_to(np.arange(len(grid))[:, np.newaxis], grid.shape).ravel()
-        rows, log, k = _refined(given, rows, grid.ravel())
-        cell = (rows[1:] == rows[:-1]) & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
-        row, start, end = rows[:-1][cell], log[:-1][cell], log[1:][cell]
-        way = np.where(k.imag[:-1][cell] > 0.0, 1, -1)
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (start + end)
-            before = (given.on_axis(row, middle)[0].imag > 0.0) == (way > 0)
-            start, end = np.where(before, middle, start), np.where(before, end, middle)
-        return cls(row, 0.5 * (start + end), way)
-
-    def moved(self, given: Contact) -> "Places":
-        """Return the zeros for more strips, by Newton's method from these; NaN where one is lost."""
-        log = self.log.copy()
-        for _ in range(POLISHING):
-            low, here, high = (
-                given.on_axis(self.row, log + step)[0].imag for step in (-NEARBY, 0.0, NEARBY)
-            )
-            with np.errstate(all="ignore"):
-                log = log - 2.0 * NEARBY * here / (high - low)
-        return self._replace(log=np.where(np.abs(log - self.log) < MOVED, log, np.nan))
+    return row, elementwise.find_root(imaginary, (start, end), args=(row,)).x, way
 
 
 def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex]:
@@ -201,9 +170,7 @@ def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex
         wide = np.abs(np.angle(across[1:] / across[:-1])) > TURN
         if turn < CLOSER:
             zero = same & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
-            wide |= zero
-            wide[1:] |= zero[:-1]
-            wide[:-1] |= zero[1:]
+            wide |= np.convolve(zero, np.ones(3), "same") > 0.0  # with both neighbours
         (at,) = np.nonzero(same & wide)
         if not at.size:
             break
@@ -216,8 +183,21 @@ def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex
     return rows, log, k
 
 
+def _polished(given: Contact, zeros: Zeros) -> Zeros:
+    """Return the zeros for more strips, by Newton's method from these; NaN where one is lost."""
+    row, first, way = zeros
+    log = first
+    for _ in range(POLISHING):
+        low, here, high = (
+            given.on_axis(row, log + step)[0].imag for step in (-NEARBY, 0.0, NEARBY)
+        )
+        with np.errstate(all="ignore"):
+            log = log - 2.0 * NEARBY * here / (high - low)
+    return row, np.where(np.abs(log - first) < MOVED, log, np.nan), way
+
+
 class Crossings(NamedTuple):
-    """Where two rates cross the imaginary axis, with relative errors; `way` as in `Places`."""
+    """Where two rates cross the imaginary axis at a positive stiffness, with relative errors."""
 
     row: NDArray[np.int_]
     stiffness: Array
@@ -227,9 +207,9 @@ class Crossings(NamedTuple):
     omega_error: Array
 
     @classmethod
-    def at(cls, given: Contact, finer: Contact, found: Places) -> "Crossings":
-        """Return those at a positive stiffness, with errors to first order; `finer` has twice the strips."""
-        row, log, way = found
+    def at(cls, given: Contact, finer: Contact, zeros: Zeros) -> "Crossings":
+        """Return those at the zeros, with errors to first order; `finer` has twice the strips."""
+        row, log, way = zeros
         k, _, size = given.on_axis(row, log)
         near = [given.on_axis(row, log + step)[0] for step in (-NEARBY, NEARBY)]
         slope = (near[1] - near[0]) / (2.0 * NEARBY)
@@ -237,11 +217,10 @@ class Crossings(NamedTuple):
         omega = np.exp(log)
         with np.errstate(divide="ignore"):
             off = doubt / np.abs(slope.imag) + ROUNDING
-        inertia = given.mass_along[row] * omega * omega
+        inertia = given.scene.rows(row).drive_mass * omega * omega
         wrong = np.abs(slope.real) * off + doubt + ROUNDING * inertia
-        some = k.real > 0.0
         parts: tuple[Any, ...] = (row, k.real, omega, way, wrong / np.abs(k.real), off)
-        return cls(*(each[some] for each in parts))
+        return cls(*(each[k.real > 0.0] for each in parts))
 
     def unstable(self, spring: Array) -> NDArray[np.bool_]:
         """Return whether a spring of each scene has rates in the right half plane."""
@@ -258,21 +237,21 @@ class SmallMotions:
     def __init__(self, scene: Scene) -> None:
         self.size = scene.shape[0]
         if scene.indenter.per_width:
-            self.few = self.fine = self.finer = contact(scene)
-            self.crossings = Crossings.at(self.few, self.few, Places.search(self.few))
+            self.few = self.fine = self.finer = Contact.of(scene)
+            self.crossings = Crossings.at(self.few, self.few, _zeros(self.few))
             return
-        self.few, self.fine, strips = contact(scene, FEW), contact(scene, STRIPS), STRIPS
-        known = Places.search(self.fine)
+        self.few, self.fine, strips = Contact.of(scene, FEW), Contact.of(scene, STRIPS), STRIPS
+        known = _zeros(self.fine)
         while True:
-            self.finer = contact(scene, 2 * strips)
+            self.finer = Contact.of(scene, 2 * strips)
             self.crossings = Crossings.at(self.fine, self.finer, known)
             if strips >= MOST or (self.crossings.error <= ACCURATE).all():
                 return
             strips *= MORE
-            self.fine = contact(scene, strips)
-            known = known.moved(self.fine)
-            if np.isnan(known.log).any():
-                known = Places.search(self.fine)
+            self.fine = Contact.of(scene, strips)
+            known = _polished(self.fine, known)
+            if np.isnan(known[1]).any():
+                known = _zeros(self.fine)
 
     def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return upper and lower critical stiffness, the frequency at the upper one, and their errors.
@@ -308,50 +287,53 @@ class SmallMotions:
         return np.array(s), np.array(errors)
 
 
-Value = Callable[..., tuple[Any, Any]]
-"""The function whose zeros are the rates, in the strips of a contact, and the magnitude of its terms."""
+Value = Callable[..., Complex]
+"""The function whose zeros are the rates, in the strips of a contact."""
 
 
 def _rates(
     given: Contact, fine: Contact, finer: Contact, spring: float | None
 ) -> tuple[Complex, Array]:
     """Find and count the rates of one scene in the strips of `given`; refine them in those of `fine`."""
-    degree = 2 * ((spring is not None) + (not given.held))
+    degree = 2 * ((spring is not None) + (not given.scene.held))
     own = given.scales()[:, 0]
     if spring is not None:
-        own = np.append(own, np.sqrt(spring / given.mass_along))
+        own = np.append(own, np.sqrt(spring / given.scene.drive_mass))
 
-    def value(s: Complex, given: Contact = given) -> tuple[Any, Any]:
-        k, across, size = given.rows(np.zeros(s.shape, int)).stiffness(s)
-        if spring is None:
-            return across, np.abs(s * s) * given.mass + np.abs(across)
-        return across * (spring - k), np.abs(across) * (spring + np.abs(k) + size)
+    def value(s: Complex, given: Contact = given) -> Complex:
+        k, across, _ = given.stiffness(s)
+        return across if spring is None else across * (spring - k)
+
+    def slope(s: Complex) -> Complex:
+        h = NEARBY * s
+        return (value(s + h, fine) - value(s - h, fine)) / (2.0 * h)
 
     with np.errstate(all="ignore"):
-        found = _newton(given, value, own)
-        for _ in range(POLISHING if fine is not given else 0):
-            h = NEARBY * found
-            rise = value(found + h, fine)[0] - value(found - h, fine)[0]
-            found = found - 2.0 * h * value(found, fine)[0] / rise
-        found = found[np.isfinite(found)]
-        (f, size), h = value(found, fine), NEARBY * found
-        slope = (value(found + h, fine)[0] - value(found - h, fine)[0]) / (2.0 * h)
-        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(found, finer)[0] - f)
-        error = off / np.abs(slope * found) + ROUNDING
-    upper = found.imag > SAME * np.abs(found)
-    found = np.concatenate([found, found[upper].conj()])
-    error = np.concatenate([error, error[upper]])
-    order = np.lexsort((found.imag, -found.real))
-    found, error = found[order], error[order]
-    if found.size:
-        last = found[min(degree, len(found)) - 1].real
-        left = found.real[found.real < last - SAME * abs(last)]
+        s = _newton(given, value, own)
+        for _ in range(POLISHING):
+            s = s - value(s, fine) / slope(s)
+        s = s[np.isfinite(s)]
+        k, across, size = fine.stiffness(s)
+        if spring is None:
+            size = np.abs(s * s) * given.scene.support.mass + np.abs(across)
+        else:
+            size = np.abs(across) * (spring + np.abs(k) + size)
+        f = value(s, fine)
+        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(s, finer) - f)
+        error = off / np.abs(slope(s) * s) + ROUNDING
+    upper = s.imag > SAME * np.abs(s)
+    s, error = np.append(s, s[upper].conj()), np.append(error, error[upper])
+    order = np.lexsort((s.imag, -s.real))
+    s, error = s[order], error[order]
+    if s.size:
+        last = s[min(degree, len(s)) - 1].real
+        left = s.real[s.real < last - SAME * abs(last)]
         line = 0.5 * (last + left[0]) if left.size else 1.05 * last
-        if _count(value, line, degree, own) != np.count_nonzero(found.real > line):
+        if _count(value, line, degree, own) != np.count_nonzero(s.real > line):
             error = np.full_like(error, np.inf)
-    short = max(degree - len(found), 0)
-    found = np.append(found, np.full(short, np.nan, complex))
-    return found[:degree], np.append(error, np.full(short, np.inf))[:degree]
+    found, errors = np.full(degree, np.nan, complex), np.full(degree, np.inf)
+    found[: s.size], errors[: s.size] = s[:degree], error[:degree]
+    return found, errors
 
 
 def _newton(given: Contact, value: Value, own: Array) -> Complex:
@@ -359,15 +341,16 @@ def _newton(given: Contact, value: Value, own: Array) -> Complex:
     low, high = np.log10(own).min() - BEYOND, np.log10(own).max() + BEYOND
     radii = np.logspace(low, high, int(RADII * (high - low)))
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
-    passing = (given.V / given.c).min()
+    V = given.scene.drive.final_velocity
+    passing = (V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
-    arms = (given.V / given.law.time)[:, 0]
+    arms = (V / given.law.time)[:, 0]
     s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in arms)])
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
         here = s[moving]
-        f, h = value(here)[0], NEARBY * here
-        step = h * f / (value(here + h)[0] - f)
+        f, h = value(here), NEARBY * here
+        step = h * f / (value(here + h) - f)
         limited = np.minimum(1.0, 0.5 * np.abs(here) / np.abs(step))
         s[moving] = np.where(np.isfinite(step), here - limited * step, np.nan)
         moving = moving[np.abs(step) > SETTLED * np.abs(here)]
@@ -389,13 +372,13 @@ def _count(value: Value, line: float, degree: int, own: Array) -> int:
     omega = np.exp(np.linspace(logs.min() - 7.0, logs.max() + 9.0, 2000))
     omega = np.insert(omega, 0, 0.0)
     with np.errstate(all="ignore"):
-        f = value(line + 1j * omega)[0]
+        f = value(line + 1j * omega)
         for _ in range(REFINEMENTS):
             (at,) = np.nonzero(np.abs(np.angle(f[1:] / f[:-1])) > TURN)
             if not at.size:
                 break
             middle = 0.5 * (omega[at] + omega[at + 1])
-            f = np.insert(f, at + 1, value(line + 1j * middle)[0])
+            f = np.insert(f, at + 1, value(line + 1j * middle))
             omega = np.insert(omega, at + 1, middle)
     turned = np.angle(f[1:] / f[:-1]).sum()
     return round(0.5 * degree - turned / np.pi) if np.isfinite(turned) else -1
@@ -413,16 +396,16 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     from scipy.optimize import brentq
 
     spring = np.broadcast_to(scene.drive.stiffness, (1,))
-    given = contact(scene.at(np.ones(1)), STRIPS)
-    length = np.log10(given.c.max() * given.V / given.law.time)
+    given = Contact.of(scene.at(np.ones(1)), STRIPS)
+    length = np.log10(given.c.max() * given.scene.drive.final_velocity / given.law.time)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
 
     def there(log: Array) -> Scene:
         return scene.rows(np.zeros(log.size, int)).at(10.0**log)
 
     def found(log: Array, strips: int, per_decade: int) -> Crossings:
-        coarse = contact(there(log), strips)
-        return Crossings.at(coarse, coarse, Places.search(coarse, per_decade))
+        coarse = Contact.of(there(log), strips)
+        return Crossings.at(coarse, coarse, _zeros(coarse, per_decade))
 
     @cache
     def signed(log: float) -> float:
@@ -441,21 +424,19 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # with more strips it left the cell
         bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
     onset = brentq(signed, *bracket, xtol=1e-15)
-    for _ in range(POLISHING):
+    for _ in range(POLISHING):  # in more strips than those of `signed`
         near = SmallMotions(there(onset + NEARBY * np.array([-1.0, 1.0])))
-        each, off, error = near.crossings, [], np.inf
-        for side in (0, 1):
-            (here,) = np.nonzero(each.row == side)
-            if not here.size:
-                return 10.0**onset, np.inf
-            distance = np.log(each.stiffness[here] / spring)
-            nearest = np.argmin(np.abs(distance))
-            off.append(float(distance[nearest]))
-            error = float(each.error[here[nearest]])
+        each, distance = near.crossings, np.log(near.crossings.stiffness / spring)
+        nearest = [
+            min(np.flatnonzero(each.row == side), key=lambda i: abs(distance[i]), default=-1)
+            for side in (0, 1)
+        ]
+        off = distance[nearest] if distance.size else np.zeros(2)
         rise = (off[1] - off[0]) / (2.0 * NEARBY)
-        miss = 0.5 * (off[0] + off[1]) / rise if rise else 0.0
-        error = error / abs(rise * np.log(10.0)) if rise else np.inf
+        if min(nearest) < 0 or rise == 0.0:
+            return 10.0**onset, np.inf
+        miss, error = off.mean() / rise, each.error[nearest[1]] / abs(rise * np.log(10.0))
         if len(near.fine.c) <= STRIPS or abs(miss) <= NEARBY * ACCURATE:
             break
-        onset -= miss  # in more strips than those of `signed`
+        onset -= miss
     return 10.0**onset, error + ROUNDING * (1.0 + abs(onset))

@@ -53,11 +53,6 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the trailing edge.
 
     W = K delta a w, F = K delta^2 phi and so on (derivation F19).
-
-    >>> from kvtheory.scene import Wedge
-    >>> found = quantities(Scene(Wedge([0.1])))  # past its crossover
-    >>> print(f"mu = {found[7][0]:.6f}, x_TE = {found[4][0]:.6g}")
-    mu = 0.100000, x_TE = 0
     """
     K, support = scene.foundation.stiffness, scene.support
     l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time

@@ -84,10 +84,6 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
     `QuadratureError` if a quadrature or a root fails, contact or load go beyond the reach of the indenter,
     or a callable shape is not smooth where it touches.
-
-    >>> found = quantities(Scene.table1("fixed"))
-    >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
-    0.00029563, 35344.6, 5344.58, 0.151214
     """
     size, indenter = scene.shape, scene.indenter
     if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):
@@ -108,7 +104,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
             contact, depth_error = line.at(depth), 0.0 * depth
         else:
             line, contact, depth_error = _carrying(line_at, l_r, load / K, spring / K)
-        values, own, powers = line.quantities(contact)
+        values, own, powers = contact.quantities()
         values |= {"depth": contact.depth, "retardation_length": l_r}
         values["friction_coefficient"] = values["friction_force"] / values["load"]
         own.setdefault("friction_coefficient", own["load"] + own["friction_force"])

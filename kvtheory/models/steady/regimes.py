@@ -30,13 +30,15 @@ from kvtheory.results import (
     SteadyState,
     units_for,
 )
-from kvtheory.scene.capabilities import lacks_kelvin_voigt
+from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_limits
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 Formula = Callable[[Scene], Any]
 """A formula of a quantity, in the shape of the scene, for |V|."""
+Excess = Callable[[Scene, Mapping[str, Array]], Array]
+"""A function of a scene and of the magnitudes of its exact state, in the shape of the scene."""
 
 DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
 """Decades from V* within which the end of a range is searched for; times 1/alpha for a springpot."""
@@ -61,57 +63,46 @@ NOTE = (
 )
 
 MU = "friction_coefficient"
-LISTED = {
-    "fixed": (MU, "load", "friction_force"),
-    "dead-weight": (MU, "depth"),
-    "suspended": (MU, "depth", "load"),
+EXACT = MU, "depth", "load", "friction_force", "half_length", "trailing_edge"
+"""Quantities of the exact state that lines and bounds are compared with."""
+LISTED: dict[str, tuple[tuple[str, int | None, int | None], ...]] = {
+    "fixed": ((MU, 42, 45), ("load", 40, 43), ("friction_force", 41, 44)),
+    "dead-weight": ((MU, 42, 46), ("depth", None, 49)),
+    "suspended": ((MU, 42, None), ("depth", None, None), ("load", None, None)),
 }
-"""The quantities listed for each support, each at low and then at high velocity."""
-EQUATIONS = {
-    "fixed": (42, 45, 40, 43, 41, 44),
-    "dead-weight": (42, 46, None, 49),
-    "suspended": (42, None, None, None, None, None),
-}
-"""Their equation numbers in the paper, for a parabola."""
-LIFTED = "W/(C V)", "(M g + k_s delta_0)/(C V)", "M g", "M g + k_s delta_0"
-SLOPE_N = "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)"
-FORMULAS = {
-    ("parabola", "fixed"): (
+"""The quantities listed for each support, with the equations in the paper of their limits at low and at high
+velocity, for a parabola."""
+FIXED = {
+    "parabola": (
         "C V/(R K)", "alpha sqrt(delta/R)", "2 alpha R^(1/2) K delta^(3/2)", "C V delta",
         "2 alpha R^(-1/2) C V delta^(3/2)", "alpha R^(-1/2) C V delta^(3/2)",
     ),
-    ("parabola", "dead-weight"): (
-        "C V/(R K)", "alpha sqrt(W/(R C V))", "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)", LIFTED[0],
-    ),
-    ("parabola", "suspended"): (
-        "C V/(R K)", "alpha sqrt((M g + k_s delta_0)/(R C V))", "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
-        *LIFTED[1:],
-    ),
-    ("power-law", "fixed"): (
+    "power-law": (
         "n (n+1)/(2n-1) delta C V/(K a^2)", "n^2/(2n-1) delta/a", "2n/(n+1) K delta a", "C V delta",
         "2n^2/(2n-1) C V delta^2/a", "n^2/(2n-1) C V delta^2/a",
     ),
-    ("power-law", "dead-weight"): (
-        SLOPE_N, "n^2/(2n-1) delta/a, delta = W/(C V)", "delta_0 = (n+1)/(2n) W/(K a_0)", LIFTED[0],
-    ),
-    ("power-law", "suspended"): (
-        SLOPE_N, "n^2/(2n-1) delta/a, delta as below", "delta_0 = (n+1)/(2n) M g/(K a_0)", *LIFTED[1:],
-    ),
-    ("sphere", "fixed"): (
+    "sphere": (
         "C V/(R K)", "(3 pi/16) a/R", "pi K R delta^2", "(4/3) C V delta a", "pi C V delta^2",
         "(pi/4) C V delta a^2/R",
     ),
-    ("sphere", "dead-weight"): (
+}  # fmt: skip
+LOADED = {
+    "parabola": (
+        "C V/(R K)", "alpha sqrt(W/(R C V))", "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)", "W/(C V)",
+    ),
+    "power-law": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)", "n^2/(2n-1) delta/a, delta = W/(C V)",
+        "delta_0 = (n+1)/(2n) W/(K a_0)", "W/(C V)",
+    ),
+    "sphere": (
         "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R W/(2 C V)", "delta_0 = (W/(pi K R))^(1/2)",
         "a^2/(2 R), a as above",
     ),
-    ("sphere", "suspended"): (
-        "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R (M g + k_s delta_0)/(2 C V)",
-        "delta_0 = (M g/(pi K R))^(1/2)", "a^2/(2 R), a as above", *LIFTED[2:],
-    ),
 }  # fmt: skip
-"""The formulas on Kelvin-Voigt by shape and support; n = 1 for a wedge, W = M g is the load of a dead weight.
-Of a ball with a radius R' across, K and C are multiplied by sqrt(R'/R) where W or F are involved."""
+"""Formulas on Kelvin-Voigt by shape, of a fixed indenter and under the load W; n = 1 for a wedge. Of a ball
+with a radius R' across, K and C are multiplied by sqrt(R'/R) where W or F are involved."""
+SUSPENDED = "M g", "(M g + k_s delta_0)"
+"""W of a suspended indenter at low and at high velocity."""
 ON_SPRINGPOT = (
     "6 A/((4-A) Gamma(3-A)) (a/R) (V tau/(2 a))^A, A = order",
     "A (3-A)/(4-A) a/R",
@@ -131,7 +122,7 @@ class Line(NamedTuple):
     equation: int | None
     formula: str
     at: Formula
-    bound: Formula | None = None
+    bound: Excess | None = None
 
 
 def lines(scene: Scene) -> list[Line]:
@@ -155,15 +146,20 @@ def lines(scene: Scene) -> list[Line]:
             Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
             Line("glassy", MU, "high", None, glassy, high, bounds[2]),
         ]
-    places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
-    formulas = FORMULAS[shape if shape in ("parabola", "sphere") else "power-law", support]
-    equations = EQUATIONS[support] if shape == "parabola" else (None,) * len(formulas)
-    names = [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places]
-    names[:2] = "L1", "L2"
-    return [
-        Line(name, *place, equation, formula, partial(_limit, *place))
-        for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
-    ]
+    kind = shape if shape in FIXED else "power-law"
+    formulas = list(FIXED[kind] if support == "fixed" else LOADED[kind])
+    if support == "suspended":
+        formulas = [text.replace("W", SUSPENDED[i % 2]) for i, text in enumerate(formulas)]
+        formulas += [text.strip("()") for text in SUSPENDED]
+    found: list[Line] = []
+    for quantity, *numbers in LISTED[support]:
+        for regime, number in zip(("low", "high"), numbers, strict=True):
+            name = f"{quantity.removesuffix('_force')}, {regime} V"
+            name = f"L{len(found) + 1}" if quantity == MU else name
+            equation = number if shape == "parabola" else None
+            limit = partial(_limit, quantity, regime)
+            found.append(Line(name, quantity, regime, equation, formulas[len(found)], limit))
+    return found
 
 
 def _limit(quantity: str, regime: str, scene: Scene) -> Any:
@@ -181,11 +177,9 @@ def _sum(scene: Scene, power: int) -> Any:
     return sum(arm.stiffness * arm.relaxation_time**power for arm in scene.foundation.arms)
 
 
-def _passing(scene: Scene) -> Array:
+def _passing(scene: Scene, exact: Mapping[str, Array]) -> Array:
     """Return the rate V/c at which elements pass the contact."""
-    state = solve_exact(scene)
-    length = state.half_length + np.abs(state.trailing_edge)
-    return np.abs(scene.drive.final_velocity) / np.asarray(length)
+    return np.abs(scene.drive.final_velocity) / (exact["half_length"] + exact["trailing_edge"])
 
 
 def _within(off: Array, most: float, factor: float) -> Array:
@@ -194,43 +188,50 @@ def _within(off: Array, most: float, factor: float) -> Array:
     return np.where(off <= most, wrong / (1.0 - wrong), np.inf)
 
 
-def _voigt_bound(scene: Scene) -> Array:
-    return _within(_passing(scene) * (_sum(scene, 2) / _sum(scene, 1)), MOST_DELAY, VOIGT)
+def _voigt_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    delay = _passing(scene, exact) * (_sum(scene, 2) / _sum(scene, 1))
+    return _within(delay, MOST_DELAY, VOIGT)
 
 
-def _slow_bound(scene: Scene) -> Array:
-    return _limit(MU, "low", scene) / _voigt(scene) * (1.0 + _voigt_bound(scene)) - 1.0
+def _slow_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    return _limit(MU, "low", scene) / _voigt(scene) * (1.0 + _voigt_bound(scene, exact)) - 1.0
 
 
-def _glassy_bound(scene: Scene) -> Array:
-    return _within(_sum(scene, -2) / _sum(scene, -1) / _passing(scene), MOST_HASTE, GLASSY)
+def _glassy_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
+    haste = _sum(scene, -2) / _sum(scene, -1) / _passing(scene, exact)
+    return _within(haste, MOST_HASTE, GLASSY)
 
 
-def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
-    """Make the report of `kvtheory.asymptotes`, which documents it."""
+def report(
+    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str = "asymptote"
+) -> AsymptoteReport:
+    """Make the report of `kvtheory.asymptotes`, which documents it; `method` found the maxima."""
     signed = np.broadcast_to(scene.drive.final_velocity, scene.shape)
+    known = {"velocity": plain(signed), "tolerance": tolerance, **maxima}
+    known["units"] = units_for(scene.indenter, STEADY_UNITS)
+    if lacks_limits(scene):
+        nothing, unknown, exact = (plain(np.full(scene.shape, x)) for x in (np.nan, None, "exact"))
+        return AsymptoteReport(
+            **known, critical_velocity=nothing, regime=unknown, use=exact, lines=(), model=method,
+            certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
+        )  # fmt: skip
     V, shown = np.abs(signed), lines(scene)
     springpot = isinstance(scene.foundation, FractionalKelvinVoigt)
     monotonic = not scene.foundation.arms and (scene.indenter.per_width or not springpot)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         critical = np.broadcast_to(asymptotes.critical_velocity(scene), scene.shape)
         truth = solve_exact(scene)
-        ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
-        proved = ends if monotonic else [_proved(scene, one, critical, tolerance) for one in shown]
-        found = [
-            _line(scene, line, truth, *pair)
-            for line, *pair in zip(shown, ends, proved, strict=True)
-        ]
+        ranges = _ranges(scene, shown, critical, tolerance, monotonic)
+        found = [_line(scene, line, truth, *ranges[line]) for line in shown]
     use = np.full(scene.shape, "exact", dtype=object)
     for line in reversed(found):
         if line.quantity == MU:
             use = np.where(np.abs(line.relative_error) <= tolerance, line.name, use)
     kind, statement = ("proved", MONOTONIC) if monotonic else ("estimated", SCANNED)
     return AsymptoteReport(
-        velocity=plain(signed), critical_velocity=plain(critical), **maxima,
-        regime=plain(np.where(critical >= V, "low", "high")), use=plain(use), tolerance=tolerance,
-        lines=tuple(found), model="asymptote", certificate=Certificate(kind, statement, {}),
-        units=units_for(scene.indenter, STEADY_UNITS),
+        **known, critical_velocity=plain(critical), use=plain(use), lines=tuple(found),
+        regime=plain(np.where(critical >= V, "low", "high")), model="asymptote",
+        certificate=Certificate(kind, statement, {}),
     )  # fmt: skip
 
 
@@ -254,87 +255,77 @@ def _line(
     )
 
 
-def _proved(scene: Scene, line: Line, critical: Array, tolerance: float) -> Array:
-    """Return the velocity up to which, or from which on, a range is proved; none without a bound."""
-    none, bound = 0.0 if line.regime == "low" else np.inf, line.bound
-    if bound is None:
-        return np.full_like(critical, none)
-    far = _far(scene, critical)
-    return _crossing(
-        scene, lambda scene: np.minimum(bound(scene), 2.0) - tolerance, critical, (-far, far), none
-    )
+def _exact(scene: Scene) -> dict[str, Array]:
+    """Return the magnitudes of the exact values that lines and bounds need."""
+    state = solve_exact(scene)
+    return {name: np.abs(getattr(state, name)) for name in EXACT}
 
 
-def _far(scene: Scene, critical: Array) -> Array:
-    """Return the number of decades from V* within which the end of a range is searched for."""
-    order = getattr(scene.foundation, "order", 1.0)
-    decades = (ON_ARMS if scene.foundation.arms else DECADES) / order
-    return np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
+def _ranges(
+    scene: Scene, shown: Sequence[Line], critical: Array, tolerance: float, monotonic: bool
+) -> dict[Line, tuple[Array, Array]]:
+    """Return the velocity at which the range of each line ends, and up to or from which it is proved.
 
-
-def _ends(
-    scene: Scene, shown: Sequence[Line], critical: Array, tolerance: float, points: int
-) -> list[Array]:
-    """Return the velocities at which the error of each line first passes the tolerance, from its limit on.
-
-    If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
-    spring). If it is above the tolerance at the limit already, the range is empty.
+    A range ends where the error first passes the tolerance, from the limit on. If it does not on the way to
+    the far end, the limit holds at every velocity (such as the load on a soft spring). If it is above the
+    tolerance at the limit already, the range is empty. All ends are found together.
     """
-    grid = _far(scene, critical)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
+    decades, order = (
+        ON_ARMS if scene.foundation.arms else DECADES,
+        getattr(scene.foundation, "order", 1.0),
+    )
+    far = np.broadcast_to(np.minimum(decades / order, MOST_DECADES), critical.shape)
+    grid = far[..., np.newaxis] * np.linspace(-1.0, 1.0, 2 if monotonic else POINTS)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
     wide = wide.at(critical[..., np.newaxis] * 10.0**grid)
-    exact = solve_exact(wide)
-    ends = []
+    exact, doubt = _exact(wide), solve_exact(scene).certificate.relative_error
+
+    def wrong_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Array:
+        error = np.abs(asymptotes.error(line.at(scene), exact[line.quantity]))
+        wrong: Array = error + (ROUNDING + doubt[line.quantity]) * (1.0 + error) - tolerance
+        return wrong
+
+    def unproved_by(line: Line, scene: Scene, exact: Mapping[str, Array]) -> Any:
+        return np.minimum(line.bound(scene, exact), 2.0) - tolerance if line.bound else np.inf
+
+    searches: list[Excess] = []
+    brackets, wrong = [], {}
     for line in shown:
-
-        def excess(scene: Scene, exact: SteadyState | None = None, line: Line = line) -> Array:
-            exact = solve_exact(scene) if exact is None else exact
-            truth = np.abs(getattr(exact, line.quantity))
-            doubt = ROUNDING + exact.certificate.relative_error[line.quantity]
-            error = np.abs(asymptotes.error(line.at(scene), truth))
-            return np.broadcast_to(error + doubt * (1.0 + error), scene.shape) - tolerance
-
-        low = line.regime == "low"
-        order = slice(None, None, 1 if low else -1)
-        wrong, steps = (excess(wide, exact) > 0.0)[..., order], grid[..., order]
-        first = wrong.argmax(axis=-1)[..., np.newaxis]
-        bracket = tuple(
-            np.take_along_axis(steps, np.maximum(first - 1 + next_, next_), axis=-1)[..., 0]
-            for next_ in (0, 1)
+        way = slice(None, None, 1 if line.regime == "low" else -1)
+        wrong[line] = (wrong_by(line, wide, exact) > 0.0)[..., way]
+        first = np.maximum(wrong[line].argmax(axis=-1), 1)[..., np.newaxis]
+        searches.append(partial(wrong_by, line))
+        brackets.append(
+            [np.take_along_axis(grid[..., way], first - back, -1)[..., 0] for back in (1, 0)]
         )
-        edge = _crossing(scene, excess, critical, bracket, np.nan)
-        nowhere, everywhere = (0.0, np.inf) if low else (np.inf, 0.0)
-        edge = np.where(first[..., 0] > 0, edge, nowhere)
-        ends.append(np.where(wrong.any(axis=-1), edge, everywhere))
-    return ends
+    if not monotonic:
+        searches += [partial(unproved_by, line) for line in shown]
+        brackets += [[-far, far] for _ in shown]
+    edges = _crossings(scene, searches, critical, np.moveaxis(np.array(brackets), 1, 0))
+    ranges = {}
+    for line, edge, proved in zip(shown, edges, edges[-len(shown) :], strict=False):
+        nowhere, everywhere = (0.0, np.inf) if line.regime == "low" else (np.inf, 0.0)
+        end = np.where(wrong[line][..., 0], nowhere, edge)
+        end = np.where(wrong[line].any(axis=-1), end, everywhere)
+        known = end if monotonic else np.where(np.isnan(proved), nowhere, proved)
+        ranges[line] = end, known
+    return ranges
 
 
-def _crossing(
-    scene: Scene, excess: Formula, critical: Array, bracket: tuple[Array, ...], otherwise: float
-) -> Array:
-    """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
+def _crossings(scene: Scene, searches: Sequence[Excess], critical: Array, brackets: Array) -> Array:
+    """Return the velocities at which functions vanish, between powers of ten away from V*; NaN without."""
     flat = scene.flat()
 
-    def at(decades: Array, index: Array, critical: Array) -> Array:
-        there = flat.rows(index) if scene.shape else flat
-        return excess(there.at(critical * 10.0**decades))
+    def excess(decades: Array, which: Array, index: Array, critical: Array) -> Array:
+        there = (flat.rows(index) if scene.shape else flat).at(critical * 10.0**decades)
+        exact, found = _exact(there), np.empty_like(decades)
+        for i, search in enumerate(searches):
+            mine = which == i
+            if mine.any():
+                found[mine] = search(there.rows(mine), {name: x[mine] for name, x in exact.items()})
+        return found
 
+    which = np.arange(len(searches)).reshape(-1, *(1,) * critical.ndim)
     index = np.arange(critical.size).reshape(critical.shape)
-    found = elementwise.find_root(at, bracket, args=(index, critical))
-    return np.where(found.success, critical * 10.0**found.x, otherwise)
-
-
-def unknown(
-    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
-) -> AsymptoteReport:
-    """Return the report of a scene whose limits are not known: its maxima, and a note."""
-
-    def each(value: Any) -> Any:
-        return plain(np.full(scene.shape, value))
-
-    return AsymptoteReport(
-        velocity=plain(np.broadcast_to(scene.drive.final_velocity, scene.shape)),
-        critical_velocity=each(np.nan), **maxima, regime=each(None), use=each("exact"),
-        tolerance=tolerance, lines=(), model=method,
-        certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
-    )  # fmt: skip
+    found = elementwise.find_root(excess, tuple(brackets), args=(which, index, critical))
+    return np.where(found.success, critical * 10.0**found.x, np.nan)

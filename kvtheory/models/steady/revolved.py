@@ -103,6 +103,14 @@ class Contact(NamedTuple):
     load_curvature: None = None
     guess: tuple[()] = ()
 
+    def quantities(self) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
+        values, own, powers = self.middle.quantities()
+        values |= {"load": self.load, "friction_force": self.friction}
+        values["dissipated_in_contact"] = share_lost(self.friction, self.lost)
+        own |= dict.fromkeys(SUMS, self.load_error)
+        return values, own, powers | power_bounds(self)
+
 
 class Strips:
     """A body of revolution, stretched across y, as strips that are line contacts."""
@@ -161,7 +169,7 @@ class Strips:
     def _strip(self, y: Any, depth: Any, nearest: float) -> Array:
         line = self.line.strips(Strip(self.profile, y, self.line.reach, nearest))
         contact = line.at(depth)
-        friction, lost, error = line.friction(contact)
+        friction, lost, error = contact.friction()
         errors = contact.load * contact.load_error, friction * error
         return np.array([contact.load, contact.load_slope, friction, lost, *errors])
 
@@ -176,11 +184,3 @@ class Strips:
                 shares = [0.0, *(rise / slope for slope in slopes if 0.0 < rise < slope)]
                 breaks |= {math.asin(kink / half * math.sqrt(1.0 - share**2)) for share in shares}
         return sorted(breaks)
-
-    def quantities(self, contact: Contact) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
-        values, own, powers = self.line.quantities(contact.middle)
-        values |= {"load": contact.load, "friction_force": contact.friction}
-        values["dissipated_in_contact"] = share_lost(contact.friction, contact.lost)
-        own |= dict.fromkeys(SUMS, contact.load_error)
-        return values, own, powers | power_bounds(contact)

@@ -1,4 +1,4 @@
-"""Roots of arrays of scenes, element by element."""
+"""Roots of scenes, floats or arrays of them, element by element."""
 
 from collections.abc import Callable
 
@@ -11,36 +11,28 @@ Array = NDArray[np.float64]
 def converge(
     step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
 ) -> Array:
-    """Return the roots from `value` by steps of the logarithm.
+    """Return the roots from `value` > 0 by steps of the logarithm.
 
     An element is final after its first step that is no longer than `last_step`, so that no result depends on
     the others of its block.
     """
-    active = np.full(value.shape, True)
+    active = value > 0.0
     for _ in range(most_steps):
         step = step_of(value)
-        value = np.where(active, value * np.exp(-step), value)
-        active &= np.abs(step) > last_step
-        if not active.any():
+        value = np.where(active, value * np.exp(-step), value)[()]
+        active = active & (abs(step) > last_step)
+        if not np.any(active):
             break
     return value
 
 
 def cube_root(value: Array) -> Array:
-    """Return the cube root to a unit in the last place; some C libraries are off by four.
-
-    >>> float(cube_root(np.array(27.0)))
-    3.0
-    """
+    """Return the cube root to a unit in the last place; some C libraries are off by four."""
     root = np.cbrt(value)
     return root - (root - value / (root * root)) / 3.0
 
 
 def root(base: Array, degree: Array) -> Array:
-    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree.
-
-    >>> float(root(np.array(1000.0), np.array(3.0)))
-    10.0
-    """
+    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree."""
     found = base ** (1.0 / degree)
     return found * (1.0 - (found**degree / base - 1.0) / degree)

@@ -26,6 +26,7 @@ X_3 loses digits for l >> 1, where it is negligible beside A_3.
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import ball, exact
@@ -45,7 +46,7 @@ POLISHES = 3
 """Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
 DECADES, PER_DECADE = (-8.0, 20.0), 16
 """Powers of ten of the drive number V tau/a_0 between which the critical velocity is searched for."""
-BISECTIONS = 60
+BISECTIONS = 50
 """Enough to find a velocity in a cell of the grid to the last digit."""
 NEARBY = 1e-5
 """Relative step of velocity in the difference quotient of the critical stiffness."""
@@ -70,10 +71,10 @@ class SmallMotions:
 
     def __init__(self, scene: Scene) -> None:
         foundation, support, drive = scene.foundation, scene.support, scene.drive
-        R, self.tau = scene.indenter.radius, foundation.retardation_time
+        R, tau = scene.indenter.radius, foundation.retardation_time
         line, self.held = scene.indenter.per_width, scene.held
         a = np.sqrt(2.0 * R * (exact if line else ball).depth(scene))
-        l = np.abs(drive.final_velocity) * self.tau / a
+        l = np.abs(drive.final_velocity) * tau / a
         unit = foundation.stiffness * a
         if line:
             X_1 = cf.trailing_edge_ratio(l)
@@ -83,26 +84,19 @@ class SmallMotions:
             A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
             X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
             unit = unit * 2.0 * a * scene.indenter.stretch
-        along = self.tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV
-        across = self.tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt)
+        along = tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV
+        across = tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt)
         damped = along + drive.damping
-        self.unit = damped / self.tau
-        self.T_x = scene.drive_mass / (damped * self.tau)
-        self.S_c = (A_1 + X_1) / X_1
-        self.g = l * X_1 / (A_1 + X_1) * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
-        self.h = 1.0 - self.g
-        if self.held:
-            self.T_z, self.S_z = np.zeros_like(self.g), np.full_like(self.g, np.inf)
-            self.e = self.S_z
-        else:
-            self.T_z = support.mass / (across * self.tau)
-            self.S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * self.tau / across
-            self.e = self.S_z - self.g * self.S_c  # its sign is that of dF/dV + c_x
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Of the scenes."""
-        return np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
+        T_x, S_c = scene.drive_mass / (damped * tau), (A_1 + X_1) / X_1
+        g = l * X_1 / (A_1 + X_1) * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
+        T_z, S_z = 0.0, np.inf
+        if not self.held:
+            T_z = support.mass / (across * tau)
+            S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * tau / across
+        e = S_z - g * S_c  # its sign is that of dF/dV + c_x
+        self.unit, self.tau, self.T_z, self.T_x, self.S_z, self.S_c, self.g, self.h, self.e = (
+            np.broadcast_arrays(damped / tau, tau, T_z, T_x, S_z, S_c, g, 1.0 - g, e)
+        )
 
     def onsets(self) -> tuple[Onset, Onset]:
         """Return the lower and the upper critical stiffness, between which steady sliding is unstable.
@@ -135,10 +129,7 @@ class SmallMotions:
 
     def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return upper and lower critical stiffness, the frequency at the upper one, and their errors."""
-        shape = self.shape
-        self.lower, self.upper = (
-            Onset(*(np.broadcast_to(each, shape) for each in one)) for one in self.onsets()
-        )
+        self.lower, self.upper = self.onsets()
         values = self.upper.stiffness, self.lower.stiffness, self.upper.frequency
         return values, (self.upper.error, self.lower.error, self.upper.error)
 
@@ -152,25 +143,18 @@ class SmallMotions:
         Without a spring, in N/m^2, the drive is rigid.
         """
         T_z, T_x, S_z, e = self.T_z, self.T_x, self.S_z, self.e
-        terms: tuple[Array, ...]
-        sizes: tuple[Array, ...] = ()
         if spring is None:
-            terms = S_z, np.ones_like(T_z), T_z
+            terms = sizes = np.stack([S_z, np.ones_like(T_z), T_z], axis=-1)
         elif self.held:
-            terms = spring / self.unit, np.ones_like(T_x), T_x
+            terms = sizes = np.stack([spring / self.unit, np.ones_like(T_x), T_x], axis=-1)
         else:
             S_x = spring / self.unit
             middle = T_z * S_x + self.h + S_z * T_x
-            terms = S_z * S_x, S_x + e, middle, T_z + T_x, T_z * T_x
-            sizes = terms[0], S_x + S_z + self.g * self.S_c, *terms[2:]  # e is a small difference
-        shape = self.shape
-        found, error = _roots(
-            *(
-                np.stack([np.broadcast_to(each, shape) for each in group], axis=-1)
-                for group in (terms, sizes or terms)
-            )
-        )
-        return found / np.broadcast_to(self.tau, shape)[..., np.newaxis], error
+            terms = np.stack([S_z * S_x, S_x + e, middle, T_z + T_x, T_z * T_x], axis=-1)
+            sizes = terms.copy()
+            sizes[..., 1] = S_x + S_z + self.g * self.S_c  # e is a small difference
+        found, error = _roots(terms, sizes)
+        return found / self.tau[..., np.newaxis], error
 
 
 def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], Array]:
@@ -189,27 +173,20 @@ def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], A
     companion[..., range(1, degree), range(degree - 1)] = 1.0
     companion[..., -1] = -scaled[..., :-1] / scaled[..., -1:]
     found = np.linalg.eigvals(companion).astype(complex)
+    terms, sizes = (np.moveaxis(each, -1, 0)[..., np.newaxis] for each in (scaled, bounds))
+    pair = terms, polyder(terms)
     for _ in range(POLISHES):
-        value, slope = _horner(scaled, found)
+        value, slope = (polyval(found, each, tensor=False) for each in pair)
         step = np.divide(value, slope, out=np.zeros_like(found), where=slope != 0.0)
-        better = np.abs(_horner(scaled, found - step)[0]) < np.abs(value)
+        better = np.abs(polyval(found - step, terms, tensor=False)) < np.abs(value)
         found = np.where(better, found - step, found)
-    value, slope = map(np.abs, _horner(scaled, found))
-    value = value + ROUNDING * np.abs(_horner(bounds, np.abs(found))[0])
+    value, slope = (np.abs(polyval(found, each, tensor=False)) for each in pair)
+    value = value + ROUNDING * polyval(np.abs(found), sizes, tensor=False)
     with np.errstate(divide="ignore", over="ignore"):  # infinite for a double root
         error = degree * value / (slope * np.abs(found))
     order = np.lexsort((found.imag, -found.real))
     found, error = (np.take_along_axis(each, order, axis=-1) for each in (found, error))
     return found * unit, error
-
-
-def _horner(coefficients: Array, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the values and derivatives of polynomials at given points, along the last axis."""
-    value, slope = np.zeros_like(places), np.zeros_like(places)
-    for each in np.moveaxis(coefficients, -1, 0)[::-1]:
-        slope = slope * places + value
-        value = value * places + each[..., np.newaxis]
-    return value, slope
 
 
 def critical_velocity(scene: Scene) -> tuple[Array, Array]:

@@ -68,7 +68,10 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
     s, error = np.empty((*scene.shape, 0), complex), np.empty((*scene.shape, 0))
     if not (rigid and scene.held):  # else nothing can move
         spring = None if rigid else np.broadcast_to(scene.drive.stiffness, scene.shape)
-        module = general_stability if scene.foundation.arms else stability
+        on_arms = scene.foundation.arms and scene.shape != (
+            0,
+        )  # where there is nothing to search for
+        module = general_stability if on_arms else stability
         motions = module.SmallMotions(scene)
         values, wrong = motions.critical()
         found |= zip(CRITICAL, values, strict=True)

@@ -59,16 +59,7 @@ def law(scene: Scene) -> Law:
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
-
-    Kelvin-Voigt is the springpot of order 1, and a stiff, fast arm:
-
-    >>> from kvtheory.scene import GeneralizedMaxwell
-    >>> springpot = Scene(foundation=FractionalKelvinVoigt([1e10], 0.1, 1.0))
-    >>> arm = Scene(foundation=GeneralizedMaxwell([1e10], arms=[(1e19, 1e-10)]))
-    >>> print(f"{quantities(springpot)[7][0]:.6f} {quantities(arm)[7][0]:.6f}")
-    0.085709 0.085709
-    """
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one."""
     row = law(scene)
     return state(scene, row, contact_length(scene, row))
 
@@ -129,7 +120,7 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
     A, eta, slope = M.P + M.Q, M.eta, c / R
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
-    inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
+    inside, error = row.dissipated(M, c, np.where(work > 0.0, work, 1.0))
     return (
         a * (a / (2.0 * R)) if delta is None else delta,
         a,

@@ -1,7 +1,7 @@
 r"""The transient of a ball at a constant depth, from strips with closed-form edges; no elements, no memory.
 
-A strip at y is a parabola of the half length A, A^2 = a^2 - y^2 R/R'. Its leading edge stays at -A, on ground
-that was never touched; its trailing edge peels, x_TE = sqrt(A^2 + l_r^2) - l_r with l_r = |V| tau of that
+A strip at y is a parabola of the half length A, A^2 = a^2 - y^2 R/R'. Its leading edge stays at -A, on
+undisturbed surface; its trailing edge peels, x_TE = sqrt(A^2 + l_r^2) - l_r with l_r = |V| tau of that
 instant (fact F10 with a constant depth). This holds as long as no strip's trailing edge outruns the
 foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down must satisfy
 
@@ -10,8 +10,8 @@ foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down mu
 which binds first where A = a, the middle plane, and at the slow end of a linear piece of drive. Forces are
 sums over y = b sin t by Gauss's rule, each strip by F11.
 
-A ball that can rise is left to elements: d' < 0 lifts the rim off the ground at once, where
-sqrt(d - y^2) < -d'/(2 lambda), and the rim comes down again on ground that remembers it.
+A ball that can rise is left to elements: d' < 0 lifts the rim off the surface at once, where
+sqrt(d - y^2) < -d'/(2 lambda), and the rim later lands on surface that has not yet recovered.
 """
 
 import math
@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.results import AT_REST, TRANSIENT_UNITS, Certificate, Event, Transient, units_for
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.theory.closed_forms import trailing_edge_ratio
+from kvtheory.theory.closed_forms import peak_pressure_factor, trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
@@ -73,13 +73,8 @@ class HeldBall:
 def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Transient:
     """Return the transient of a ball whose depth is constant, at the times `at` (s).
 
-    Raises
-    ------
-    ValueError
-        If the drive slows down so fast, or stops, or reverses, that an edge meets its own trace.
+    ValueError if an edge re-enters surface that it left: the drive slows down too fast, stops or reverses.
 
-    Examples
-    --------
     >>> from kvtheory.scene import Fixed, Scene, Sphere
     >>> found = transient(Scene(indenter=Sphere("10 mm"), support=Fixed(depth="0.3 mm")), [0.0, 0.2])
     >>> found.normal_force.round(3).tolist()
@@ -104,7 +99,7 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
         "friction_force": side * friction + 0.0,
         "leading_edge": -side * a,
         "trailing_edge": side * a * trailing_edge_ratio(l_r / a),
-        "peak_pressure": units.pressure * np.where(l_r < a, 1.0 + (l_r / a) ** 2, 2.0 * l_r / a),
+        "peak_pressure": units.pressure * peak_pressure_factor(l_r / a),
     }
     kind, errors = ("estimated", dict.fromkeys(series, ROUNDING)) if certify else ("none", {})
     if certify:
@@ -122,7 +117,7 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
 
 
 def remembers(scene: Scene) -> str:
-    """Return why and when an edge meets its own trace; an empty text if it does not."""
+    """Return why and when an edge re-enters surface that it left; an empty text if it does not."""
     if scene.drive.function is not None:
         return "follows a drive with a velocity or a history only"
     a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time
@@ -133,7 +128,7 @@ def remembers(scene: Scene) -> str:
         rate = math.inf if before == after else (abs(fast) - abs(slow)) / (after - before)
         if fast * slow <= 0.0 or tau * rate * (1.0 - l_r / math.hypot(a, l_r)) > abs(slow):
             return (
-                "holds while no edge runs back over ground that it left: the drive slows down too fast, "
+                "holds while no edge re-enters surface that it left earlier: the drive slows down too fast, "
                 f"stops or reverses before t = {after:.6g} s"
             )
     return ""
