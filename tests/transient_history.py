@@ -107,11 +107,8 @@ def forces(d: float, v: float, rate: float, edges: Array) -> tuple[float, float]
 
 
 def history(scene: Any, tolerance: float, longest_step: float) -> Solution:
-    """Return the quantities at the times of the scene, just after a jump.
-
-    With `inertia`, `damping` and `stiffness` a scene has a spring along x: (d, v, Y, x, w) are integrated.
-    """
-    sprung, moves = hasattr(scene, "inertia"), scene.epsilon is not None
+    """Return the quantities at the times of the scene, just after a jump; on a spring x and w, too."""
+    sprung, moves = scene.inertia is not None, scene.epsilon is not None
     past, y, before = Past(), np.array([1.0, 0.0, 0.0, *((0.0, 0.0) if sprung else ())]), 0.0
     rows = []
 

@@ -26,6 +26,9 @@ def _line(a: float, y: float, b: float, z: float) -> Rate:
 class Scene:
     """A drive, the inertia number (None: fixed), the support number, and the times of interest.
 
+    With an inertia along x the drive has a spring: x' = w, inertia w' = f_x - damping w - stiffness x, so
+    that the base slides at lambda - w below the indenter; x = w = 0 at s = 0.
+
     `drive` is a list of points (s, lambda), linear between them, with a jump where a time is
     repeated, and constant after the last; or {"mean", "amplitude", "frequency"}, which stands for
     lambda = mean + amplitude cos(frequency s).
@@ -35,6 +38,9 @@ class Scene:
     epsilon: float | None
     times: Sequence[float]
     kappa: float = 0.0
+    inertia: float | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
 
     def pieces(self) -> list[tuple[float, float, Rate]]:
         """Return the intervals between jumps, times of interest and the end, with lambda(s)."""
@@ -58,7 +64,7 @@ def at_times(scene: Scene, rows: Iterable[Any], names: Sequence[str]) -> Solutio
     return dict(zip(names, np.array([found[s] for s in scene.times]).T, strict=True))
 
 
-def _jump(time: float, first: float, second: float) -> list[tuple[float, float]]:
+def jump(time: float, first: float, second: float) -> list[tuple[float, float]]:
     return [(0.0, first), (time, first), (time, second)]
 
 
@@ -82,14 +88,14 @@ TWO_STATES = {
     for rate in (1e-2, 1.0)
 } | {"start-suspended": Scene([(0.0, LAMBDA)], EPSILON, EARLY, 1.0)}
 HISTORY = {
-    "stop": Scene(_jump(0.5, LAMBDA, 0.0), EPSILON, LATER),
-    "slow-down": Scene(_jump(0.5, LAMBDA, 0.2 * LAMBDA), EPSILON, LATER),
+    "stop": Scene(jump(0.5, LAMBDA, 0.0), EPSILON, LATER),
+    "slow-down": Scene(jump(0.5, LAMBDA, 0.2 * LAMBDA), EPSILON, LATER),
     "stop-and-go": Scene(
-        [*_jump(0.5, LAMBDA, 0.0), (0.7, 0.0), (0.7, LAMBDA)],
+        [*jump(0.5, LAMBDA, 0.0), (0.7, 0.0), (0.7, LAMBDA)],
         EPSILON,
         (0.5, 0.6, 0.7, 0.701, 0.71, 0.8, 1.0, 1.5),
     ),
-    "reversal": Scene(_jump(0.5, LAMBDA, -LAMBDA), EPSILON, LATER),
+    "reversal": Scene(jump(0.5, LAMBDA, -LAMBDA), EPSILON, LATER),
     "ramp": Scene(
         [(0.0, 0.0), (0.2, LAMBDA), (0.5, 1.0), (0.7, 1.0), (1.0, 0.0)],
         EPSILON,
@@ -101,14 +107,14 @@ HISTORY = {
     "oscillation-fast": Scene(
         {"mean": 2.0, "amplitude": 4.0, "frequency": 20.0}, EPSILON, (0.0, 0.1, 0.3, 0.5, 1.0)
     ),
-    "suspended-stop": Scene(_jump(0.5, LAMBDA, 0.0), EPSILON, LATER, 1.0),
-    "suspended-reversal": Scene(_jump(0.5, LAMBDA, -LAMBDA), EPSILON, LATER, 1.0),
-    "fixed-stop": Scene(_jump(0.5, LAMBDA, 0.0), None, LATER),
-    "fixed-reversal": Scene(_jump(0.5, LAMBDA, -LAMBDA), None, LATER),
+    "suspended-stop": Scene(jump(0.5, LAMBDA, 0.0), EPSILON, LATER, 1.0),
+    "suspended-reversal": Scene(jump(0.5, LAMBDA, -LAMBDA), EPSILON, LATER, 1.0),
+    "fixed-stop": Scene(jump(0.5, LAMBDA, 0.0), None, LATER),
+    "fixed-reversal": Scene(jump(0.5, LAMBDA, -LAMBDA), None, LATER),
     "hop": Scene([(0.0, 4.0)], 0.3, (0.0, 0.1, 0.5, 1.0, 1.4, 2.0, 3.0, 4.0)),
     "hops": Scene([(0.0, 10.0)], 0.3, (0.0, 0.1, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)),
-    "drop": Scene(_jump(0.5, 30.0, 0.0), 0.01, (0.0, 0.01, 0.1, 0.5, 0.6, 0.8, 1.0, 2.0)),
-    "bounce": Scene(_jump(1.0, 2.0, 0.05), 100.0, (0.5, 1.0, 1.01, 2.0, 5.0, 10.0, 15.0, 20.0)),
+    "drop": Scene(jump(0.5, 30.0, 0.0), 0.01, (0.0, 0.01, 0.1, 0.5, 0.6, 0.8, 1.0, 2.0)),
+    "bounce": Scene(jump(1.0, 2.0, 0.05), 100.0, (0.5, 1.0, 1.01, 2.0, 5.0, 10.0, 15.0, 20.0)),
     "start-lambda-100": Scene([(0.0, 100.0)], 0.01, SHORT),
     "start-lambda-100-heavy": Scene([(0.0, 100.0)], 1.0, SHORT),
 }
