@@ -1,4 +1,4 @@
-"""Which planted fault is named as which: `python -m tests.confusion` prints the tables.
+"""Faults that are planted in data, for the diagnosis to name.
 
 Each plant is a run of `tests.faulty_simulator`, changed as its name says, which the theory of the
 unchanged scene is held against. The blind trial has faults and sound series of `tests.continuous_row`, a
@@ -151,22 +151,6 @@ def quick():
     ]
 
 
-def report(trials, scenes):
-    """Print what was planted, what is named first, and what else is possible; and the counts."""
-    right = 0
-    for plant in trials:
-        found = kv.compare(scenes[plant.scene], plant.data(), **plant.known)
-        first, *rest = found.explanations or [None]
-        named = found.verdict if first is None else first.name
-        right += named == plant.fault
-        factor = "" if first is None or first.factor is None else f" {first.factor:.4g}"
-        share = "" if first is None else f" ({first.rank:.0%})"
-        also = ", ".join(each.name for each in rest if each.enough)
-        row = f"{'ok' if named == plant.fault else 'NO'}  {plant.scene:18s} {plant.name:26s}"
-        print(f"{row} {found.verdict:9s} {named + factor + share:52s} {also}", flush=True)
-    print(f"{right} of {len(trials)} named first")
-
-
 # The blind trial
 
 BLIND = {
@@ -207,66 +191,3 @@ def disturbed(exact, seed, level, digits=None):
         return {"time": series["time"][kept], **written}
     noisy = {n: series[n] * (1.0 + level * rng.standard_normal(series[n].size)) for n in FEW[1:]}
     return {"time": series["time"], **noisy}
-
-
-def sound():
-    """Yield sound series: every scene, resolved and written in several ways."""
-    rng = np.random.default_rng(11)
-    for where, scene in BLIND.items():
-        full = simulated(where)
-        rows = np.sort(rng.choice(full["time"].size, 200, replace=False))
-        thin = {name: full[name][rows] for name in FEW}
-        noisy = {n: thin[n] * (1.0 + 0.01 * rng.standard_normal(rows.size)) for n in FEW[1:]}
-        digits = {name: np.array([float(f"{v:.2g}") for v in full[name]]) for name in FEW[1:]}
-        half = np.sqrt(2.0 * scene.indenter.radius * full["depth"][0])
-        coarse = simulated(where, points=200, steps=2000)
-        written = {"time": full["time"], **digits}
-        titles = "all", "thinned", "noisy", "two digits"
-        for title, data in zip(titles, (full, thin, thin | noisy, written), strict=True):
-            yield Plant(title, where, lambda data=data: data, "agrees")
-        known = {"per_length": 200 / half}
-        yield Plant("coarse, known", where, lambda data=coarse: data, "agrees", known=known)
-
-
-KEYS = {"K": "foundation.stiffness", "tau": "foundation.retardation_time", "R": "indenter.radius",
-        "M": "support.mass", "V": "drive.velocity", "k_s": "support.stiffness",
-        "delta": "support.depth"}  # fmt: skip
-
-
-def faults():
-    """Yield faults; of some there is no name."""
-    scaled = [("Table 1", symbol, factor) for symbol in [*KEYS][:5] for factor in (0.9, 1.01, 1.3)]
-    for where in ("sine", "ramp"):
-        scaled += [(where, "K", 1.1), (where, "tau", 1.1), (where, "V", 0.9)]
-    for where, symbol, factor in [*scaled, ("suspended", "k_s", 1.3), ("fixed", "delta", 1.05)]:
-        data = partial(simulated, where, key=KEYS[symbol], factor=factor)
-        yield Plant(f"{symbol} x {factor}", where, data, f"wrong {symbol}")
-    planted = [
-        ("reversal", "no relaxation", 0.0, "no relaxation of the free surface"),
-        ("Table 1", "radius at the right depth", 1.05, "wrong R"),
-        ("Table 1", "no damping", 0.0, "none"),
-        ("Table 1", "shape", 2.2, "none"),
-    ]
-    for where in ("Table 1", "reversal", "soft"):
-        plain = simulated(where)
-        arm = 0.08 * np.sqrt(2 * BLIND[where].indenter.radius * plain["depth"][0])
-        planted += [
-            (where, "no inertia", 0.0, "wrong inertia"),
-            (where, "initial depth", 1.05, "wrong initial depth"),
-            (where, "lever arm", arm, "lever arm of friction_force"),
-        ]
-        edits = [("sign of friction_force", {"friction_force": -plain["friction_force"]})]
-        if where != "reversal":
-            planted += [(where, "undeformed", 0.0, "undeformed at the start")]
-            edits += [("time offset", {"time": plain["time"] + late}) for late in (3e-3, 1e3)]
-            edits += [("unit of normal_force", {"normal_force": 1e3 * plain["normal_force"]})]
-        for name, edit in edits:
-            yield Plant(name, where, lambda data={**plain, **edit}: data, name)
-    for where, plant, value, name in planted:
-        yield Plant(plant, where, partial(simulated, where, plant=plant, value=value), name)
-
-
-if __name__ == "__main__":
-    report(plants(), SCENES)
-    report([*sound()], BLIND)
-    report([*faults()], BLIND)

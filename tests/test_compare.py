@@ -1,7 +1,6 @@
 """Anybody's time series, read and held against theory: what agrees, and what cannot be judged."""
 
 import json
-import os
 from dataclasses import replace
 from functools import cache
 
@@ -14,6 +13,7 @@ from kvtheory.checks.reading import MOST_ROWS, SPELLINGS, read, recognise
 from kvtheory.cli import main
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
+from tests import SCENES as MANY
 from tests import confusion
 from tests.confusion import BLIND, disturbed
 from tests.faulty_simulator import simulate
@@ -224,7 +224,7 @@ def test_a_simulation_in_flight_keeps_the_error_with_which_it_took_off(velocity)
     assert held.verdict == "agrees", held.diagnosis
 
 
-SEEDS = max(5, int(os.environ.get("KVTHEORY_TEST_SCENES", "0")))
+SEEDS = MANY // 40
 EACH, NOISE, DIGITS = ((0.005, None), (0.02, None), (0.0, 2)), ((0.02, None),), ((0.0, 2),)
 
 

@@ -1,6 +1,5 @@
 """The closed forms: against ball arithmetic, and the identities that steady sliding must obey."""
 
-import os
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,13 +9,11 @@ import kvtheory as kv
 from kvtheory.models.steady import ball, exact, methods
 from kvtheory.models.steady.methods import ODD
 from kvtheory.results import STEADY_UNITS
-from tests import reference, reference_ball, steady
+from tests import SCENES, reference, reference_ball, steady
 from tests.rounding import Rounded
 from tests.steady import at_depth, at_load
 
 EPS = np.finfo(float).eps
-SCENES = 3 * int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
-"""Random scenes of each shape on each support; more than 10^4 in all with 1000."""
 SUPPORTS = "fixed", "dead-weight", "suspended"
 SHAPES = {"parabola": (reference, exact), "ball": (reference_ball, ball)}
 
@@ -25,13 +22,13 @@ def random_scenes(shape, support, seed=2020):
     """R, R' of a ball, K, tau, V and the support; V tau/a_0 over 24 decades, kappa over 18 of them."""
     rng = np.random.default_rng(seed)
     ends = np.array([[-6, 3], [3, 15], [-6, 3], [-6, 9], [-12, 12], [-9, 9], [-2, 2]]).T[..., None]
-    R, K, tau, W, number, kappa, across = 10.0 ** rng.uniform(*ends, (7, SCENES))
+    R, K, tau, W, number, kappa, across = 10.0 ** rng.uniform(*ends, (7, 3 * SCENES))
     number[:4] = 1e-12, 1e12, 1e-12, 1e12
     depth = (9 * (W / K) ** 2 / (32 * R)) ** (1 / 3)
     if shape == "ball":
         number[::3] = 10.0 ** rng.uniform(-1, 1, number[::3].size)  # where T changes its form
         depth = np.sqrt(W / (np.pi * K * R * np.sqrt(across)))
-    V = number / tau * np.sqrt(2 * R * depth) * rng.choice([-1.0, 1.0], SCENES)
+    V = number / tau * np.sqrt(2 * R * depth) * rng.choice([-1.0, 1.0], 3 * SCENES)
     grip = {"fixed": (depth,), "dead-weight": (W,), "suspended": (W, kappa * W / depth)}[support]
     return (R, *([R * across] if shape == "ball" else []), K, tau, V, *grip)
 

@@ -16,8 +16,9 @@ from kvtheory.models.steady import asymptote_bounds as asymptote
 from kvtheory.models.steady import ball, exact
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.errors import ToleranceError
-from tests.ladder_scenes import enclosed, scaled_scene
+from tests.ladder_scenes import enclosed
 from tests.reference import relative_error
+from tests.spring_random import of_unit_scales
 
 NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
 SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)
@@ -47,7 +48,7 @@ def test_each_bound_covers_the_error_of_its_asymptote_and_is_not_far_above(kappa
     """Held against ball arithmetic."""
     far = []
     for number in NUMBERS.tolist():
-        scene = scaled_scene(kv.Drive(number), 1.0, kappa, ball=shape == "sphere")
+        scene = of_unit_scales(1.0, kappa, kv.Drive(number), ball=shape == "sphere")
         exact, bounds = enclosed(scene), asymptote.enclosure_of(scene)
         for regime in ("low", "high"):
             if regime == "high" and number == 0.0:

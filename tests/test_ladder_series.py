@@ -18,12 +18,12 @@ from kvtheory.results.table import scales as scales_of
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
 from tests import slow_manifold_by_radau as slow_manifold
-from tests.ladder_scenes import scaled_scene
+from tests.spring_random import of_unit_scales
 
 
 def light(number=4.0, eps=1e-6, kappa=0.0, end=3.0):
     """Return a start from rest in scaled units."""
-    return scaled_scene(kv.Drive(number), eps, kappa, end)
+    return of_unit_scales(eps, kappa, kv.Drive(number), end)
 
 
 @pytest.mark.parametrize(("number", "kappa"), [(0.1, 0.0), (4.0, 0.0), (100.0, 0.0), (2.0, 0.3)])

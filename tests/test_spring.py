@@ -15,6 +15,7 @@ from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from kvtheory.scene.base_motion import BaseMotion, evaluate
+from tests import SCENES
 from tests import spring_reference as ref
 from tests.spring_random import Case, balances, random_case
 from tests.test_transient_reference import drive, worst
@@ -78,7 +79,7 @@ def test_the_table_holds_what_is_hard():
     assert sum("sliding reverses" in kinds for kinds in events.values()) >= 8
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(SCENES // 25))
 def test_energy_and_both_impulses_balance(seed):
     motion = random_case(seed).solved(1e-11)
     assert max(balances(motion).values()) < 1e-9
@@ -175,7 +176,7 @@ def test_edges_follow_the_sign_of_the_sliding_velocity():
 
 def test_the_certificate_covers_the_error():
     dishonest = []
-    for seed in range(12):
+    for seed in range(SCENES // 16):
         case = random_case(seed)
         result = kv.transient(case.scene(), at=case.times, rtol=1e-5)
         truth = kv.transient(case.scene(), at=case.times, rtol=1e-11, certify=False)
