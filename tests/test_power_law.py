@@ -1,11 +1,13 @@
 """Power law and wedge: closed forms and quadrature against ball arithmetic, the parabola, and identities."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
+from kvtheory.models.steady.roots import cube_root, root
 from tests import reference_power_law, steady
 from tests.reference import excess
 
@@ -70,6 +72,19 @@ def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():
     assert (state.trailing_edge[3], claimed[3]) == (0.0, np.inf)
     assert np.all(state.load > 0)
     assert state.certificate.relative_error["load"] == STATED["load"]
+
+
+@pytest.mark.usefixtures("fifty_digits")
+def test_roots_are_rounded_without_a_bias():
+    """On average to a tenth of a unit in the last place, and never off by more than one and a half."""
+    base, degree = 10.0 ** np.random.default_rng(1).uniform((-30, 0), (30, 1.4), (4000, 2)).T
+    for found, n in ((root(base, degree), degree), (cube_root(base), np.full_like(base, 3.0))):
+        errors = [
+            float(mp.mpf(r) / mp.mpf(b) ** (1 / mp.mpf(k)) - 1) / EPS
+            for r, b, k in zip(found.tolist(), base.tolist(), n.tolist(), strict=True)
+        ]
+        assert abs(np.mean(errors)) < 0.1
+        assert np.abs(errors).max() < 1.5
 
 
 def test_friction_of_a_wedge_is_its_slope_from_its_crossover_on():
