@@ -23,8 +23,6 @@ from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 from tests import (
     reference,
-    reference_ball,
-    reference_power_law,
     transient_history,
     transient_reference,
 )
@@ -136,10 +134,10 @@ def enclosed(scene):
     """Return the steady quantities of a parabola, a power law, a wedge or a ball, in ball arithmetic."""
     shape, f, support = scene.indenter, scene.foundation, scene.support
     truth, given = {
-        "parabola": lambda: (reference, (shape.radius,)),
-        "sphere": lambda: (reference_ball, (shape.radius, shape.radius_across or shape.radius)),
-        "wedge": lambda: (reference_power_law, (shape.inclination, 1.0, 1.0)),
-        "power-law": lambda: (reference_power_law, (1.0, shape.length, shape.exponent)),
+        "parabola": lambda: (reference.parabola, (shape.radius,)),
+        "sphere": lambda: (reference.ball, (shape.radius, shape.radius_across or shape.radius)),
+        "wedge": lambda: (reference.power_law, (shape.inclination, 1.0, 1.0)),
+        "power-law": lambda: (reference.power_law, (1.0, shape.length, shape.exponent)),
     }[shape.shape]()
     given = *given, f.stiffness, f.retardation_time, scene.drive.velocity
     if isinstance(support, kv.Fixed):

@@ -9,13 +9,13 @@ import kvtheory as kv
 from kvtheory.models.steady import ball, exact, methods
 from kvtheory.models.steady.methods import ODD
 from kvtheory.results import STEADY_UNITS
-from tests import SCENES, reference, reference_ball, steady
+from tests import SCENES, reference, steady
 from tests.rounding import Rounded
 from tests.steady import at_depth, at_load
 
 EPS = np.finfo(float).eps
 SUPPORTS = "fixed", "dead-weight", "suspended"
-SHAPES = {"parabola": (reference, exact), "ball": (reference_ball, ball)}
+SHAPES = {"parabola": (reference.parabola, exact), "ball": (reference.ball, ball)}
 
 
 def random_scenes(shape, support, seed=2020):
@@ -57,14 +57,14 @@ def test_the_references_enclose_their_own_integrals():
     for R, K, tau, depth, number in (10.0 ** np.random.default_rng(7).uniform(*ends, (5, 20))).T:
         V = number * np.sqrt(2 * R * depth) / tau
         scene = tuple(map(float, (R, K, tau, V, depth)))
-        truth = reference.at_depth(*scene)
+        truth = reference.parabola.at_depth(*scene)
         for enclosed, name in zip(
-            reference.integrals(*scene), ("load", "friction_force"), strict=True
+            reference.parabola_integrals(*scene), ("load", "friction_force"), strict=True
         ):
             assert enclosed.overlaps(truth[name])
             assert enclosed.rel_accuracy_bits() > 100
     scene = (0.01, 0.02, 1e10, 0.1, 0.05, 3e-4)
-    truth, sums = reference_ball.at_depth(*scene), reference_ball.integrals(*scene)
+    truth, sums = reference.ball.at_depth(*scene), reference.ball_integrals(*scene)
     for enclosed, name in zip(sums, ("load", "friction_force"), strict=True):
         assert enclosed.overlaps(truth[name])
         assert enclosed.rel_accuracy_bits() > 40

@@ -8,8 +8,7 @@ import kvtheory as kv
 from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
 from kvtheory.models.steady.roots import cube_root, root
-from tests import reference_power_law, steady
-from tests.reference import excess
+from tests import reference, steady
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 EXPONENTS = (1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 1.5, 2.0, 2.7, 3.0, 4.0, 6.0, 11.5, 20.0, 24.0)
@@ -19,7 +18,7 @@ STATED = power_law.CERTIFICATE.relative_error
 
 
 def random_case(rng, n, kind, decades=12):
-    """Return the arguments of `reference_power_law.at_depth` or `at_load`, |V| within decades of a_0/tau."""
+    """Return the arguments of `reference.power_law.at_depth` or `at_load`, |V| within decades of a_0/tau."""
     slope = float(10 ** rng.uniform(-3, 0)) if n == 1.0 else 1.0
     L, K, tau = (float(10.0 ** rng.uniform(*ends)) for ends in ((-4, 0), (6, 12), (-4, 2)))
     weight = float(10.0 ** rng.uniform(0, 5))
@@ -53,7 +52,7 @@ def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind, solve, p
         if profile:
             shape = kv.Profile(shape.height, shape.slope, kinks=(0.0,))
         state = getattr(steady, method)(shape, *case[3:], solve=solve)
-        assert not excess(state, getattr(reference_power_law, method)(*case)), case
+        assert not reference.excess(state, getattr(reference.power_law, method)(*case)), case
         for name, claimed in state.certificate.relative_error.items():
             sure = name != OWN or state.trailing_edge != 0.0 or n == 1.0
             if solve is solve_quadrature:
