@@ -16,8 +16,7 @@ from kvtheory.results.schemes import SCHEME_ROWS
 from tests import SCENES as MANY
 from tests import confusion
 from tests.confusion import BLIND, disturbed
-from tests.faulty_simulator import simulate
-from tests.first_order import first_order
+from tests.faulty_simulator import first_order, simulate
 
 HEADS = "t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
 SCALED = {"time": 1e3, "depth": -1e3, "normal_force": 1e-3, "friction_force": 1e-3}

@@ -24,28 +24,15 @@ def standard():
     return kv.transient(rtol=1e-9)
 
 
-def test_the_papers_numbers_for_the_fixed_indenter():
-    result = kv.transient(kv.Scene.table1("fixed"), at=["0 ms", "100 ms"])
-    assert result.normal_force / 1e3 == pytest.approx([35, 35], abs=HALF)
-    assert result.friction_force / 1e3 == pytest.approx([5, 5], abs=HALF)
-    assert result.trailing_edge * 1e3 == pytest.approx([0.3, 0.3], abs=0.05)
-    assert np.all(result.peak_pressure > 20e6)
-
-
 def test_the_papers_numbers_for_the_movable_indenter(standard):
-    first, last = 0, -1
+    """On the way; `test_paper` has those of steady sliding, which every start ends in."""
     # "~ 30 N/mm" at once: theory gives 35.4, for the spike is thinner than the paper's pen.
-    assert standard.normal_force[first] / 1e3 == pytest.approx(35.37, abs=0.01)
+    assert standard.normal_force[0] / 1e3 == pytest.approx(35.37, abs=0.01)
     assert standard.normal_force.min() / 1e3 == pytest.approx(9, abs=HALF)
-    assert standard.normal_force[last] / 1e3 == pytest.approx(10, abs=HALF)
-    assert standard.friction_force[first] / 1e3 == pytest.approx(5, abs=HALF)
+    assert standard.friction_force[0] / 1e3 == pytest.approx(5, abs=HALF)
     elbow = np.argmin(np.abs(standard.time - 2e-3))
     assert standard.friction_force[elbow] / 1e3 == pytest.approx(2, abs=HALF)
-    assert standard.friction_force[last] / 1e3 == pytest.approx(1, abs=HALF)
-    assert standard.depth[last] * 1e3 == pytest.approx(0.1, abs=0.05)
     assert standard.trailing_edge.min() * 1e3 == pytest.approx(-1, abs=HALF)
-    assert standard.trailing_edge[last] * 1e3 == pytest.approx(0.1, abs=0.05)
-    assert standard.leading_edge[last] * 1e3 == pytest.approx(-1.3, abs=0.05)
 
 
 def test_the_papers_two_time_constants():
