@@ -27,7 +27,7 @@ from tests import (
     transient_reference,
 )
 from tests.spring_random import of_unit_scales
-from tests.transient_scenes import Scene as ScaledScene
+from tests.transient_history import Scene as ScaledScene
 
 TRUER, TRUEST = 1e-2, 1e-4
 """Tolerance of the truth, in units of that asked for; the latter where the former speaks against us."""

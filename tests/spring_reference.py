@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.transient_history import history
+from tests.transient_history import Scene, history, jump
 from tests.transient_reference import entry, extrapolated
-from tests.transient_scenes import Scene, jump
 
 TABLE = Path(__file__).parent / "data" / "spring_reference.json"
 TOLERANCES = (1e-10, 1e-11)

@@ -15,7 +15,7 @@ from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.base_motion import BaseMotion
 from tests import transient_reference as ref
-from tests.transient_scenes import QUANTITIES
+from tests.transient_history import QUANTITIES
 
 TABLE = json.loads(ref.TABLE.read_text())
 SCENES = ref.TAYLOR | ref.TWO_STATES | ref.HISTORY

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
+from tests.transient_history import Scene
 from tests.transient_reference import elements
-from tests.transient_scenes import Scene
 
 
 def sheet(pieces, epsilon, kappa, points, step):

@@ -27,8 +27,7 @@ import mpmath
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tests.transient_history import history
-from tests.transient_scenes import (
+from tests.transient_history import (
     HISTORY,
     QUANTITIES,
     TAYLOR,
@@ -37,6 +36,7 @@ from tests.transient_scenes import (
     Scene,
     Solution,
     at_times,
+    history,
 )
 
 TABLE = Path(__file__).parent / "data" / "transient_reference.json"
