@@ -10,7 +10,7 @@ import kvtheory as kv
 from kvtheory.api import _compare
 from kvtheory.checks.fitting import scaled_scene
 from tests import SCENES as MANY
-from tests.confusion import SCENES, plants, quick, series, simulated
+from tests.confusion import SCENES, by_points, plants, quick, series
 from tests.test_compare import BALL, SPRINGS, exact, failed
 
 RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv.Run(0.008))
@@ -76,7 +76,7 @@ def test_each_planted_fault_is_named_and_measured(plant):
 )  # fmt: skip
 def test_faults_of_a_simulator_written_without_looking_are_named(name, options):
     options = {"points": 400, "steps": 1200, **options}
-    first_of(kv.compare(data=simulated("Table 1", **options)), name)
+    first_of(kv.compare(data=by_points(**options)), name)
 
 
 @pytest.mark.parametrize(
