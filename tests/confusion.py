@@ -152,7 +152,7 @@ def quick():
 
 FEW = ("time", "depth", "normal_force", "friction_force")
 BEYOND, HALVINGS = 1.5, 32
-"""How far the points reach on both sides of the indenter, in static half lengths; halvings of the bisection."""
+"""How far the points reach on either side of the indenter, in static half lengths; steps of the bisection."""
 
 
 def by_points(points, steps, *, key="", factor=1.0, plant="", value=0.0):
