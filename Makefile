@@ -6,6 +6,8 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 WORKERS ?= auto
+# Hundreds of modules are compiled once, and not in each of the many processes of the tests.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
 

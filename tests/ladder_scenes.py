@@ -23,12 +23,11 @@ from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 from tests import (
     reference,
-    reference_ball,
-    reference_power_law,
     transient_history,
     transient_reference,
 )
-from tests.transient_scenes import Scene as ScaledScene
+from tests.spring_random import of_unit_scales
+from tests.transient_history import Scene as ScaledScene
 
 TRUER, TRUEST = 1e-2, 1e-4
 """Tolerance of the truth, in units of that asked for; the latter where the former speaks against us."""
@@ -88,17 +87,6 @@ def shape_case(rng):
     return Case("other shape", scene, _request(rng, names, one=True))
 
 
-def scaled_scene(drive, eps, kappa, end=1.0, ball=False):
-    """Return a scene whose scales are all 1; an infinite kappa is a fixed indenter."""
-    support = kv.DeadWeight(mass=eps, gravity=1 / eps)
-    if math.isinf(kappa):
-        support = kv.Fixed(1.0)
-    elif kappa:
-        support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
-    shape, K = (kv.Sphere(0.5), 2.0 / math.pi) if ball else (kv.Parabola(0.5), 0.75)
-    return kv.Scene(shape, kv.Foundation(K, 1.0), support, drive, kv.Run(end))
-
-
 def start_case(rng, memory=False):
     """Draw a start from rest, or a drive that changes once; all scales are 1, but for the sign of V."""
     eps = 10 ** rng.uniform(-2.5, 1) if memory else 10 ** rng.uniform(-7, 1)
@@ -114,7 +102,7 @@ def start_case(rng, memory=False):
         times = times[np.abs(times - change) > 1e-6]
         times = np.append(times, end)
     given = kv.Drive(history=points) if memory else kv.Drive(side * number)
-    scene = scaled_scene(given, eps, kappa, end)
+    scene = of_unit_scales(eps, kappa, given, end)
     fixed = math.isinf(kappa)
     scaled = ScaledScene(drive, None if fixed else eps, tuple(times), 0.0 if fixed else kappa)
     request = {**_request(rng, SOLVED), "at": times.tolist()}
@@ -146,10 +134,10 @@ def enclosed(scene):
     """Return the steady quantities of a parabola, a power law, a wedge or a ball, in ball arithmetic."""
     shape, f, support = scene.indenter, scene.foundation, scene.support
     truth, given = {
-        "parabola": lambda: (reference, (shape.radius,)),
-        "sphere": lambda: (reference_ball, (shape.radius, shape.radius_across or shape.radius)),
-        "wedge": lambda: (reference_power_law, (shape.inclination, 1.0, 1.0)),
-        "power-law": lambda: (reference_power_law, (1.0, shape.length, shape.exponent)),
+        "parabola": lambda: (reference.parabola, (shape.radius,)),
+        "sphere": lambda: (reference.ball, (shape.radius, shape.radius_across or shape.radius)),
+        "wedge": lambda: (reference.power_law, (shape.inclination, 1.0, 1.0)),
+        "power-law": lambda: (reference.power_law, (1.0, shape.length, shape.exponent)),
     }[shape.shape]()
     given = *given, f.stiffness, f.retardation_time, scene.drive.velocity
     if isinstance(support, kv.Fixed):

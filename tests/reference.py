@@ -6,6 +6,7 @@ digits after the worst cancellation.
 """
 
 from dataclasses import dataclass, fields
+from types import SimpleNamespace
 
 from flint import acb, arb, ctx
 
@@ -37,7 +38,7 @@ def steady(shape):
                 depth = _depth(body, abs(V) * tau, weight / K + k * static, k, static)
             return quantities(body, K, tau, V, depth)
 
-    return at_depth, at_load
+    return SimpleNamespace(at_depth=at_depth, at_load=at_load)
 
 
 def _depth(body, l_r, total, spring, guess):
@@ -107,10 +108,109 @@ class Parabola:
         return -x_le, x_te, friction, l_r * square / (R * R), peak  # lost: l_r int h'^2 dx
 
 
-at_depth, at_load = steady(Parabola)
+@dataclass
+class Ball:
+    """The sums over its strips as books print them: with so many digits cancellation does not matter."""
+
+    radius: arb
+    across: arb
+
+    def static_depth(self, weight):
+        return (weight / (arb.pi() * (self.radius * self.across).sqrt())).sqrt()
+
+    def _theta(self, l_r, a):
+        return (a / l_r).atan() if l_r > 0 else arb.pi() / 2
+
+    def load(self, l_r, depth):
+        """sqrt(R'/R) [pi a^4 + 2 a^3 l - 2 a l^3 + 2 (a^2 + l^2)^2 arctan(a/l)]/(8 R), and its slope."""
+        R, l = self.radius, l_r
+        a = (2 * R * depth).sqrt()
+        theta, r = self._theta(l, a), a * a + l * l
+        scale = (self.across / R).sqrt() / (8 * R)
+        load = scale * (arb.pi() * a**4 + 2 * a**3 * l - 2 * a * l**3 + 2 * r * r * theta)
+        slope = scale * (4 * arb.pi() * a**3 + 8 * a * a * l + 8 * a * r * theta)
+        return load, slope * R / a
+
+    def contact(self, l_r, depth, load):
+        R, l, stretch = self.radius, l_r, (self.across / self.radius).sqrt()
+        a, x_te, _, _, peak = Parabola(R).contact(l, depth, load)
+        friction = l / R * (load - 2 * l * a**3 / (3 * R) * stretch)
+        behind = 2 * a**3 / 3 + a * l * l - l * (a * a + l * l) * self._theta(l, a)
+        return a, x_te, friction, friction - l * l / R**2 * behind * stretch, peak
 
 
-def integrals(radius, stiffness, retardation_time, velocity, depth):
+@dataclass
+class PowerLaw:
+    """A power law or a wedge, h = slope |x|^n/(n L^(n-1)), n >= 1, from the definitions.
+
+    h(a) = delta, no pressure delta - h - l_r h' at the trailing edge, W = int p dx by its antiderivative, and
+    F by the energy balance F = u_TE^2/2 + l_r int h'^2 dx.
+    """
+
+    slope: arb
+    length: arb
+    exponent: arb
+
+    def height(self, x):
+        return self.rise(x) * x / self.exponent
+
+    def rise(self, x):
+        """h' at x >= 0."""
+        tip = self.slope if self.exponent == 1 else arb(0)
+        return self.slope * (x / self.length) ** (self.exponent - 1) if x != 0 else tip
+
+    def static_depth(self, weight):
+        n, L = self.exponent, self.length
+        a_0 = ((n + 1) * L ** (n - 1) * weight / (2 * self.slope)) ** (1 / (n + 1))
+        return self.height(a_0)
+
+    def edges(self, l_r, depth):
+        n, L = self.exponent, self.length
+        a = L * (n * depth / (self.slope * L)) ** (1 / n)
+        return a, self.trailing_edge(l_r, a)
+
+    def trailing_edge(self, l_r, a):
+        """Enclose x_TE > 0 with h + l_r h' = h(a): for a wedge it may be 0, the tip."""
+        n, c = self.exponent, self.exponent * l_r / a
+        if n == 1:
+            return (a - l_r).max(arb(0))
+        if l_r == 0:
+            return a
+
+        def excess(t):
+            return (n - 1) * t + (t.exp() + c).log()
+
+        t = (arb(0) if c < 1 else -c.log() / (n - 1)).mid()
+        for _ in range(400):
+            share = t.exp() / (t.exp() + c)
+            step = (excess(t) / (n - 1 + share)).mid()
+            t = (t - step).mid()
+            if abs(step) < WIDTH:
+                break
+        for widening in range(0, 200, 20):  # the ball of c may itself be wider
+            width = WIDTH * arb(2) ** widening
+            if excess(t - width) < 0 < excess(t + width):
+                return a * arb(t, width).exp()
+        raise ArithmeticError("the trailing edge was not enclosed")
+
+    def load(self, l_r, depth):
+        edges = a, x_te = self.edges(l_r, depth)
+        below = sum(self.height(x) * x / (self.exponent + 1) for x in edges)
+        u_te = depth - self.height(x_te)
+        return depth * (x_te + a) - below + l_r * u_te, x_te + a + l_r
+
+    def contact(self, l_r, depth, load):
+        n, (a, x_te) = self.exponent, self.edges(l_r, depth)
+        lost = l_r * sum(self.rise(x) ** 2 * x / (2 * n - 1) for x in (x_te, a))
+        x_peak = a.min((n - 1) * l_r)
+        peak = depth - self.height(x_peak) + l_r * self.rise(x_peak)
+        return a, x_te, (depth - self.height(x_te)) ** 2 / 2 + lost, lost, peak
+
+
+parabola, ball, power_law = steady(Parabola), steady(Ball), steady(PowerLaw)
+
+
+def parabola_integrals(radius, stiffness, retardation_time, velocity, depth):
     """Enclose W and F of a parabola as integrals of the definitions, for V >= 0."""
     with ctx.workprec(BITS):
         R, K, tau, V, depth = map(arb, (radius, stiffness, retardation_time, velocity, depth))
@@ -121,6 +221,27 @@ def integrals(radius, stiffness, retardation_time, velocity, depth):
 
         friction = acb.integral(lambda x, _: -x / R * pressure(x, _), *ends)
         return acb.integral(pressure, *ends).real, friction.real
+
+
+def ball_integrals(radius, across, stiffness, retardation_time, velocity, depth):
+    """Enclose W and F as integrals over the strips, each by its antiderivatives, for V > 0: y = b sin(t)."""
+    with ctx.workprec(100):
+        R, S, K, tau, V, depth = map(
+            arb, (radius, across, stiffness, retardation_time, velocity, depth)
+        )
+        l_r, b = V * tau, (2 * S * depth).sqrt()
+
+        def strip(t, power):
+            d = depth * t.cos() ** 2
+            a = (2 * R * depth).sqrt() * t.cos()
+            x_te = (2 * R * d + l_r * l_r).sqrt() - l_r
+            sums = [x_te**n - (-a) ** n for n in range(5)]
+            load = d * sums[1] - sums[3] / (6 * R) - l_r * sums[2] / (2 * R)
+            friction = -(d * sums[2] / 2 - sums[4] / (8 * R) - l_r * sums[3] / (3 * R)) / R
+            return (friction if power else load) * b * t.cos() * K
+
+        ends = acb(0), acb(arb.pi() / 2)
+        return [2 * acb.integral(lambda t, _, n=n: strip(t, n), *ends).real for n in (0, 1)]
 
 
 def relative_error(value, truth):

@@ -5,13 +5,8 @@ not matter with so many digits, and share nothing with the moments that the pack
 
     p = (a G_1 - G_2)/R,  a = G_2(c)/G_1(c),  W = (G_2^2/G_1 - G_3)/R,
     F = [a W - (a (c G_2 - G_3) - c G_3 + G_4)/R]/R.
-
-``python -m tests.reference_viscoelastic 10000`` compares that many random scenes.
 """
 
-import sys
-
-import numpy as np
 from flint import arb, ctx
 
 import kvtheory as kv
@@ -201,15 +196,3 @@ def errors(case):
         key: reference.relative_error(getattr(state, key), truth[key]) / claimed[key]
         for key in truth
     }
-
-
-if __name__ == "__main__":
-    rng = np.random.default_rng(13)
-    worst = {}
-    for number in range(int(sys.argv[1])):
-        case = random_case(rng, ("fixed", "dead-weight", "suspended")[number % 3])
-        for key, error in errors(case).items():
-            if error > worst.get(key, (0.0,))[0]:
-                worst[key] = error, case
-    for key, (error, case) in worst.items():
-        print(f"{key}: {error:.3g} {case[0].__name__, len(case[1])}")

@@ -1,42 +1,31 @@
-"""Random scenes on a spring: `python -m tests.spring_random 1000` follows so many and prints the outcome.
-
-Each is followed twice: at a loose tolerance with its certificate, and at a tight one, which is the truth and
-whose balances are measured. Every scene must end in a result or an error that says when and why.
-"""
+"""Random scenes on a spring, in scaled form, and how well their motions keep the balances."""
 
 import math
-import sys
-from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import Trajectory, solve
 from kvtheory.models.continuum.surface import integrals
-from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
-COLUMNS = {
-    "depth": e_.DEPTH, "sliding_velocity": e_.NUMBER,
-    "spring_force": e_.SPRING_FORCE, "friction_force": e_.FRICTION_FORCE,
-}  # fmt: skip
 SWINGS = 30
 """That a run takes at most, along x."""
 
 
-def of_unit_scales(eps, kappa, drive, end):
+def of_unit_scales(eps, kappa, drive, end=1.0, *, ball=False):
     """Return the scene whose scales R, K and tau make 1: its SI numbers are the scaled ones."""
     support = kv.DeadWeight(mass=eps, gravity=1 / eps)
     if math.isinf(kappa):
         support = kv.Fixed(1.0)
     elif kappa > 0.0:
         support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
-    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, kv.Run(end))
+    shape, K = (kv.Sphere(0.5), 2.0 / math.pi) if ball else (kv.Parabola(0.5), 0.75)
+    return kv.Scene(shape, kv.Foundation(K, 1.0), support, drive, kv.Run(end))
 
 
 @dataclass(frozen=True)
@@ -115,32 +104,3 @@ def balances(motion):
         "impulse along x": float(np.max(np.abs(along) / (size * max(1.0, given.eps_x)))),
         "impulse along z": float(np.max(np.abs(up) / (size * (1.0 + eps)))),
     }
-
-
-def survey(count, first=0):
-    """Follow so many scenes; print errors, events, the worst balances and what no certificate covers."""
-    seen, worst, dishonest, failed = Counter(), Counter(), [], []
-    for seed in range(first, first + count):
-        case = random_case(seed)
-        try:
-            result = kv.transient(case.scene(), at=case.times, rtol=1e-6)
-            truth = case.solved(1e-10, fast=compiled.available())
-        except TransientError as error:
-            failed.append((seed, str(error)))
-            continue
-        seen.update({event.kind for event in truth.events})
-        for name, value in balances(truth).items():
-            if value > 1e-9:
-                print(seed, name, value, flush=True)
-            worst[name] = max(worst[name], value)
-        states = truth.states(case.times).T
-        for name, column in COLUMNS.items():
-            error = np.abs(getattr(result, name) - states[column]).max()
-            if error > result.certificate.relative_error[name] + 1e-8:
-                dishonest.append((seed, name, error, result.certificate.relative_error[name]))
-    print(f"{count} scenes: {len(failed)} errors {failed}; not covered: {dishonest}")
-    print(dict(worst), {kind: n for kind, n in seen.items() if "memory" not in kind})
-
-
-if __name__ == "__main__":
-    survey(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)

@@ -6,7 +6,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.steady import asymptotes, regimes
 from kvtheory.results import STEADY_UNITS
-from tests import reference, reference_ball, reference_power_law
+from tests import reference
 from tests.test_power_law import random_case
 
 SUPPORTS = "fixed", "dead-weight", "suspended"
@@ -61,13 +61,16 @@ def random_scene(rng, n, kind):
     shape = kv.Wedge(slope) if n == 1.0 else kv.PowerLaw(L, exponent)
     method = "at_depth" if kind == "fixed" else "at_load"
     if n == 2.0:
-        shape, truth = kv.Parabola(L), getattr(reference, method)(L, K, tau, velocity, *grip)
+        shape, truth = (
+            kv.Parabola(L),
+            getattr(reference.parabola, method)(L, K, tau, velocity, *grip),
+        )
     elif n == 0.0:
         across = L * 10 ** rng.uniform(-1, 1)
         shape = kv.Sphere(L, radius_across=across)
-        truth = getattr(reference_ball, method)(L, across, K, tau, velocity, *grip)
+        truth = getattr(reference.ball, method)(L, across, K, tau, velocity, *grip)
     else:
-        truth = getattr(reference_power_law, method)(*case)
+        truth = getattr(reference.power_law, method)(*case)
     return kv.Scene(shape, kv.Foundation(K, tau), support, kv.Drive(velocity)), truth
 
 

@@ -1,7 +1,6 @@
 """Every cell of what works with what: it answers with a certificate, or refuses in the words of the table."""
 
 import math
-import os
 from functools import partial
 from itertools import product
 
@@ -11,6 +10,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.explorer import explorer_page
 from kvtheory.scene.capabilities import CLOSED, DRIVES, LAWS, QUESTIONS, SHAPES, SUPPORTS
+from tests import SCENES
 
 FUNCTIONS = kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x)
 BODIES = {
@@ -29,12 +29,9 @@ AT = [0.0, 2e-4]
 COARSE = {"per_length": "10 /mm", "certify": False}
 
 
-EVERY = int(os.environ.get("KVTHEORY_TEST_SCENES", "0")) >= 1000
-
-
 def asked(question, shape, law, support, drive):
     """Whether the gate asks for the answer in a cell; `KVTHEORY_TEST_SCENES=1000` asks for every one."""
-    if EVERY:
+    if SCENES >= 1000:
         return True
     if question in ("compare", "sweep over time"):
         return False  # other tests hold the answers, which take long

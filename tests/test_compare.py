@@ -1,7 +1,6 @@
 """Anybody's time series, read and held against theory: what agrees, and what cannot be judged."""
 
 import json
-import os
 from dataclasses import replace
 from functools import cache
 
@@ -14,10 +13,10 @@ from kvtheory.checks.reading import MOST_ROWS, SPELLINGS, read, recognise
 from kvtheory.cli import main
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
+from tests import SCENES as MANY
 from tests import confusion
-from tests.confusion import BLIND, disturbed
-from tests.faulty_simulator import simulate
-from tests.first_order import first_order
+from tests.confusion import disturbed
+from tests.faulty_simulator import first_order, simulate
 
 HEADS = "t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
 SCALED = {"time": 1e3, "depth": -1e3, "normal_force": 1e-3, "friction_force": 1e-3}
@@ -121,6 +120,11 @@ def test_theory_agrees_with_itself_noisy_and_rounded_too(name):
     assert len(curves) >= 14
     assert max(curves) < 1e-3
     assert name in SPRINGS or worst["slow time constant"] < 1e-3
+    if (
+        name in SPRINGS
+    ):  # which friction loads suddenly, so that its error overshoots that of friction
+        late = {key: found.allowed[key][-100:] for key in ("spring_force", "friction_force")}
+        assert np.all(late["spring_force"] > late["friction_force"])
     few = ("depth", "normal_force", "friction_force", "spring_force", "sliding_velocity")
     given = {key: series[key] for key in few if key in series}
     noisy = {key: x * (1.0 + 0.01 * rng.standard_normal(x.size)) for key, x in given.items()}
@@ -224,18 +228,24 @@ def test_a_simulation_in_flight_keeps_the_error_with_which_it_took_off(velocity)
     assert held.verdict == "agrees", held.diagnosis
 
 
-SEEDS = max(5, int(os.environ.get("KVTHEORY_TEST_SCENES", "0")))
+SEEDS = MANY // 40
+
+
+def sine(t):
+    return 0.06 + 0.04 * np.sin(60.0 * t)
+
+
 EACH, NOISE, DIGITS = ((0.005, None), (0.02, None), (0.0, 2)), ((0.02, None),), ((0.0, 2),)
 
 
 @pytest.mark.parametrize(
-    ("name", "seeds", "ways", "rows"),
-    [("Table 1", range(SEEDS), EACH, 300), ("sine", range(SEEDS // 3), EACH, 300),
-     ("Table 1", (755, 902), NOISE, 400), ("suspended", (17, 48, 51), DIGITS, 400)],
+    ("given", "seeds", "ways", "rows"),
+    [(kv.Scene(), range(SEEDS), EACH, 300), (scene(function=sine), range(SEEDS // 3), EACH, 300),
+     (kv.Scene(), (755, 902), NOISE, 400), (LINES["suspended"], (17, 48, 51), DIGITS, 400)],
+    ids=["Table 1", "sine", "noise", "digits"],
 )  # fmt: skip
-def test_noise_in_proportion_to_the_value_and_two_digits_agree(name, seeds, ways, rows):
+def test_noise_in_proportion_to_the_value_and_two_digits_agree(given, seeds, ways, rows):
     """The last two look worst: noise told from few large values, and rounding that looks like elements."""
-    given = BLIND[name]
     theory = kv.transient(given, at=np.linspace(0.0, given.run.duration, rows).tolist())
     for seed in seeds:
         for level, digits in ways:

@@ -9,7 +9,8 @@ import pytest
 import kvtheory as kv
 from kvtheory.api import _compare
 from kvtheory.checks.fitting import scaled_scene
-from tests.confusion import SCENES, quick, series, simulated
+from tests import SCENES as MANY
+from tests.confusion import SCENES, by_points, plants, quick, series
 from tests.test_compare import BALL, SPRINGS, exact, failed
 
 RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv.Run(0.008))
@@ -49,7 +50,10 @@ def first_of(found, name):
     return found.explanations[0]
 
 
-@pytest.mark.parametrize("plant", quick(), ids=lambda plant: f"{plant.scene}: {plant.name}")
+PLANTS = plants() if MANY >= 1000 else quick()
+
+
+@pytest.mark.parametrize("plant", PLANTS, ids=lambda plant: f"{plant.scene}: {plant.name}")
 def test_each_planted_fault_is_named_and_measured(plant):
     found = kv.compare(SCENES[plant.scene], plant.data(), **plant.known)
     first = first_of(found, plant.fault)
@@ -71,9 +75,8 @@ def test_each_planted_fault_is_named_and_measured(plant):
     ],
 )  # fmt: skip
 def test_faults_of_a_simulator_written_without_looking_are_named(name, options):
-    """All of them: `python -m tests.confusion`."""
     options = {"points": 400, "steps": 1200, **options}
-    first_of(kv.compare(data=simulated("Table 1", **options)), name)
+    first_of(kv.compare(data=by_points(**options)), name)
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from kvtheory.models.continuum import compiled, solver
 from kvtheory.models.continuum.solver import solve
 from kvtheory.progress import COMPILING, listening
 from kvtheory.scene.base_motion import BaseMotion
-from tests import spring_random
-from tests.test_transient_random import SCENES, random_case
+from tests import SCENES, spring_random
+from tests.test_transient_random import random_case
 
 
 @pytest.fixture(scope="module", params=[1e-3, 1e-5, 1e-8])

@@ -116,23 +116,6 @@ def test_a_change_right_before_the_end_is_resolved_within_its_error():
     assert off <= found[0].certificate.relative_error["normal_force"]
 
 
-@pytest.mark.parametrize("support", ["fixed", "dead-weight"])
-def test_a_sine_is_the_limit_of_histories(support):
-    """A line through its points is off by h^2/8 of its curvature: twice the points, a quarter."""
-
-    def V(t):
-        return 0.05 * math.sin(60.0 * t)
-
-    found = kv.transient(scene(support, function=V), at=TIMES, rtol=1e-11)
-    errors = []
-    for count in (200, 400):
-        points = [(t, V(t)) for t in np.linspace(0.0, 0.2, count + 1).tolist()]
-        line = kv.transient(scene(support, history=points), at=TIMES, rtol=1e-9)
-        errors.append(difference(found, line))
-    assert errors[0] < 1e-3
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
-
-
 def test_a_fixed_indenter_knows_only_the_present_velocity_of_a_rising_drive():
     """Eqs. (32) and (33): its edges are -a and sqrt(a^2 + l_r^2) - l_r, whatever went before."""
     rising = scene("fixed", function=lambda t: 0.05 + 0.1 * t + 2.0 * t**3)

@@ -13,7 +13,8 @@ from kvtheory.models.continuum.solved_scene import force_maxima
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height, volume
 from kvtheory.scene.base_motion import BaseMotion
-from tests.test_transient_random import KNOWN_FAILURES, SCENES, random_case
+from tests import SCENES
+from tests.test_transient_random import KNOWN_FAILURES, random_case
 from tests.test_transient_reference import TABLE, of_the_table
 
 RTOL, BALANCE, CHECKS = 1e-10, 1e-9, 6

@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import re
 import tomllib
 from contextlib import contextmanager
@@ -19,10 +18,11 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import THIN, layer_number
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms
+from tests import SCENES
 from tests.browser import Browser
 
 TABLE1 = kv.Scene()
-SCENES = max(30, int(os.environ.get("KVTHEORY_TEST_SCENES", "0")) // 8)
+EACH = max(30, SCENES // 8)
 """Random scenes of each of nine families."""
 
 
@@ -79,7 +79,7 @@ def random_scenes():
     pairs = [(shape, "kelvin-voigt") for shape in list(shapes)[:5]]
     pairs += [(shape, law) for shape in ("parabola", "paraboloid") for law in ("arms", "springpot")]
     for shape, law in pairs:
-        for k in range(SCENES):
+        for k in range(EACH):
             R, W = between(1e-3, 0.1), between(10.0, 1e5)
             supports = (
                 kv.Fixed(R / 100), kv.DeadWeight(W / 9.80665),
@@ -126,7 +126,7 @@ def ask(browser, function, scene):
 def test_random_scenes_agree_with_python(browser):
     scenes = list(random_scenes())
     found = ask(browser, f"s => (t => {list(STEADY_UNITS)}.map(n => t[n]))(slide(s))", scenes)
-    assert len(found) == 9 * SCENES
+    assert len(found) == 9 * EACH
     for scene, row in zip(scenes, found, strict=True):
         try:
             state = kv.steady(scene)

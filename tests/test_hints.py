@@ -1,7 +1,6 @@
 """Messages about wrong input: what they name, quote and suggest; and files in any encoding."""
 
 import math
-import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -211,76 +210,6 @@ def test_a_density_is_blamed_only_where_it_was_given():
         kv.elements(large)
     with pytest.raises(ValueError, match=r"^`per_length` = 200000"):
         kv.elements(large, per_length=200e3)
-
-
-FAILURES, PRECISION = ("chart", "failures"), ("chart", "work-precision")
-COMPARE = ("compare", "--report", "r.html", "--plot", "p.png")
-RUBBER = {
-    "indenter.shape": "circle", "foundation.kind": "generalized-maxwell",
-    "foundation.arms": '[["30 GN/m^3", "10 ms"]]',
-}  # fmt: skip
-ON_RUBBER = [part for key, value in RUBBER.items() for part in ("--set", f"{key}={value}")]
-SWEEP = ("sweep", "-o", "a.csv", "--over")
-EXECUTORS = (
-    "sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x", "exits:make",
-    "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x", "fails:make",
-    "imports:make", "misspelt:make", "empty:make",
-)  # fmt: skip
-MODULES = {
-    "exits": "raise SystemExit(0)", "fails": "1/0", "imports": "import no_such",
-    "misspelt": "syntax error", "empty": "",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ([*FAILURES, "--only", "sawtoth"], 'did you mean "sawtooth"?'),
-        ([*FAILURES, "-o", "atlas.pdf"], "expected a name that ends in .html"),
-        ([*PRECISION, "--standard", "hopp"], 'did you mean "hop"?'),
-        (
-            [*PRECISION, "--standard", "hop", "--set", "drive.velocity=1 m/s"],
-            "does not go with SCENE",
-        ),
-        ([*PRECISION, "-o", "chart.txt"], "expected a name that ends in"),
-        ([*PRECISION, "--set", "indenter.shape=circle"], "parabola only"),
-        (["chart", "stability", "-o", "map.txt"], "expected a name that ends in"),
-        ([*COMPARE, "--plot", "nowhere/p.png"], 'there is no directory "'),
-        ([*COMPARE, "--plot", "p.xyz"], "ends in"),
-        ([*COMPARE, "--report", "r.txt"], "ends in .html"),
-        ([*COMPARE, "--report", "folder.html"], "is a directory"),
-        (["explore", *ON_RUBBER], 'the explorer holds for foundation.kind = "kelvin-voigt" only'),
-        (["transient", "--at", "1 furlong"], "--at"),
-        (["transient", "--rtol", "5"], "--rtol"),
-        (["elements", "--per-length", "-1 /mm"], "--per-length"),
-        (["solve", "--quantity", "depht"], "--quantity"),
-        (["steady", "--set", "nonsense"], "--set"),
-        (["steady", "--method", "exat"], "--method"),
-        ([*SWEEP, "a.b=1"], "--over"),
-        *(
-            ([*SWEEP, "drive.velocity=1 m/s", "--executor", text], f'--executor "{text}"')
-            for text in EXECUTORS
-        ),
-    ],
-)
-def test_a_command_refuses_in_one_message_and_writes_nothing(
-    arguments, message, tmp_path, monkeypatch
-):
-    (tmp_path / "modules").mkdir()
-    for name, code in MODULES.items():
-        (tmp_path / "modules" / f"{name}.py").write_text(code)
-    (tmp_path / "folder.html").mkdir()
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(str(tmp_path / "modules"))
-    done = CliRunner().invoke(main, arguments)
-    assert done.exit_code == 2
-    assert message in done.stderr
-    if message.startswith("--"):  # where the library would name an argument
-        assert "`" not in done.stderr.replace("`kinds`", "")
-    assert done.stdout == ""
-    assert {path.name for path in tmp_path.iterdir()} == {"folder.html", "modules"}
-    for name in MODULES:
-        sys.modules.pop(name, None)
 
 
 def test_a_class_is_no_executor():

@@ -1,18 +1,16 @@
 """The maxima of friction over velocity: closed forms against the search, the search against dense scans."""
 
-import os
-
 import numpy as np
 import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import maxima
-from tests import reference_viscoelastic
+from tests import SCENES, reference_viscoelastic
 
 V = "drive.velocity"
 TWO_ARMS = kv.GeneralizedMaxwell(1e10, arms=[["10 GN/m^3", "1 ms"], ["10 GN/m^3", "1 s"]])
 KINDS = "fixed", "dead-weight", "suspended"
-MANY = max(1, int(os.environ.get("KVTHEORY_TEST_SCENES", "200")) // 200)
+MANY = max(1, SCENES // 200)
 F3 = 3 * (np.sqrt(3) - 1) / 4 * (3 - np.sqrt(3)) ** (-1 / 3)
 """mu (K R^2/W)^(1/3) at the maximum."""
 

@@ -1,13 +1,14 @@
 """Power law and wedge: closed forms and quadrature against ball arithmetic, the parabola, and identities."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
-from tests import reference_power_law, steady
-from tests.reference import excess
+from kvtheory.models.steady.roots import cube_root, root
+from tests import reference, steady
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 EXPONENTS = (1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 1.5, 2.0, 2.7, 3.0, 4.0, 6.0, 11.5, 20.0, 24.0)
@@ -17,7 +18,7 @@ STATED = power_law.CERTIFICATE.relative_error
 
 
 def random_case(rng, n, kind, decades=12):
-    """Return the arguments of `reference_power_law.at_depth` or `at_load`, |V| within decades of a_0/tau."""
+    """Return the arguments of `reference.power_law.at_depth` or `at_load`, |V| within decades of a_0/tau."""
     slope = float(10 ** rng.uniform(-3, 0)) if n == 1.0 else 1.0
     L, K, tau = (float(10.0 ** rng.uniform(*ends)) for ends in ((-4, 0), (6, 12), (-4, 2)))
     weight = float(10.0 ** rng.uniform(0, 5))
@@ -51,7 +52,7 @@ def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind, solve, p
         if profile:
             shape = kv.Profile(shape.height, shape.slope, kinks=(0.0,))
         state = getattr(steady, method)(shape, *case[3:], solve=solve)
-        assert not excess(state, getattr(reference_power_law, method)(*case)), case
+        assert not reference.excess(state, getattr(reference.power_law, method)(*case)), case
         for name, claimed in state.certificate.relative_error.items():
             sure = name != OWN or state.trailing_edge != 0.0 or n == 1.0
             if solve is solve_quadrature:
@@ -70,6 +71,19 @@ def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():
     assert (state.trailing_edge[3], claimed[3]) == (0.0, np.inf)
     assert np.all(state.load > 0)
     assert state.certificate.relative_error["load"] == STATED["load"]
+
+
+@pytest.mark.usefixtures("fifty_digits")
+def test_roots_are_rounded_without_a_bias():
+    """On average to a tenth of a unit in the last place, and never off by more than one and a half."""
+    base, degree = 10.0 ** np.random.default_rng(1).uniform((-30, 0), (30, 1.4), (4000, 2)).T
+    for found, n in ((root(base, degree), degree), (cube_root(base), np.full_like(base, 3.0))):
+        errors = [
+            float(mp.mpf(r) / mp.mpf(b) ** (1 / mp.mpf(k)) - 1) / EPS
+            for r, b, k in zip(found.tolist(), base.tolist(), n.tolist(), strict=True)
+        ]
+        assert abs(np.mean(errors)) < 0.1
+        assert np.abs(errors).max() < 1.5
 
 
 def test_friction_of_a_wedge_is_its_slope_from_its_crossover_on():

@@ -14,7 +14,6 @@ OVER = [
     "--over", "drive.velocity=1 mm/s:10 m/s:4:log", "--over", "foundation.retardation_time=10 ms,1 s",
 ]  # fmt: skip
 THREADS = "concurrent.futures:ThreadPoolExecutor"
-TWICE = ["--over", "drive.velocity=1 m/s", "--over", "drive.velocity=2 m/s"]
 
 
 def run(*arguments, status=0):
@@ -115,33 +114,6 @@ def test_an_interrupt_is_told_and_the_command_goes_on(place, monkeypatch):
     assert "# unfinished: 4 of 8 points" in (place / "map.csv").read_text()
     assert "8 points, 4 of them computed now" in run(*OVER, "-o", "map.csv").stdout
     assert [item.name for item in place.iterdir()] == ["map.csv"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["-o", "a.csv"], ["--over"]),
-        (["--over", "drive.velocity=1 m/s"], ["-o"]),
-        (["--over", "drive.velocity", "-o", "a.csv"], ["KEY=VALUES", "drive.velocity=1 mm/s"]),
-        ([*TWICE, "-o", "a.csv"], ["swept already"]),
-        (["--over", "drive.velocty=1 m/s", "-o", "a.csv"], ['did you mean "drive.velocity"']),
-        ([*OVER, "-o", "a.xls"], ["a.xls", ".csv", ".nc"]),
-        ([*OVER, "-o", "no/such/a.csv"], ["no/such"]),
-        ([*OVER, "-o", "a.csv", "--quantity", "friction"], ['"friction"', "did you mean"]),
-        ([*OVER, "-o", "a.csv", "--jobs", "0"], ["jobs"]),
-        ([*OVER, "-o", "a.csv", "--executor", "dask"], ["--executor", "module:factory"]),
-        ([*OVER, "-o", "a.csv", "--executor", "no_such:thing"], ["no_such", "imported"]),
-        ([*OVER, "-o", "a.csv", "--executor", THREADS[:-8]], ['did you mean "ThreadPoolExecutor"']),
-        ([*OVER, "-o", "a.csv", "--executor", "builtins:list"], ["Executor"]),
-        ([*OVER, "-o", "a.csv", "--plot", "a.doc"], ["a.doc", ".png"]),
-    ],
-)  # fmt: skip
-def test_bad_input_costs_one_message_and_status_2_and_nothing_is_written(place, arguments, words):
-    result = run(*arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
-    assert not list(place.iterdir())
 
 
 def test_netcdf_without_its_library_is_told(place, monkeypatch):

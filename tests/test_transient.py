@@ -1,19 +1,14 @@
 """`kv.transient` as users call it: the paper's numbers, limits, files and errors."""
 
-import csv
 import json
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray
 
 import kvtheory as kv
-from kvtheory.models.continuum.solver import solve
 from kvtheory.results import TRANSIENT_UNITS
-from kvtheory.scene.base_motion import BaseMotion
-from tests import slow_manifold_by_radau as slow_manifold
 
 HALF = 0.5
 SUPPORTS = ("fixed", "dead-weight", "suspended")
@@ -24,28 +19,15 @@ def standard():
     return kv.transient(rtol=1e-9)
 
 
-def test_the_papers_numbers_for_the_fixed_indenter():
-    result = kv.transient(kv.Scene.table1("fixed"), at=["0 ms", "100 ms"])
-    assert result.normal_force / 1e3 == pytest.approx([35, 35], abs=HALF)
-    assert result.friction_force / 1e3 == pytest.approx([5, 5], abs=HALF)
-    assert result.trailing_edge * 1e3 == pytest.approx([0.3, 0.3], abs=0.05)
-    assert np.all(result.peak_pressure > 20e6)
-
-
 def test_the_papers_numbers_for_the_movable_indenter(standard):
-    first, last = 0, -1
+    """On the way; `test_paper` has those of steady sliding, which every start ends in."""
     # "~ 30 N/mm" at once: theory gives 35.4, for the spike is thinner than the paper's pen.
-    assert standard.normal_force[first] / 1e3 == pytest.approx(35.37, abs=0.01)
+    assert standard.normal_force[0] / 1e3 == pytest.approx(35.37, abs=0.01)
     assert standard.normal_force.min() / 1e3 == pytest.approx(9, abs=HALF)
-    assert standard.normal_force[last] / 1e3 == pytest.approx(10, abs=HALF)
-    assert standard.friction_force[first] / 1e3 == pytest.approx(5, abs=HALF)
+    assert standard.friction_force[0] / 1e3 == pytest.approx(5, abs=HALF)
     elbow = np.argmin(np.abs(standard.time - 2e-3))
     assert standard.friction_force[elbow] / 1e3 == pytest.approx(2, abs=HALF)
-    assert standard.friction_force[last] / 1e3 == pytest.approx(1, abs=HALF)
-    assert standard.depth[last] * 1e3 == pytest.approx(0.1, abs=0.05)
     assert standard.trailing_edge.min() * 1e3 == pytest.approx(-1, abs=HALF)
-    assert standard.trailing_edge[last] * 1e3 == pytest.approx(0.1, abs=0.05)
-    assert standard.leading_edge[last] * 1e3 == pytest.approx(-1.3, abs=0.05)
 
 
 def test_the_papers_two_time_constants():
@@ -83,27 +65,6 @@ def test_a_reversal_lifts_the_indenter_off_and_swaps_the_edges():
     assert found.leading_edge[1] < 0 < found.leading_edge[-1]
 
 
-def test_no_inertia_is_the_slow_manifold():
-    number, end = 4.0, 3.0
-    depth = slow_manifold.solve(number, 0.0, end)
-    differences = []
-    for eps in (1e-4, 1e-5):
-        motion = solve(BaseMotion.constant(number, end), eps, 0.0, end, 1e-10)
-        differences.append(
-            max(abs(motion.at(s).depth - depth(s)) for s in np.linspace(0.1, end, 30))
-        )
-    assert differences[0] / differences[1] == pytest.approx(10.0, rel=0.02)
-
-
-def test_the_slow_manifold_balances_the_forces():
-    d, number = np.geomspace(1e-4, 1.0, 9), np.geomspace(1e-3, 1e3, 9)[:, None]
-    b = slow_manifold.contact_length(d, number, 0.5)
-    f = 1 - 0.5 * (d - 1)
-    assert b * b * (2 * b + 3 * (number - np.sqrt(d))) / 4 == pytest.approx(
-        f * np.ones_like(b), rel=1e-9
-    )
-
-
 def test_pressure_vanishes_outside_and_integrates_to_the_forces():
     result = kv.transient(at=[0.0, 0.002, 0.02], rtol=1e-9)
     for i, time in enumerate(result.time):
@@ -114,21 +75,6 @@ def test_pressure_vanishes_outside_and_integrates_to_the_forces():
         assert p.max() == pytest.approx(result.peak_pressure[i], rel=1e-6)
         assert p[-1] == pytest.approx(0.0, abs=1e-6 * p.max())
         assert np.all(result.pressure(x + 1e-2, float(time)) == 0.0)
-
-
-def test_files(standard, tmp_path):
-    standard.save(tmp_path / "run.csv")
-    with (tmp_path / "run.csv").open(newline="", encoding="utf-8") as file:
-        head, *rows = csv.reader(file)
-    assert head[:3] == ["time [s]", "velocity [m/s]", "depth [m]"]
-    assert [float(row[2]) for row in rows] == standard.depth.tolist()
-    standard.save(tmp_path / "run.nc")
-    with xarray.open_dataset(tmp_path / "run.nc") as data:
-        assert data["normal_force"].attrs["units"] == "N/m"
-        assert np.array_equal(data["friction_force"], standard.friction_force)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.csv", "run.nc"]
-    with pytest.raises(ValueError, match=r"\.csv or \.nc"):
-        standard.save(tmp_path / "run.xls")
 
 
 def test_results_become_json(standard):

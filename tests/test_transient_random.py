@@ -1,13 +1,11 @@
 """Random scenes: what becomes of each, how honest its estimated error is, and its mirror image.
 
 The lists of known defects are meant to empty: a scene that is mended must leave its list.
-KVTHEORY_TEST_SCENES=1000 in the environment draws more scenes.
 """
 
 import functools
 import itertools
 import math
-import os
 from dataclasses import dataclass
 from unittest.mock import patch
 
@@ -20,10 +18,9 @@ from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import solve
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
+from tests import SCENES
 from tests.spring_random import of_unit_scales
 
-SCENES = int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
-"""Random scenes of the longest tests, which use a share of them."""
 SEEDS = range(SCENES // 5)
 RTOL, TRUTH = 1e-6, 1e-10
 HARMLESS = 1e-2 * RTOL

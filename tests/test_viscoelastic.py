@@ -14,8 +14,8 @@ from kvtheory.models.steady import viscoelastic
 from kvtheory.models.steady.methods import ODD, solve_exact, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.theory import laws
-from kvtheory.theory.laws import Fractional, Prony
-from tests import reference_viscoelastic
+from kvtheory.theory.laws import Fractional
+from tests import SCENES, reference_viscoelastic
 from tests.steady import agree
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
@@ -37,9 +37,9 @@ def by_quadrature(foundation, support, indenter, V):
 @pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
-    """1 to 20 arms over ten decades, and springpots; the module of the reference compares more of them."""
+    """1 to 20 arms over ten decades, and springpots."""
     rng = np.random.default_rng(SUPPORTS.index(kind))
-    for _ in range(15):
+    for _ in range(3 * SCENES // 40):
         case = reference_viscoelastic.random_case(rng, kind)
         for name, error in reference_viscoelastic.errors(case).items():
             assert error <= 1.0, (name, case)
@@ -57,14 +57,6 @@ def test_the_peak_is_found_where_newtons_steps_go_to_and_fro():
         highest = ((state.half_length * (M.P + M.Q) - X * M.P) * X / R).max()
         assert highest <= state.peak_pressure * (1 + STATED)
         assert highest >= state.peak_pressure * (1 - 1e-3)
-
-
-def test_the_reference_would_show_a_wrong_arm():
-    """Its own check: a thousandth of one arm is seen."""
-    case = (Prony, (3e10, 0.01), 0.01, 1e10, 0.1, 0.1, 9806.65)
-    state = solve_exact(reference_viscoelastic.scene_of(case))
-    truth = reference_viscoelastic.at_load(Prony, (3.003e10, 0.01), *case[2:])
-    assert abs(state.friction_force / float(truth["friction_force"]) - 1) > 1e-4
 
 
 def test_a_springpot_of_low_order_says_how_badly_its_loss_is_known():

@@ -27,8 +27,7 @@ import mpmath
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from tests.transient_history import history
-from tests.transient_scenes import (
+from tests.transient_history import (
     HISTORY,
     QUANTITIES,
     TAYLOR,
@@ -37,20 +36,20 @@ from tests.transient_scenes import (
     Scene,
     Solution,
     at_times,
+    history,
 )
 
 TABLE = Path(__file__).parent / "data" / "transient_reference.json"
 
-REFINEMENTS = (8, 16, 32)
+SPACINGS = 2.5e-4, 1.25e-4, 6.25e-5
+"""Of elements and of their time steps."""
 ROUNDING = 1e-15
 SAFETY = 10.0
 """Edges cross elements at irregular phases, so that one change of refinement can be small by luck."""
-SPACING = 2e-3
-"""Of elements and of their time steps, before refinement; it divides the static half length."""
-REACH = 2.0
-"""The elements extend so far beyond the path of the indenter's axis, in half lengths."""
-MARGIN = 0.1
-"""More than d grows in a step; outside |xi| = sqrt(d + MARGIN) no element can be touched."""
+REACH, SWING = 2.0, 4.0
+"""The elements extend so far beyond the path of the indenter's axis, in half lengths; more on a spring."""
+MARGIN = 0.3
+"""Outside |xi| = sqrt(d + MARGIN) no element is touched in a step."""
 NEWTON_STEPS = 50
 
 
@@ -120,70 +119,93 @@ def taylor(scene: Scene, digits: int) -> Solution:
         return at_times(scene, [tuple(map(float, row)) for row in rows], QUANTITIES)
 
 
-def elements(scene, refinement):
-    """Return d, U = int u dx and M = int xi u dx over all elements, of second order.
+def elements(scene, spacing, *, step=None, across=False):
+    """Return s, d, x, w, U = int u dxi and M = int xi u dxi over all elements at every step, of second order.
 
-    The motion is written by the balance of impulse, so that it needs no pressure:
+    Both motions are written by balances of impulse, so that they need no pressure; c = 3/4, and 2/pi for a
+    ball (`across`), whose rows of points take the rule of midpoints:
 
-        J = epsilon v + (3/4) U,   J' = 1 - kappa (d - 1) - (3/4) U.
+        eps v + c U,         (eps v + c U)' = 1 - kappa (d - 1) - c U
+        eps_x w + 2 c M,     (eps_x w + 2 c M)' = -2 c (M - (lambda - w) U) - damping w - stiffness x
 
-    For the forces, f_z = (3/4) (U + U') and f_x = -(3/2) (M + M' - lambda U).
+    The forces are f_z = c (U + U') and f_x = -2 c (M + M' - (lambda - w) U).
     """
-    steps = _steps(scene, refinement)
-    dx = SPACING / refinement
-    travel = [Y for _, _, Y in steps]
+    steps = _steps(scene, step or spacing)
+    travel = [Y for _, _, Y, _, _ in steps] + ([-SWING, SWING] if scene.inertia else [])
     first, last = -REACH - max(travel), REACH - min(travel)
-    X = dx * np.arange(math.floor(first / dx), math.ceil(last / dx) + 1)
-    w = np.maximum(0.0, 1.0 - X * X)  # u e^s: the largest e^s' g so far
-    total, moment = w.sum(), X @ w
-    d, U, J = 1.0, dx * total, 0.75 * dx * total
-    rows = []
-    for s, h, Y in steps:
-        half = math.sqrt(max(d, 0.0) + MARGIN)
-        window = slice(*np.searchsorted(X, [-half - Y, half - Y]))
-        xi, old, growth = X[window] + Y, w[window].copy(), math.exp(s)
-        others = total - old.sum()
-        if scene.epsilon is not None and h > 0.0:
-            free = dx * others / growth, old / growth
-            d, J = _trapezoidal(scene, d, J, U, h, dx, xi * xi, free)
-        if half > REACH or d > half * half:
+    X = spacing * np.arange(math.floor(first / spacing), math.ceil(last / spacing) + 1)
+    eta = (np.arange(math.ceil(REACH / spacing)) + 0.5) * spacing if across else np.zeros(1)
+    eta_square = (eta * eta)[:, None]
+    area, c = (2.0 * spacing**2, 2.0 / math.pi) if across else (spacing, 0.75)
+    moving = np.array([scene.epsilon is not None, scene.inertia is not None])
+    eps, eps_x = scene.epsilon or 0.0, scene.inertia or 0.0
+    largest = np.maximum(0.0, 1.0 - X * X - eta_square)  # u e^s: the largest e^s' g so far
+    place, rate = np.array([1.0, 0.0]), np.zeros(2)  # d and x, v and w
+    total, moment = largest.sum(), (X * largest).sum()
+    U, M = area * total, area * moment
+    rows = [(0.0, *place, 0.0, U, M)]
+    for s, h, Y, before, after in steps:
+        growth, half = math.exp(s), math.sqrt(max(place[0], 0.0) + MARGIN)
+        window = slice(*np.searchsorted(X + Y - place[1], [-half, half]))
+        at, free = X[window], largest[:, window] / growth
+        rest, rest_moment = total / growth - free.sum(), moment / growth - (at * free).sum()
+        new = place + moving * h * rate
+        for _ in range(NEWTON_STEPS):
+            xi = at + Y - new[1]
+            g = new[0] - xi * xi - eta_square
+            on = area * (g > free)
+            u = np.maximum(g, free)
+            U_new = area * (rest + u.sum())
+            M_new = area * (rest_moment + (at * u).sum()) + (Y - new[1]) * U_new
+            v, w = rate_new = 2.0 * (new - place) / h - rate
+            slip = 0.5 * (M - (before - rate[1]) * U + M_new - (after - w) * U_new)
+            d, x = 0.5 * (place + new)
+            lacks = np.array([
+                eps * (v - rate[0]) + c * (U_new - U)
+                - h * (1.0 - scene.kappa * (d - 1.0) - 0.5 * c * (U + U_new)),
+                eps_x * (w - rate[1]) + 2.0 * c * (M_new - M)
+                + h * (2.0 * c * slip + 0.5 * scene.damping * (rate[1] + w) + scene.stiffness * x),
+            ])  # fmt: skip
+            U_by = np.array([on.sum(), 2.0 * (xi * on).sum()])
+            M_by = np.array([(xi * on).sum(), 2.0 * (xi * xi * on).sum() - U_new])
+            slip_by = 0.5 * (M_by - (after - w) * U_by + np.array([0.0, 2.0 * U_new / h]))
+            slope = np.array([c * (1.0 + 0.5 * h) * U_by, 2.0 * c * (M_by + h * slip_by)])
+            slope += np.diag([
+                2.0 * eps / h + 0.5 * h * scene.kappa,
+                2.0 * eps_x / h + scene.damping + 0.5 * h * scene.stiffness,
+            ])  # fmt: skip
+            slope[~moving] = np.eye(2)[~moving]
+            change = np.linalg.solve(slope, lacks * moving)
+            new = new - change
+            if np.abs(change).max() < 1e-13:
+                break
+        else:
+            raise ArithmeticError("Newton's method for a step of the elements did not converge")
+        if on[:, [0, -1]].any():
             raise ArithmeticError(f"the contact outgrows the elements that it can touch at s = {s}")
-        w[window] = np.maximum(old, growth * (d - xi * xi))
-        total = others + w[window].sum()
-        moment += X[window] @ (w[window] - old)
-        U = dx * total / growth
-        rows.append((s, d, U, dx * (moment + Y * total) / growth))
-    return at_times(scene, rows, ("d", "U", "M"))
+        largest[:, window] = growth * u
+        total, moment = growth * U_new / area, growth * (rest_moment + (at * u).sum())
+        place, rate, U, M = new, rate_new * moving, U_new, M_new
+        rows.append((s, *place, rate[1], U, M))
+    return dict(zip(("s", "d", "x", "w", "U", "M"), np.array(rows).T, strict=True))
 
 
-def _steps(scene, refinement):
-    """Return for each step its end, its length and the travel Y at its end; the first is s = 0."""
-    steps = [(0.0, 0.0, 0.0)]
+def _steps(scene, longest):
+    """Return for each step its end, its length, the travel Y at its end, and lambda before and after."""
+    steps, Y = [], 0.0
     for start, stop, rate in scene.pieces():
-        count = refinement * math.ceil((stop - start) / SPACING)
-        for s in np.linspace(start, stop, count + 1)[1:]:
-            h = s - steps[-1][0]
-            simpson = rate(s - h) + 4.0 * rate(s - 0.5 * h) + rate(s)
-            steps.append((float(s), h, steps[-1][2] + h * simpson / 6.0))
+        grid = np.linspace(start, stop, math.ceil((stop - start) / longest) + 1)
+        for a, b in pairwise(grid.tolist()):
+            Y += (b - a) * (rate(a) + 4.0 * rate(0.5 * (a + b)) + rate(b)) / 6.0
+            steps.append((b, b - a, Y, rate(a), rate(b)))
     return steps
 
 
-def _trapezoidal(scene, d, J, U, h, dx, square, free):
-    """Return d and J after a step, by Newton's method for the implicit trapezoidal rule."""
-    others, surface = free
-    epsilon, kappa, new = scene.epsilon, scene.kappa, d
-    for _ in range(NEWTON_STEPS):
-        g = new - square
-        U_new = others + dx * np.maximum(g, surface).sum()
-        width = dx * np.count_nonzero(g > surface)
-        J_new = J + h * (1.0 - kappa * (0.5 * (d + new) - 1.0) - 0.375 * (U + U_new))
-        residual = epsilon * (new - d) - 0.5 * h * (J + J_new - 0.75 * (U + U_new))
-        slope = 0.375 * width + 0.25 * h * (kappa + 0.75 * width)
-        change = residual / (epsilon + h * slope)
-        new -= change
-        if abs(change) < 1e-14:
-            return new, J_new
-    raise ArithmeticError("Newton's method for a step of the elements did not converge")
+def by_elements(scene, spacing, names=("d",)):
+    """Return quantities by elements at the times of the scene."""
+    found = elements(scene, spacing)
+    rows = np.searchsorted(found["s"], np.array(scene.times) - 1e-12)
+    return np.array([found[name][rows] for name in names])
 
 
 def row(values: Array) -> list[float | None]:
@@ -203,16 +225,13 @@ def entry(scene: Scene, method: str, coarse: Solution, fine: Solution) -> dict[s
     }
 
 
-def extrapolated(by: Any, scene: Scene, refinements: Sequence[float]) -> tuple[Array, Array]:
-    """Return d, or d and x, by elements, and the estimated error; each refinement is twice the one before."""
-    d = [by(scene, refinement) for refinement in refinements]
-    better = [fine + (fine - coarse) / 3.0 for coarse, fine in pairwise(d)]
+def extrapolated(
+    scene: Scene, spacings: Sequence[float], names: Sequence[str]
+) -> tuple[Array, Array]:
+    """Return quantities by elements, and their estimated errors; each spacing is half of the one before."""
+    found = [by_elements(scene, spacing, names) for spacing in spacings]
+    better = [fine + (fine - coarse) / 3.0 for coarse, fine in pairwise(found)]
     return better[-1], SAFETY * np.abs(better[-1] - better[-2]) + ROUNDING
-
-
-def depth_by_elements(scene: Scene, refinement: int) -> Array:
-    """Return d by elements."""
-    return elements(scene, refinement)["d"]
 
 
 def table() -> dict[str, Any]:
@@ -224,7 +243,7 @@ def table() -> dict[str, Any]:
         found[name] = entry(scene, "two_states", two_states(scene, 1e-10), two_states(scene, 1e-12))
     for name, scene in HISTORY.items():
         coarse, fine = history(scene, 1e-12, 0.05), history(scene, 1e-13, 0.025)
-        d, error = extrapolated(depth_by_elements, scene, REFINEMENTS)
+        (d,), (error,) = extrapolated(scene, SPACINGS, ("d",))
         found[name] = entry(scene, "history", coarse, fine) | {
             "elements": {"d": row(d), "errors": row(error)}
         }

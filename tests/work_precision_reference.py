@@ -10,9 +10,8 @@ from pathlib import Path
 
 import kvtheory
 from kvtheory.charts.problems import STANDARD, TABLE, Problem, standard_scene
-from tests.transient_history import history
+from tests.transient_history import Scene, history
 from tests.transient_reference import two_states
-from tests.transient_scenes import Scene
 
 NO_MEMORY = ("table-1", "low-velocity", "small-inertia")
 PATH = Path(kvtheory.__file__).parent / "charts" / TABLE
