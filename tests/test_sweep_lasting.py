@@ -126,7 +126,7 @@ def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_
 
 def test_a_full_disk_is_reported_and_nothing_kept_is_lost(tmp_path, whole, monkeypatch):
     output = tmp_path / "map.csv"
-    process = driver(output, 1, 1_000_000)
+    process = driver(output, 1, 100_000)
     _, message = process.communicate()
     assert process.returncode == 1
     assert b"OSError" in message

@@ -10,6 +10,7 @@ from concurrent import futures
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext, suppress
+from dataclasses import replace
 from glob import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -48,9 +49,14 @@ log = logging.getLogger(__name__)
 
 def in_memory(plan: Plan, **how: Any) -> Sweep:
     """Run a sweep and return its arrays."""
-    blocks: list[Block] = []
-    run(plan, [], blocks.append, **how)
-    return files.from_memory(plan, lambda **_: sorted(blocks, key=lambda block: block.start))
+    table, done = plan.blank(plan.points), list[Block]()
+
+    def keep(block: Block) -> None:
+        files.fill(table, block)
+        done.append(replace(block, table={}))
+
+    run(plan, [], keep, **how)
+    return files.from_memory(plan, table, sorted(done, key=lambda block: block.start))
 
 
 def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:

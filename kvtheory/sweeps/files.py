@@ -8,7 +8,7 @@ the second line of a CSV, after the end of the data in NetCDF.
 import csv
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict
 from functools import partial
 from importlib.metadata import version
@@ -23,7 +23,7 @@ from kvtheory.export import check_path, replace_file
 from kvtheory.results.certificate import Certificate
 from kvtheory.results.sweep import Failure, Sweep
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import EVENTS, Plan, is_csv
+from kvtheory.sweeps.plan import EVENTS, Plan, Table, is_csv
 
 Blocks = Callable[..., Iterable[Block]]
 """Returns the blocks in the order of their points, with `tables=False` without their tables."""
@@ -38,6 +38,8 @@ DIGITS = 64
 """Digits of a SHA-256."""
 PART = 2**20
 """Bytes read at a time."""
+ROWS = 4096
+"""Rows printed at a time, so that their text stays in the cache of the processor."""
 
 
 def check(path: Path) -> None:
@@ -99,15 +101,16 @@ def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     return _sweep(plan, summary, partial(_values, path, plan), computed, path)
 
 
-def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
-    """Return blocks as arrays, in which points that were not computed are missing values."""
-    missing = plan.blank(1)
-    flat = {c.name: np.repeat(missing[c.name], plan.points, axis=0) for c in plan.columns}
-    for block in blocks():
-        for name, array in flat.items():
-            array[block.start : block.stop] = block.table[name]
+def fill(table: Table, block: Block) -> None:
+    """Copy the values of a block into the table of all points."""
+    for name, array in table.items():
+        array[block.start : block.stop] = block.table[name]
+
+
+def from_memory(plan: Plan, table: Table, blocks: Iterable[Block]) -> Sweep:
+    """Return the table of all points as arrays over the axes."""
     grid = tuple(axis.size for axis in plan.axes)
-    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in flat.items()}
+    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
     summary = _summary(plan, blocks)
     return _sweep(plan, summary, lambda: values, summary["done"])
 
@@ -116,9 +119,10 @@ def save_sweep(result: Sweep, path: Path) -> None:
     """Write the sweep of a result; `Sweep.save` documents it."""
     check(path)
     plan: Plan = result.plan
-    table = plan.blank(plan.points)
-    for name, values in result.values.items():
-        table[name] = values.reshape(table[name].shape)
+    table = {
+        name: v.reshape(plan.points, *v.shape[len(plan.axes) :])
+        for name, v in result.values.items()
+    }
     failures = [(failure.index, failure.reason) for failure in result.failures]
     errors = dict(result.certificate.relative_error)
     block = Block(0, plan.points, table, failures, [result.certificate.statement], errors)
@@ -135,11 +139,11 @@ def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None
     )  # fmt: skip
 
 
-def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
+def _summary(plan: Plan, blocks: Iterable[Block]) -> dict[str, Any]:
     """Return how much was computed, which scenes failed and why, and the largest errors."""
     done, failures, statements = 0, [], set[str]()
     errors: dict[str, float] = {}
-    for block in blocks(tables=False):
+    for block in blocks:
         done += block.stop - block.start
         statements.update(block.statements)
         for index, reason in block.failures:
@@ -195,7 +199,7 @@ def _values(path: Path, plan: Plan) -> dict[str, Any]:
 
 def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write header and rows; those of points that were not computed are left out."""
-    summary, record = _summary(plan, blocks), plan.record
+    summary, record = _summary(plan, blocks(tables=False)), plan.record
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
     done = f"{summary['done']} of {plan.points} points; the command resumes it"
     lines = [
@@ -216,37 +220,43 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     with path.open("wb") as file:
         file.write(END.join([*lines, ",".join(heads), ""]).encode())
         for block in blocks():
-            file.write(_rows(plan, block))
+            file.writelines(_rows(plan, block))
 
 
 def _head(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def _rows(plan: Plan, block: Block) -> bytes:
-    """Return the rows of a block; orjson prints the shortest decimals that read back the same."""
-    shape = block.stop - block.start, len(plan.times or ()) if plan.series else 1
-    swept = plan.values_at(block.start, block.stop).values()
-    columns = [np.repeat(column, shape[1]) for column in swept]
-    columns += [np.tile(plan.times or (), shape[0])] * plan.series
-    for column in plan.numeric:
-        values = block.table[column.name].reshape(shape[0], -1)
-        columns.append(np.broadcast_to(values, shape).reshape(-1))
-    table = np.column_stack(columns)
-    text = orjson.dumps(table, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
-    if not np.isfinite(table).all():
-        text = text.replace(b"null", b"")
-    if not plan.texts:
-        return text.replace(b"],[", END.encode()) + END.encode()
-    cells = ['"' + text.replace('"', '""') + '"' for text in block.table[EVENTS]]
-    lines = zip(text.split(b"],["), np.repeat(cells, shape[1]), strict=True)
-    return b"".join(b"%s,%s%s" % (line, cell.encode(), END.encode()) for line, cell in lines)
+def _rows(plan: Plan, block: Block) -> Iterator[bytes]:
+    """Yield the rows of a block; orjson prints the shortest decimals that read back the same."""
+    times = len(plan.times or ()) if plan.series else 1
+    for start in range(block.start, block.stop, max(1, ROWS // times)):
+        stop = min(block.stop, start + max(1, ROWS // times))
+        shape, part = (stop - start, times), slice(start - block.start, stop - block.start)
+        columns = [np.repeat(swept, times) for swept in plan.values_at(start, stop).values()]
+        columns += [np.tile(plan.times or (), shape[0])] * plan.series
+        for column in plan.numeric:
+            values = block.table[column.name][part].reshape(shape[0], -1)
+            columns.append(np.broadcast_to(values, shape).reshape(-1))
+        table = np.column_stack(columns)
+        text = orjson.dumps(table, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
+        if not np.isfinite(table).all():
+            text = text.replace(b"null", b"")
+        lines = text.split(b"],[")
+        if plan.texts:
+            cells = ['"' + text.replace('"', '""') + '"' for text in block.table[EVENTS][part]]
+            pairs = zip(lines, np.repeat(cells, times), strict=True)
+            lines = [b"%s,%s" % (line, cell.encode()) for line, cell in pairs]
+        yield END.encode().join([*lines, b""])
 
 
 def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write all points; those that were not computed are missing values."""
-    failures = (summary := _summary(plan, blocks))["failures"]
-    data = from_memory(plan, blocks).to_xarray()
+    table = plan.blank(plan.points)
+    for block in blocks():
+        fill(table, block)
+    failures = (summary := _summary(plan, blocks(tables=False)))["failures"]
+    data = from_memory(plan, table, []).to_xarray()
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
     data["failure_index"] = "failure", np.array([f.index for f in failures], dtype=np.int64)
     data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=str)

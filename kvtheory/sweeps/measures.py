@@ -166,7 +166,7 @@ class _Motions:
         """Return a column in SI: a value, or a series, for each index."""
         found, name, measure, scale = self.found, column.base, column.measure, ""
         if measure == EVENTS:
-            return self.texts
+            return np.array(self.texts, object)
         if measure == "series":
             values, scale = found.states[..., COLUMNS[name]], QUANTITIES[name].scale
         elif measure == "end":

@@ -39,7 +39,8 @@ from kvtheory.scene.quantities import (
 )
 
 Array = NDArray[np.float64]
-Table = NDArray[np.void]
+Table = dict[str, NDArray[Any]]
+"""An array over points for each column, of a series with the times as second axis."""
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
 """Errors that mean a scene has no solution; any other is a bug."""
@@ -211,16 +212,16 @@ class Plan:
         }
 
     def blank(self, points: int) -> Table:
-        """Return a table of missing values, NaN or no text: a row for each point, a field for each column."""
-        times = (len(self.times or ()),)
-        kinds = [
-            (c.name, "<f8" if c.unit else object, times if c.measure == "series" else ())
-            for c in self.columns
-        ]
-        table = np.empty(points, kinds)
-        for column in self.columns:
-            table[column.name] = np.nan if column.unit else ""
-        return table
+        """Return a table of missing values, NaN or no text."""
+        return {
+            column.name: np.full(self.shape(column, points), np.nan)
+            if column.unit else np.full(points, "", object)
+            for column in self.columns
+        }  # fmt: skip
+
+    def shape(self, column: Column, points: int) -> tuple[int, ...]:
+        """Return the shape of a column of a table."""
+        return (points, len(self.times or ())) if column.measure == "series" else (points,)
 
     @property
     def units(self) -> Mapping[str, str]:
@@ -260,10 +261,10 @@ class Plan:
 
 @dataclass
 class Measured:
-    """Values and errors by name over the scenes of a block, the reasons of failures, and statements."""
+    """Values by name over the scenes of a block, their errors, the reasons of failures, and statements."""
 
-    values: dict[str, Any] = field(default_factory=dict)
-    errors: dict[str, Array] = field(default_factory=dict)
+    values: Table = field(default_factory=dict)
+    errors: dict[str, Any] = field(default_factory=dict)
     reasons: dict[int, Exception] = field(default_factory=dict)
     statements: set[str] = field(default_factory=set)
 
@@ -300,7 +301,7 @@ def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
     """Return about how many GB and seconds a sweep needs, and both in words."""
     slow = IN_MOTION if plan.transient else BY_QUADRATURE
     seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
-    needed = 2.0 * plan.points * plan.blank(0).itemsize
+    needed = 2.0 * plan.points * sum(array.nbytes for array in plan.blank(1).values())
     if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
         needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
