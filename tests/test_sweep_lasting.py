@@ -341,6 +341,6 @@ def test_what_cannot_fit_is_refused_with_its_size_before_anything_is_done(tmp_pa
         "support.mass": "1 kg/m:2 kg/m:10000",
     }
     for output in (None, tmp_path / "map.csv", tmp_path / "map.nc"):
-        with pytest.raises(ValueError, match=r"10,000,000,000,000,000 points need .* years; there"):
+        with pytest.raises(ValueError, match=r"10,000,000,000,000,000 points need .* GB; there"):
             kv.sweep(over=over, output=output)
     assert not list(tmp_path.iterdir())

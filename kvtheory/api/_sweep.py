@@ -118,7 +118,7 @@ def sweep(
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
-    refuse_what_cannot_fit(plan, file, jobs)
+    refuse_what_cannot_fit(plan, file)
     how: Any = {"executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block}
     how["report"] = progress
     if file is None:

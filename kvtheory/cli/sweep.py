@@ -69,7 +69,6 @@ def sweep(
     from kvtheory.api._sweep import plan_of
     from kvtheory.results import record
     from kvtheory.scene import load_scene
-    from kvtheory.sweeps.plan import announcement
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
@@ -81,8 +80,6 @@ def sweep(
         from kvtheory.plots.sweep import check_drawable
 
         check_drawable(plan)
-    if large := announcement(plan, output, jobs or 1):
-        click.echo(f"kvtheory: {large}", err=True)
     began = time.perf_counter()
     with ExitStack() as stack:
         progress = stack.enter_context(console.progress_bar("sweep"))

@@ -20,7 +20,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.progress import duration
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
@@ -64,13 +63,9 @@ CYCLE = {
 """Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
-ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
-"""Scenes per second and core, within a factor of three: measured for Table 1."""
 CELL = 21
 """Bytes of a number in a CSV, with its comma or end of line."""
 GB = 1e9
-ANNOUNCED = 10.0
-"""Expected duration in s from which a sweep is announced."""
 
 
 class Column(NamedTuple):
@@ -274,35 +269,19 @@ def is_csv(path: Path) -> bool:
     return path.suffix.lower() == ".csv"
 
 
-def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
+def refuse_what_cannot_fit(plan: Plan, path: Path | None) -> None:
     """Raise `ValueError` if a sweep needs more than memory or disk hold."""
-    limits = {}
-    if path is None or not is_csv(path):
-        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
-            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / GB
-            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
-    if path is not None and path.parent.is_dir():
-        free = shutil.disk_usage(path.parent).free / GB
-        limits[f'free beside "{path}"; choose fewer points'] = free
-    needed, _, size = _size(plan, path, jobs)
-    for where, limit in limits.items():
-        if needed > limit:
-            told = f"{plan.points:,} points need {size}; there are"
-            raise ValueError(f"{told} {limit:,.1f} GB {where}")
-
-
-def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
-    """Return the size of a sweep into a file in words, if it takes a while."""
-    _, seconds, size = _size(plan, path, jobs)
-    return f"{plan.points:,} points: {size}" if seconds > ANNOUNCED else ""
-
-
-def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
-    """Return about how many GB and seconds a sweep needs, and both in words."""
-    slow = IN_MOTION if plan.transient else BY_QUADRATURE
-    seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
-    needed = 2.0 * plan.points * sum(array.nbytes for array in plan.blank(1).values())
+    needed, limits = 2.0 * plan.points * sum(each.nbytes for each in plan.blank(1).values()), {}
     if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
         needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
-    return needed / GB, seconds, f"about {needed / GB:,.1f} GB and {duration(seconds)}"
+    else:
+        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
+    if path is not None and path.parent.is_dir():
+        limits[f'free beside "{path}"; choose fewer points'] = shutil.disk_usage(path.parent).free
+    for where, limit in limits.items():
+        if needed > limit:
+            told = f"{plan.points:,} points need about {needed / GB:,.1f} GB"
+            raise ValueError(f"{told}; there are {limit / GB:,.1f} GB {where}")
