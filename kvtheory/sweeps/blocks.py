@@ -62,13 +62,14 @@ def compute(given: Task) -> Block:
     reasons = steady.reasons | motion.reasons
     failed = sorted(reasons)
     errors = {name: motion.errors[name] for name in plan.needed(steady=False) if plan.transient}
-    for column in plan.columns:
-        name, base = column.name, column.base
-        of_steady = column.measure == "steady"
-        table[name] = steady.values[base] if of_steady else motion.values[name]
-        table[name][failed] = np.nan if column.unit else ""
-        if of_steady and base != STABLE:
+    for name, unit, base, measure in plan.columns:
+        if measure == "steady":
+            table[name] = steady.values[base]
             errors[name] = max(errors.get(name, 0.0), steady.errors.get(base, 0.0))
+        else:
+            table[name] = motion.values[name]
+        table[name][failed] = np.nan if unit else ""
+    errors.pop(STABLE, None)
     failures = []
     for index in failed:
         error = reasons[index]
@@ -104,10 +105,8 @@ def _steady(given: Task) -> Measured:
         found.statements.add(state.certificate.statement)
         for name, wrong in state.certificate.relative_error.items():
             found.errors[name] = max(found.errors.get(name, 0.0), float(np.max(wrong)))
-    found.values = {
-        name: np.concatenate(arrays, dtype=float)
-        for name, arrays in zip(names, zip(*parts, strict=True), strict=True)
-    }
+    for name, arrays in zip(names, zip(*parts, strict=True), strict=True):
+        found.values[name] = np.concatenate(arrays, dtype=float)
     return found
 
 
@@ -126,8 +125,7 @@ def _transients(given: Task, steady: Measured) -> Measured:
         try:
             point = {key: float(array[index]) for key, array in given.over.items()}
             scene = given.plan.scene.replace(point)
-            if latest > scene.run.duration:
-                end = scene.run.duration
+            if latest > (end := scene.run.duration):
                 raise ValueError(f"a time of `at` is after the end of the run, {end} s")
             scenes[index] = scene
         except FAILS as error:
@@ -136,11 +134,9 @@ def _transients(given: Task, steady: Measured) -> Measured:
     with np.errstate(over="raise", invalid="raise", divide="raise"):
         found = measure(given.plan, scenes, friction)
     found.reasons |= reasons
-    failed = [*found.reasons]
-    found.errors = {
-        name: float(np.max(np.delete(wrong, failed), initial=0.0))
-        for name, wrong in found.errors.items()
-    }
+    for name, wrong in found.errors.items():
+        wrong[[*found.reasons]] = 0.0
+        found.errors[name] = float(np.max(wrong))
     return found
 
 

@@ -11,7 +11,9 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict
 from functools import partial
+from importlib import import_module
 from importlib.metadata import version
+from importlib.util import find_spec
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -45,12 +47,8 @@ ROWS = 4096
 def check(path: Path) -> None:
     """Raise `ValueError` or `OSError` unless a sweep can be written to `path`."""
     check_path(path, (".csv", ".nc"))
-    if not is_csv(path):
-        try:
-            import netCDF4  # noqa: F401
-        except ModuleNotFoundError:
-            told = 'NetCDF needs netCDF4: pip install ".[data]" in the checkout'
-            raise ValueError(told) from None
+    if not is_csv(path) and find_spec("netCDF4") is None:
+        raise ValueError('NetCDF needs netCDF4: pip install ".[data]" in the checkout')
 
 
 def write(plan: Plan, blocks: Blocks, path: Path) -> None:
@@ -74,11 +72,10 @@ def finished(path: Path, plan: Plan) -> bool:
     if written != digest:
         why = "it is another file, or was changed, cut, or saved anew by another program"
         raise ValueError(f'"{path}" exists and is not a sweep as it was written: {why}; {WAYS_OUT}')
-    header = _header(path)
-    if differing := plan.differences(header["record"]):
+    record, summary = _header(path)
+    if differing := plan.differences(record):
         why = f"it differs in {', '.join(differing)}"
         raise ValueError(f'"{path}" holds another sweep: {why}; {WAYS_OUT}')
-    summary = json.loads(header["summary"])
     return bool(summary["done"] == summary["points"])
 
 
@@ -96,7 +93,7 @@ def _digest(path: Path) -> tuple[int, bytes, bytes]:
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     """Return the sweep that a finished file holds; its arrays stay there until they are used."""
-    summary = json.loads(_header(path)["summary"])
+    _, summary = _header(path)
     summary["failures"] = tuple(Failure(**failure) for failure in summary["failures"])
     return _sweep(plan, summary, partial(_values, path, plan), computed, path)
 
@@ -108,10 +105,9 @@ def fill(table: Table, block: Block) -> None:
 
 
 def from_memory(plan: Plan, table: Table, blocks: Iterable[Block]) -> Sweep:
-    """Return the table of all points as arrays over the axes."""
-    grid = tuple(axis.size for axis in plan.axes)
+    """Return the table of all points as arrays over the axes; the blocks may be without theirs."""
+    grid, summary = tuple(axis.size for axis in plan.axes), _summary(plan, blocks)
     values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
-    summary = _summary(plan, blocks)
     return _sweep(plan, summary, lambda: values, summary["done"])
 
 
@@ -119,10 +115,8 @@ def save_sweep(result: Sweep, path: Path) -> None:
     """Write the sweep of a result; `Sweep.save` documents it."""
     check(path)
     plan: Plan = result.plan
-    table = {
-        name: v.reshape(plan.points, *v.shape[len(plan.axes) :])
-        for name, v in result.values.items()
-    }
+    axes = len(plan.axes)
+    table = {name: v.reshape(-1, *v.shape[axes:]) for name, v in result.values.items()}
     failures = [(failure.index, failure.reason) for failure in result.failures]
     errors = dict(result.certificate.relative_error)
     block = Block(0, plan.points, table, failures, [result.certificate.statement], errors)
@@ -164,36 +158,37 @@ def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
     return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
 
 
-def _header(path: Path) -> Mapping[str, Any]:
-    if not is_csv(path):
-        import xarray
-
-        with xarray.open_dataset(path, engine="netcdf4") as data:
-            return dict(data.attrs)
-    with path.open(encoding="utf-8", newline="") as file:
-        comments = takewhile(lambda line: line.startswith("#"), file)
-        pairs = [line[1:].strip().partition(": ") for line in comments]
-    return {key: text for key, _, text in pairs}
+def _header(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the record of the sweep in a file, as JSON, and its summary."""
+    if is_csv(path):
+        with path.open(encoding="utf-8", newline="") as file:
+            comments = takewhile(lambda line: line.startswith("#"), file)
+            found: Any = {
+                k: v for k, _, v in (line[1:].strip().partition(": ") for line in comments)
+            }
+    else:
+        with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
+            found = data.attrs
+    return found["record"], json.loads(found["summary"])
 
 
 def _values(path: Path, plan: Plan) -> dict[str, Any]:
     """Return the arrays of a file."""
     kinds = {column.name: float if column.unit else object for column in plan.columns}
     if not is_csv(path):
-        import xarray
-
-        with xarray.open_dataset(path, engine="netcdf4") as data:
-            held = ((name, data[name].values, kind) for name, kind in kinds.items())
-            return {name: values.astype(kind, copy=False) for name, values, kind in held}
+        with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
+            return {
+                name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
+            }
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
     found, grid = {}, tuple(axis.size for axis in plan.axes)
-    for column in plan.columns:
-        cells = table[_head(column.name, column.unit)]
-        read = [float(cell or "nan") for cell in cells] if column.unit else cells
-        array = np.array(read, dtype=kinds[column.name]).reshape(*grid, -1)
-        found[column.name] = array if column.measure == "series" else array[..., 0]
+    for name, unit, _, measure in plan.columns:
+        cells = table[_head(name, unit)]
+        read = [float(cell or "nan") for cell in cells] if unit else cells
+        array = np.array(read, dtype=kinds[name]).reshape(*grid, -1)
+        found[name] = array if measure == "series" else array[..., 0]
     return found
 
 

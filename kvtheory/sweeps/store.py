@@ -80,8 +80,8 @@ class WorkFile:
 
     def keep(self, block: Block) -> None:
         """Keep a block; it is safe when this returns."""
-        arrays = (block.table[column.name] for column in self._plan.numeric)
-        content = b"".join(map(np.ascontiguousarray, arrays))
+        names = [column.name for column in self._plan.numeric]
+        content = b"".join(np.ascontiguousarray(block.table[name]).data for name in names)
         texts = block.table[EVENTS].tolist() if self._plan.texts else []
         told = json.dumps([block.failures, block.statements, block.errors, texts])
         row = block.start, block.stop, told, _digest(content)
