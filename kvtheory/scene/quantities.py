@@ -112,9 +112,9 @@ class Part:
             if isinstance(value, np.ndarray):
                 return function(np.asarray(value))
             if isinstance(value, Part):
-                return value.mapped(function)
+                return value.mapped(function) if value.arrayed else value
             parts = isinstance(value, tuple) and value and isinstance(value[0], Part)
-            return tuple(part.mapped(function) for part in value) if parts else value
+            return tuple(map(mapped, value)) if parts else value
 
         copy = object.__new__(self.__class__)
         values = {name: getattr(self, name) for name in _names(self.__class__)}
