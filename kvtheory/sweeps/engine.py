@@ -94,8 +94,7 @@ def run(
     """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
-    known = jobs if executor is None else getattr(executor, "_max_workers", None)
-    workers = known or UNKNOWN_WORKERS
+    workers = jobs if executor is None else getattr(executor, "_max_workers", 0) or UNKNOWN_WORKERS
     most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
     flying: dict[Future[Block], Task] = {}
     again: list[Task] = []
