@@ -220,14 +220,9 @@ class Quantity:
 
 
 def quantity(
-    unit: str,
-    doc: str,
-    *,
-    minimum: float = 0.0,
-    exclusive: bool = True,
-    default: Any = dataclasses.MISSING,
-    **more: Any,
-) -> Any:
+    unit: str, doc: str, *, minimum: float = 0.0, exclusive: bool = True,
+    default: Any = dataclasses.MISSING, **more: Any,
+) -> Any:  # fmt: skip
     """Declare a dataclass field that holds a quantity in the SI unit `unit`; see `Quantity`."""
     spec = Quantity(unit, doc, minimum, exclusive, **more)
     return field(default=default, metadata={"quantity": spec})
