@@ -9,8 +9,6 @@ from kvtheory.api._elements import elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
-from kvtheory.ladder import series, sliding
-from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
@@ -90,6 +88,9 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
+    from kvtheory.ladder import series, sliding  # these import the models over time
+    from kvtheory.ladder.climbing import Request, climb
+
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
     problems: list[str] = []
