@@ -117,10 +117,10 @@ def sweep(
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
     """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together."""
-    from kvtheory.scene import SceneError
+    from kvtheory.scene.quantities import Problems
 
     over: dict[Any, Any] = {}
-    problems = []
+    problems = Problems()
     for text in texts:
         pairs = [part.partition("=") for part in text.split("&")]
         if not all(key.strip() and sign and value.strip() for key, sign, value in pairs):
@@ -132,8 +132,7 @@ def read_over(texts: Iterable[str]) -> dict[Any, Any]:
             problems.append(f'--over "{text}": {keys[0]} is swept already')
             continue
         over |= {keys: values} if len(keys) > 1 else {keys[0]: values[0]}
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     return over
 
 

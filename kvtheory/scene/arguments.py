@@ -19,10 +19,10 @@ from kvtheory.scene.drives import TIME
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import (
     SHORT,
+    Problems,
     Quantity,
     SceneError,
     array_of,
-    collecting,
     convert,
     item_values,
     items,
@@ -58,19 +58,18 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
 
         @wraps(function)
         def run(*args: Any, **kwargs: Any) -> Any:
-            problems: list[str] = []
+            problems = Problems()
 
             def read(name: str, value: Any) -> Any:
                 if name not in kinds or value is defaults[name]:
                     return value
-                with collecting(problems, f"`{name}`", value):
+                with problems.catching(f"`{name}`", value):
                     return kinds[name](value)
 
             extra = args[len(parameters) :]
             args = (*map(read, parameters, args), *extra)
             kwargs = {name: read(name, value) for name, value in kwargs.items()}
-            if problems:
-                raise SceneError(problems)
+            problems.report()
             if kwargs.get("progress") is None:
                 return function(*args, **kwargs)
             with listening(kwargs["progress"]) as kwargs["progress"]:
@@ -112,20 +111,19 @@ def measured(spec: Quantity) -> Kind:
 
 def times(value: Any) -> list[float]:
     """Read times in s: one or several, also as text; report every mistake with its value."""
-    problems: list[str] = []
+    problems = Problems()
     found: list[float] = []
     for one in value if isinstance(value, (list, tuple)) else [value]:
         for given in items(one) if isinstance(one, str) else [one]:
-            with collecting(problems, "`at`", given):
+            with problems.catching("`at`", given):
                 read = item_values if isinstance(given, str) else array_of
                 array = np.atleast_1d(read(given, TIME))
                 if array.ndim > 1:
                     raise ValueError("expected one list of times")
                 found += array.tolist()
     if not found and not problems:
-        problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
-    if problems:
-        raise SceneError(problems)
+        problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    problems.report()
     return found
 
 

@@ -372,7 +372,8 @@ def validate(instance: Any, section: str) -> None:
         elif value is not None:
             values[name] = value
     here = tuple(values)
-    problems = [missing(section, name, specs[name]) for name in required(instance.__class__, here)]
+    needed = required(instance.__class__, here)
+    problems = Problems(missing(section, name, specs[name]) for name in needed)
     for place, (name, value) in enumerate(values.items()):
         spec = specs[name]
         try:
@@ -384,14 +385,13 @@ def validate(instance: Any, section: str) -> None:
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
         except ValueError as error:
-            problems.append(problem(f"{section}.{name}", value, str(error)))
+            problems.add(f"{section}.{name}", value, str(error))
         if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:
                 told = f"cannot be given beside {', '.join(others)}"
-                problems.append(problem(f"{section}.{name}", value, told))
-    if problems:
-        raise SceneError(problems)
+                problems.add(f"{section}.{name}", value, told)
+    problems.report()
     if written:
         object.__setattr__(instance, "written", written)
 
@@ -455,15 +455,27 @@ def mistake(key: str, given: Any, what: str) -> SceneError:
     return SceneError([problem(key, given, what)])
 
 
-@contextmanager
-def collecting(problems: list[str], key: str, given: Any) -> Iterator[None]:
-    """Append a mistake in a given value to `problems`, instead of raising it."""
-    try:
-        yield
-    except SceneError as error:
-        problems += error.problems
-    except ValueError as error:
-        problems.append(problem(key, given, str(error)))
+class Problems(list[str]):
+    """The mistakes in what was given, which are reported together."""
+
+    def add(self, key: str, given: Any, what: str) -> None:
+        """Append a mistake; see `problem`."""
+        self.append(problem(key, given, what))
+
+    @contextmanager
+    def catching(self, key: str, given: Any) -> Iterator[None]:
+        """Append a mistake in a given value, instead of raising it."""
+        try:
+            yield
+        except SceneError as error:
+            self += error.problems
+        except ValueError as error:
+            self.add(key, given, str(error))
+
+    def report(self) -> None:
+        """Raise `SceneError` if there are any."""
+        if self:
+            raise SceneError(self)
 
 
 MEANT = {

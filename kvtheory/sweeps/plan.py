@@ -26,10 +26,10 @@ from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import (
+    Problems,
     Quantity,
     SceneError,
     array_of,
-    collecting,
     item_values,
     items,
     nearest,
@@ -106,17 +106,17 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     """Return the axes of a sweep, or report every mistake; `kvtheory.sweep` describes `over`."""
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])
-    specs, problems = scene.replaceable, []
+    specs, problems = scene.replaceable, Problems()
     swept: dict[str, Array] = {}
     axes: list[dict[str, Array]] = []
     for given, values in over.items():
         keys, lists = (given, values) if isinstance(given, tuple) else ((given,), (values,))
         if not isinstance(lists, (tuple, list, np.ndarray)) or len(keys) != len(lists):
-            problems.append(problem(f"`over` {given}", values, "expected a list for each key"))
+            problems.add(f"`over` {given}", values, "expected a list for each key")
             continue
         arrays: dict[str, Array] = {}
         for key, value in zip(keys, lists, strict=True):
-            with collecting(problems, f"`over` {key}", value):
+            with problems.catching(f"`over` {key}", value):
                 if key in swept:
                     raise SceneError([f"`over` {key} is swept twice"])
                 if key not in specs:
@@ -126,8 +126,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
             problems.append(f"`over`: values that vary together must be equally many, got {sizes}")
         axes.append(arrays)
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     waveform = scene.drive.waveform
     own = {f"drive.{name}" for name in (quantities(waveform) if waveform else ())} & swept.keys()
     if own and "drive.velocity" in swept.keys() - own:
