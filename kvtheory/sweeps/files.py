@@ -9,7 +9,6 @@ import csv
 import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict
 from functools import partial
 from importlib import import_module
 from importlib.metadata import version
@@ -93,9 +92,7 @@ def _digest(path: Path) -> tuple[int, bytes, bytes]:
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     """Return the sweep that a finished file holds; its arrays stay there until they are used."""
-    _, summary = _header(path)
-    summary["failures"] = tuple(Failure(**failure) for failure in summary["failures"])
-    return _sweep(plan, summary, partial(_values, path, plan), computed, path)
+    return _sweep(plan, _header(path)[1], partial(_values, path, plan), computed, path)
 
 
 def fill(table: Table, block: Block) -> None:
@@ -125,36 +122,37 @@ def save_sweep(result: Sweep, path: Path) -> None:
 
 def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
     """Return the result that a summary describes."""
+    failures = []
+    for index, reason in summary["failures"]:
+        point = plan.values_at(index, index + 1).items()
+        failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
     return Sweep(
         scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
         units=plan.units, points=plan.points, computed=computed, failed=summary["failed"],
-        failures=summary["failures"], version=version("kvtheory"), path=path, plan=plan, read=read,
+        failures=tuple(failures), version=version("kvtheory"), path=path, plan=plan, read=read,
         certificate=Certificate("estimated", summary["certificate"], summary["relative_error"]),
     )  # fmt: skip
 
 
 def _summary(plan: Plan, blocks: Iterable[Block]) -> dict[str, Any]:
     """Return how much was computed, which scenes failed and why, and the largest errors."""
-    done, failures, statements = 0, [], set[str]()
+    done, failures, statements = 0, list[tuple[int, str]](), set[str]()
     errors: dict[str, float] = {}
     for block in blocks:
         done += block.stop - block.start
+        failures += block.failures
         statements.update(block.statements)
-        for index, reason in block.failures:
-            point = plan.values_at(index, index + 1).items()
-            failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
         for name, error in block.errors.items():
             errors[name] = max(errors.get(name, 0.0), error)
     return {
-        "points": plan.points, "done": done, "failed": len(failures), "failures": tuple(failures),
+        "points": plan.points, "done": done, "failed": len(failures), "failures": failures,
         "certificate": "; ".join(sorted(statements)), "relative_error": errors,
     }  # fmt: skip
 
 
 def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
     """Return what a file states about itself, as JSON; `_header` reads it."""
-    listed = [asdict(failure) for failure in summary["failures"][:FAILURES_LISTED]]
-    summary = {**summary, "failures": listed}
+    summary = {**summary, "failures": summary["failures"][:FAILURES_LISTED]}
     return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
 
 
@@ -206,9 +204,8 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
         *(f"#   {line}".rstrip() for line in record["scene"].splitlines()),
         *(f"# {key}: {text}" for key, text in _described(plan, summary).items()),
     ]
-    for failure in summary["failures"]:
-        reason = json.dumps(failure.reason, ensure_ascii=False)
-        lines.append(f"# failed: point {failure.index}, {reason}")
+    for index, reason in summary["failures"]:
+        lines.append(f"# failed: point {index}, {json.dumps(reason, ensure_ascii=False)}")
     heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
     heads += ["time [s]"] * plan.series
     heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts
@@ -250,11 +247,12 @@ def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
     table = plan.blank(plan.points)
     for block in blocks():
         fill(table, block)
-    failures = (summary := _summary(plan, blocks(tables=False)))["failures"]
+    summary = _summary(plan, blocks(tables=False))
     data = from_memory(plan, table, []).to_xarray()
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
-    data["failure_index"] = "failure", np.array([f.index for f in failures], dtype=np.int64)
-    data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=str)
+    indices, reasons = [*zip(*summary["failures"], strict=True)] or [(), ()]
+    data["failure_index"] = "failure", np.array(indices, dtype=np.int64)
+    data["failure_reason"] = "failure", np.array(reasons, dtype=str)
     data.to_netcdf(path, engine="netcdf4")
     with path.open("ab") as file:
         file.write(b"0" * DIGITS)

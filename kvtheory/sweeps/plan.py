@@ -81,14 +81,13 @@ def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
 ) -> tuple[Column, ...]:
     """Return columns by name, or report every wrong one; None is all steady quantities, or all series."""
-    steady = {**STEADY_UNITS, STABLE: "1"}
-    rows = [Column(name, unit, name, "steady") for name, unit in steady.items()]
+    rows = [Column(STABLE, "1", STABLE, "steady")]
+    for name, unit in STEADY_UNITS.items():
+        rows += [Column(each, unit, name, "steady") for each in (name, f"{name}.steady")]
     for name, unit in SERIES_UNITS.items():
         rows += [Column(name, unit, name, "series")] * series
-        for measure in MEASURES:
-            of = "s" if measure == "time_of_max" else unit
-            rows.append(Column(f"{name}.{measure}", of, name, measure))
-    rows += [Column(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
+        of = {**dict.fromkeys(MEASURES, unit), "time_of_max": "s"}
+        rows += [Column(f"{name}.{each}", of[each], name, each) for each in MEASURES]
     rows += [Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
     known = {row.name: row for row in rows if row.base != "time"}
     if names is None:
