@@ -19,8 +19,8 @@ import numpy as np
 from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, Table
 
-APPLICATION = 0x6B765358
-"""Marks the SQLite file as a work file of a sweep ("kvSX")."""
+APPLICATION = 0x6B765332
+"""Marks the SQLite file as a work file of a sweep ("kvS2"); another layout of the blocks needs another mark."""
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
