@@ -141,6 +141,7 @@ def test_netcdf_is_labelled_and_carries_units_scene_and_failures(tmp_path):
             assert [one[name].attrs["units"] for name in ("depth", V)] == ["m", "m/s"]
             assert one.attrs["scene"] == kv.to_toml(kv.Scene())
             assert one.attrs["kvtheory_version"] == kv.__version__
+            assert one.attrs["certificate"] == result.certificate.statement != ""
             found = one["load"].sel({V: 0.1, TAU: 0.1}).item()
             assert found == kv.steady(over={V: 0.1, TAU: 0.1}).load
         assert data["failure_index"].values.tolist() == [f.index for f in result.failures]

@@ -247,8 +247,8 @@ def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
     table = plan.blank(plan.points)
     for block in blocks():
         fill(table, block)
-    summary = _summary(plan, blocks(tables=False))
-    data = from_memory(plan, table, []).to_xarray()
+    kept = list(blocks(tables=False))
+    data, summary = from_memory(plan, table, kept).to_xarray(), _summary(plan, kept)
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
     indices, reasons = [*zip(*summary["failures"], strict=True)] or [(), ()]
     data["failure_index"] = "failure", np.array(indices, dtype=np.int64)

@@ -20,7 +20,7 @@ from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, Table
 
 APPLICATION = 0x6B765332
-"""Marks the SQLite file as a work file of a sweep ("kvS2"); another layout of the blocks needs another mark."""
+"""Marks the SQLite file as a work file of a sweep in this layout ("kvS2")."""
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
