@@ -15,8 +15,8 @@ from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.capabilities import lacks_stability
+from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Problems, nearest
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below this range rounding dominates; above it any number would do."""

@@ -117,7 +117,7 @@ def sweep(
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
     """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together."""
-    from kvtheory.scene.quantities import Problems
+    from kvtheory.scene.mistakes import Problems
 
     over: dict[Any, Any] = {}
     problems = Problems()
@@ -138,7 +138,7 @@ def read_over(texts: Iterable[str]) -> dict[Any, Any]:
 
 def from_factory(text: str, jobs: int | None) -> Executor:
     """Call the factory ``module:name`` of executors, with the number of jobs if one is given."""
-    from kvtheory.scene.quantities import nearest
+    from kvtheory.scene.mistakes import nearest
 
     name, sign, factory = text.partition(":")
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it

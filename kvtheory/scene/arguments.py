@@ -16,20 +16,9 @@ import numpy as np
 
 from kvtheory.progress import listening
 from kvtheory.scene.drives import TIME
+from kvtheory.scene.mistakes import SHORT, Problems, SceneError, nearest, problem, shown
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import (
-    SHORT,
-    Problems,
-    Quantity,
-    SceneError,
-    array_of,
-    convert,
-    item_values,
-    items,
-    nearest,
-    problem,
-    shown,
-)
+from kvtheory.scene.quantities import Quantity, array_of, convert, item_values, items
 from kvtheory.scene.units import bare, to_si
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -49,7 +38,7 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
     (None, 2)
     >>> run(jobs="two")
     Traceback (most recent call last):
-    kvtheory.scene.quantities.SceneError: `jobs` = "two": expected a whole number of at least 1
+    kvtheory.scene.mistakes.SceneError: `jobs` = "two": expected a whole number of at least 1
     """
 
     def decorate(function: Function) -> Function:

@@ -11,17 +11,14 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
+from kvtheory.scene.mistakes import Problems, SceneError, mistake, problem
 from kvtheory.scene.quantities import (
     Derived,
     Part,
-    Problems,
     Quantity,
-    SceneError,
     Value,
     array_of,
     convert,
-    mistake,
-    problem,
     quantities,
     quantity,
     validate,

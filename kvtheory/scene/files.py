@@ -14,22 +14,18 @@ from kvtheory.scene.arguments import a_scene, checked, file_name, names
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
-from kvtheory.scene.quantities import (
+from kvtheory.scene.mistakes import (
     MEANT,
     Bare,
     Problems,
     SceneError,
     absent,
-    as_given,
     closest,
-    given,
-    missing,
     nearest,
-    quantities,
-    required,
     shown,
 )
+from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
+from kvtheory.scene.quantities import as_given, given, missing, quantities, required
 from kvtheory.scene.tables import history_from, read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 

@@ -14,16 +14,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from kvtheory.scene.mistakes import Problems, SceneError, mistake
 from kvtheory.scene.quantities import (
     Part,
-    Problems,
-    SceneError,
     Value,
     as_given,
     derive,
     is_derived,
     missing,
-    mistake,
     quantities,
     quantity,
     validate,

@@ -14,7 +14,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, validate
+from kvtheory.scene.mistakes import SceneError, mistake
+from kvtheory.scene.quantities import Part, Value, quantity, validate
 from kvtheory.theory.powers import power
 
 

@@ -15,11 +15,10 @@ import numpy as np
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola, Revolved
+from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
     Part,
-    Problems,
     Quantity,
-    SceneError,
     Value,
     as_given,
     converted,
@@ -27,7 +26,6 @@ from kvtheory.scene.quantities import (
     free,
     given,
     missing,
-    nearest,
     quantities,
     quantity,
     validate,

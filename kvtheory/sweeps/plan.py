@@ -24,18 +24,9 @@ from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
+from kvtheory.scene.mistakes import Problems, SceneError, nearest, problem
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import (
-    Problems,
-    Quantity,
-    SceneError,
-    array_of,
-    item_values,
-    items,
-    nearest,
-    problem,
-    quantities,
-)
+from kvtheory.scene.quantities import Quantity, array_of, item_values, items, quantities
 
 Array = NDArray[np.float64]
 Table = dict[str, NDArray[Any]]
