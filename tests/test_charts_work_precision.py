@@ -52,7 +52,7 @@ def test_references_agree_and_each_method_is_right_where_it_says_so(name):
     found = by_continuum(problem(name), 1e-8)[0]
     assert max(errors(found, right.solution).values()) < 1e-6
     if name not in (*MEMORY, "high-velocity"):
-        found = by_two_states(problem(name), "LSODA", 1e-8)[0]
+        found = by_two_states(problem(name), 1e-8, method="LSODA")[0]
         assert max(errors(found, right.solution).values()) < 1e-5
 
 

@@ -11,8 +11,9 @@ from kvtheory.cli import main
 from kvtheory.results import QUANTITIES
 from kvtheory.scene import template
 from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.mistakes import MEANT, closest
 from kvtheory.scene.model import SUPPORTS
-from kvtheory.scene.quantities import MEANT, closest, quantities
+from kvtheory.scene.quantities import quantities
 
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1")
 

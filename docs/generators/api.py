@@ -24,7 +24,7 @@ GROUPS = {
     "kvtheory.scene.waveforms": "Drives",
     "kvtheory.results": "Results",
     "kvtheory.results.errors": "Errors",
-    "kvtheory.scene.quantities.SceneError": "Errors",
+    "kvtheory.scene.mistakes.SceneError": "Errors",
 }
 """Headings of the public names, by the name itself, its module or its package."""
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
+from kvtheory.scene.mistakes import SceneError, problem
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, problem
 from kvtheory.scene.static_state import out_of_range
 
 TABLE1 = Scene()

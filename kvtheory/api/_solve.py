@@ -9,16 +9,14 @@ from kvtheory.api._elements import elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
-from kvtheory.ladder import series, sliding
-from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.capabilities import lacks_stability
+from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, nearest, problem
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below this range rounding dominates; above it any number would do."""
@@ -90,14 +88,16 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
+    from kvtheory.ladder import series, sliding  # these import the models over time
+    from kvtheory.ladder.climbing import Request, climb
+
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
-    problems: list[str] = []
+    problems = Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
     names = _names(quantity, units, over_time, problems)
     times = times_of(scene, at, problems)
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     if over_time:
         follow = partial(transient, progress=progress)
         simulate = partial(elements, progress=progress)
@@ -114,7 +114,7 @@ def solve(
 
 
 def _names(
-    names: Sequence[str] | None, units: Mapping[str, str], over_time: bool, problems: list[str]
+    names: Sequence[str] | None, units: Mapping[str, str], over_time: bool, problems: Problems
 ) -> tuple[str, ...]:
     """Return the requested quantities, and append mistakes to the problems."""
     if names is None:
@@ -132,5 +132,5 @@ def _names(
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
             what = nearest(name, units)
-        problems.append(problem("`quantity`", name, what))
+        problems.add("`quantity`", name, what)
     return tuple(dict.fromkeys(names))

@@ -7,8 +7,8 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import Stability
 from kvtheory.scene.arguments import a_scene, checked, names, replacements
 from kvtheory.scene.capabilities import lacks_stability, require
+from kvtheory.scene.mistakes import SceneError, nearest, problem
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, nearest, problem
 
 QUANTITIES = (
     "stable", "rates", "time_constants", "critical_stiffness", "lower_critical_stiffness",

@@ -12,8 +12,8 @@ from kvtheory.progress import Progress
 from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene import arguments as argument
 from kvtheory.scene.capabilities import lacks_arms, lacks_paper_model, lacks_stability, require
+from kvtheory.scene.mistakes import SceneError
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
@@ -118,7 +118,7 @@ def sweep(
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
-    refuse_what_cannot_fit(plan, file, jobs)
+    refuse_what_cannot_fit(plan, file)
     how: Any = {"executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block}
     how["report"] = progress
     if file is None:

@@ -10,7 +10,7 @@ from kvtheory.charts.work_precision import FULL, QUICK, Chart, make_chart
 from kvtheory.progress import Progress, silent
 from kvtheory.scene import Drive, Scene
 from kvtheory.scene.capabilities import lacks_rigid_paper_model, require
-from kvtheory.scene.quantities import nearest
+from kvtheory.scene.mistakes import nearest
 
 Job = Callable[..., Chart]
 """Makes one chart, with an `effort`, and reports its `progress`."""

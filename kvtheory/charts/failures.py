@@ -10,7 +10,7 @@ import numpy as np
 
 from kvtheory.charts import motion_failures, steady_failures
 from kvtheory.charts.naive import Outcome
-from kvtheory.scene.quantities import nearest
+from kvtheory.scene.mistakes import nearest
 
 ROLES = "wrong", "right", "package"
 TEXTS = "key", "title", "scene", "why", "quantity", "notice", "package"

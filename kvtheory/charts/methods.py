@@ -2,14 +2,14 @@
 
 import math
 import os
-from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
+from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
-from kvtheory.charts.naive import Array, Law, solve_by_scipy, two_states
+from kvtheory.charts.naive import Array, Law, solve_by_scipy
 from kvtheory.charts.problems import Curves, Problem, by_continuum, by_elements, by_two_states
 from kvtheory.charts.work_precision import Clock, Method
 from kvtheory.models.continuum import compiled
@@ -18,10 +18,10 @@ from kvtheory.models.slow_manifold.motion import follow
 from kvtheory.models.slow_manifold.start import start
 
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
-LOOSE_TOLERANCES = TOLERANCES[:-1]
+TWO_STATES = "RK45", "DOP853", "Radau", "BDF", "LSODA"
+"""The solvers of SciPy that take the two states."""
 DENSITIES = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 """Elements per static half length."""
-LINES_DENSITIES = DENSITIES[:5]
 LINES_RTOL = 1e-6
 """Tolerance of the method of lines: its error in time is below that of the elements."""
 SUNDIALS_LOGS = "SUNLOGGER_WARNING_FILENAME", "SUNLOGGER_ERROR_FILENAME"
@@ -32,15 +32,20 @@ REACH = 1.6
 
 def transient_methods() -> dict[str, Method]:
     """Return the available methods; those that are not installed are left out."""
+    solvers: dict[str, Any] = dict.fromkeys(TWO_STATES, solve_by_scipy)
+    if find_spec("sksundae"):
+        solvers["CVODE"] = _solve_by_cvode
     found = [
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
                _starts_forward),
-        *(_continuum(fast) for fast in ((False, True) if compiled.available() else (False,))),
-        *(_two_states(name) for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA")),
-        *([_two_states("CVODE", _solve_by_cvode)] if find_spec("sksundae") else []),
-        Method("method of lines", "elements", LINES_DENSITIES, "element updates", _lines,
-               suits=_moves),
-        *(_elements(name) for name in SCHEMES),
+        *(Method(f"continuum, {how}", "rtol", TOLERANCES, "evaluations", partial(by_continuum, fast=fast))
+          for how, fast in (("interpreted", False), ("compiled", True)) if not fast or compiled.available()),
+        *(Method(f"two states, {name}", "rtol", TOLERANCES[:-1], "evaluations",
+                 partial(by_two_states, method=name, solve=solve), suits=_moves)
+          for name, solve in solvers.items()),
+        Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_moves),
+        *(Method(f"elements, {name}", "elements per a_0", DENSITIES, "element updates",
+                 partial(by_elements, scheme=name)) for name in SCHEMES),
     ]  # fmt: skip
     return {method.name: method for method in found}
 
@@ -53,31 +58,6 @@ def _starts_forward(problem: Problem) -> bool:
     """Whether the drive number is positive and constant, as the slow manifold requires."""
     numbers = [number for _, _, number in problem.pieces]
     return _moves(problem) and len(numbers) == 1 and not callable(numbers[0]) and numbers[0] > 0.0
-
-
-def _continuum(fast: bool) -> Method:
-    def solve(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
-        return by_continuum(problem, rtol, fast=fast, progress=clock.check)
-
-    name = "continuum, compiled" if fast else "continuum, interpreted"
-    return Method(name, "rtol", TOLERANCES, "evaluations", solve)
-
-
-def _two_states(name: str, by: Callable[..., tuple[Array, int]] = solve_by_scipy) -> Method:
-    def solve(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
-        def law_of(*numbers: Any, **more: float) -> Law:
-            law = two_states(*numbers, **more)
-
-            def watched(s: float, y: Any) -> tuple[float, ...]:
-                clock.check()
-                return law(s, y)
-
-            return watched
-
-        return by_two_states(problem, name, rtol, law_of=law_of, solve=by)
-
-    method = f"two states, {name}"
-    return Method(method, "rtol", LOOSE_TOLERANCES, "evaluations", solve, suits=_moves)
 
 
 def _solve_by_cvode(
@@ -103,13 +83,6 @@ def _slow_manifold(problem: Problem, rtol: float, _: Clock) -> tuple[Curves, int
     given = start(problem.pieces[0][2], units.inertia_number, units.support_number)
     found = follow(given, problem.times / units.time, rtol).values
     return Curves(found["depth"], found["friction_force"]), 0
-
-
-def _elements(scheme: str) -> Method:
-    def solve(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]:
-        return by_elements(problem, density, scheme, progress=clock.check)
-
-    return Method(f"elements, {scheme}", "elements per a_0", DENSITIES, "element updates", solve)
 
 
 def _lines(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]:

@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.api import elements
-from kvtheory.charts.naive import Array, Piece, scaled_scene, two_states, without_memory
-from kvtheory.charts.work_precision import MISSED, WRONG, Reference
+from kvtheory.charts import naive
+from kvtheory.charts.naive import Array, Piece, scaled_scene
+from kvtheory.charts.work_precision import MISSED, NO_LIMIT, WRONG, Clock, Reference
 from kvtheory.models.continuum import evaluation, solver
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion
@@ -123,13 +124,14 @@ class Problem:
             return curves, "stored solution, see the tests"
         if not self.scene.held:  # else there is no equation of motion
             try:
-                curves = by_two_states(self, "Radau", INDEPENDENT_RTOL)[0]
+                curves = by_two_states(self, INDEPENDENT_RTOL, method="Radau")[0]
             except ArithmeticError:
                 curves = Curves(np.full_like(first.depth, math.inf), first.friction)
             if errors(curves, first)["depth, maximum"] < NO_MEMORY:
                 return curves, "two states by SciPy's Radau, rtol 1e-10"
         fine = DENSITIES[self.quick]
-        coarse, better = (by_elements(self, n, "edge-corrected")[0] for n in (0.5 * fine, fine))
+        pair = (by_elements(self, n, scheme="edge-corrected") for n in (0.5 * fine, fine))
+        (coarse, _), (better, _) = pair
         # Of second order: the error of the finer run is a third of the difference.
         curves = Curves(*(b + (b - a) / 3.0 for a, b in zip(coarse, better, strict=True)))
         return curves, f"elements, {0.5 * fine:g} and {fine:g} in a half length, extrapolated"
@@ -170,33 +172,44 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
     return {**result, "peak friction": abs(peaks[0] - peaks[1]) / largest}
 
 
-def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
+def by_continuum(
+    problem: Problem, rtol: float, clock: Clock = NO_LIMIT, *, fast: bool | None = None
+) -> tuple[Curves, int]:
     """Return the curves by the package's transient, and its evaluations of the equation of motion."""
     units, drive = problem.units, problem.drive
     numbers = units.inertia_number, units.support_number
-    motion = solver.solve(drive, *numbers, drive.end, rtol, **options)
+    motion = solver.solve(drive, *numbers, drive.end, rtol, fast=fast, progress=clock.check)
     found = motion.states(np.minimum(problem.times / units.time, motion.end)).T
     curves = Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE])
     return curves, motion.counts.evaluations
 
 
-def by_two_states(problem: Problem, method: str, rtol: float, **how: Any) -> tuple[Curves, int]:
+def by_two_states(
+    problem: Problem, rtol: float, clock: Clock = NO_LIMIT, **how: Any
+) -> tuple[Curves, int]:
     """Return the curves by the two states with closed-form edges, and the evaluations."""
     units = problem.units
-    numbers = {"epsilon": units.inertia_number, "kappa": units.support_number}
-    law_of, s = partial(how.pop("law_of", two_states), **numbers), problem.times / units.time
-    (d, _, f_x), evaluations = without_memory(problem.pieces, s, law_of, method, rtol, **how)
-    return Curves(d, f_x), evaluations
+
+    def law_of(number: Any) -> naive.Law:
+        law = naive.two_states(number, units.inertia_number, units.support_number)
+
+        def watched(s: float, y: Any) -> tuple[float, ...]:
+            clock.check()
+            return law(s, y)
+
+        return watched
+
+    s = problem.times / units.time
+    (d, _, f_x), count = naive.without_memory(problem.pieces, s, law_of, rtol=rtol, **how)
+    return Curves(d, f_x), count
 
 
 def by_elements(
-    problem: Problem, per_half_length: float, scheme: str, **options: Any
+    problem: Problem, per_half_length: float, clock: Clock = NO_LIMIT, *, scheme: str
 ) -> tuple[Curves, int]:
     """Return the curves by elements at this number per static half length, and the count of updates."""
-    units = problem.units
-    run = elements(
-        problem.scene, per_length=per_half_length / units.half_length, scheme=scheme,
-        at=problem.times, certify=False, **options,
-    )  # fmt: skip
+    units, density = problem.units, per_half_length / problem.units.half_length
+    how: Any = {"scheme": scheme, "at": problem.times, "progress": clock.check}
+    run = elements(problem.scene, per_length=density, certify=False, **how)
     scaled = Curves(run.depth / units.depth, run.friction_force / units.friction_force)
     return scaled, run.element_updates

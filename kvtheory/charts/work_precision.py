@@ -53,6 +53,9 @@ class Clock:
             raise TimedOutError
 
 
+NO_LIMIT = Clock()
+
+
 @dataclass(frozen=True)
 class Reference:
     """The reference solution; the difference of two independent methods in each error; and their names."""

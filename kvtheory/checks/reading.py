@@ -16,7 +16,7 @@ import numpy as np
 
 from kvtheory.checks.theory import Array
 from kvtheory.results.table import SERIES_UNITS
-from kvtheory.scene.quantities import shown
+from kvtheory.scene.mistakes import shown
 from kvtheory.scene.tables import numbers, parts, plain, read_table
 from kvtheory.scene.units import bare, to_si
 

@@ -24,7 +24,7 @@ class Failure(click.ClickException):
 
     def show(self, file: Any = None) -> None:
         """Write the message to standard error, without control characters."""
-        from kvtheory.scene.quantities import printable
+        from kvtheory.scene.mistakes import printable
 
         lines = map(printable, f"kvtheory: {self.message}".splitlines())
         click.echo("\n".join(lines), file=file, err=True)

@@ -138,6 +138,7 @@ def compare(
     Exit status: 0 if it agrees or the data cannot tell, 1 if it disagrees, 2 for bad input.
     """
     from kvtheory.api._compare import compare as compare_with_theory
+    from kvtheory.results.comparison import HEADS
     from kvtheory.scene import load_scene
 
     checked = load_scene(scene, overrides)
@@ -154,16 +155,7 @@ def compare(
     else:
         theory = "" if found.verdict == "cannot tell" else " with theory"
         click.echo(f"{found.source}: {found.verdict}{theory}\n")
-        rows = []
-        for check in found.checks:
-            numbers, note = ("-", "-", "-"), check.note
-            if check.ok is not None:
-                ok = "ok" if check.ok else "NO"
-                numbers = f"{check.measured:.3g}", f"{check.allowed:.3g}", ok
-                note = f"{check.unit}; {check.note}" if check.note else check.unit
-            rows.append((check.name, *numbers, check.equation, note))
-        heads = ("check", "measured", "allowed", "", "equation", "what is measured")
-        console.print_table(heads, rows)
+        console.print_table(HEADS, found.rows)
         click.echo(f"\n{found.diagnosis}")
     if found.verdict == "disagrees":
         click.get_current_context().exit(DISAGREES)

@@ -69,7 +69,6 @@ def sweep(
     from kvtheory.api._sweep import plan_of
     from kvtheory.results import record
     from kvtheory.scene import load_scene
-    from kvtheory.sweeps.plan import announcement
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
@@ -81,8 +80,6 @@ def sweep(
         from kvtheory.plots.sweep import check_drawable
 
         check_drawable(plan)
-    if large := announcement(plan, output, jobs or 1):
-        click.echo(f"kvtheory: {large}", err=True)
     began = time.perf_counter()
     with ExitStack() as stack:
         progress = stack.enter_context(console.progress_bar("sweep"))
@@ -120,10 +117,10 @@ def sweep(
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
     """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together."""
-    from kvtheory.scene import SceneError
+    from kvtheory.scene.mistakes import Problems
 
     over: dict[Any, Any] = {}
-    problems = []
+    problems = Problems()
     for text in texts:
         pairs = [part.partition("=") for part in text.split("&")]
         if not all(key.strip() and sign and value.strip() for key, sign, value in pairs):
@@ -135,14 +132,13 @@ def read_over(texts: Iterable[str]) -> dict[Any, Any]:
             problems.append(f'--over "{text}": {keys[0]} is swept already')
             continue
         over |= {keys: values} if len(keys) > 1 else {keys[0]: values[0]}
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     return over
 
 
 def from_factory(text: str, jobs: int | None) -> Executor:
     """Call the factory ``module:name`` of executors, with the number of jobs if one is given."""
-    from kvtheory.scene.quantities import nearest
+    from kvtheory.scene.mistakes import nearest
 
     name, sign, factory = text.partition(":")
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it

@@ -267,10 +267,7 @@ def _series(
 ) -> Answer:
     """Return the requested quantities from constants or from values at the requested times."""
     times = _times(scene, request)
-    held = {
-        name: value if isinstance(value, np.ndarray) else np.full(times.shape, value)
-        for name, value in values.items()
-    }
+    held = {name: np.full(times.shape, value) for name, value in values.items()}
     return _answer({"time": times, **held}, own, request, result)
 
 

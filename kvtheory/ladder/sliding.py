@@ -33,11 +33,12 @@ PROVED = (
 
 def rungs(steady: Steady) -> tuple[Rung, ...]:
     """Return the rungs in order of cost; `steady` runs the last two."""
+    exact, quadrature = (partial(_steady, steady, name) for name in ("exact", "quadrature"))
     return (
         Rung("asymptote", "steady sliding of a parabola or ball, V far from V*", _asymptote),
-        Rung("exact", "steady sliding of a parabola, power law, wedge or ball", partial(_exact, steady)),
-        Rung("quadrature", "steady sliding of any shape", partial(_quadrature, steady)),
-    )  # fmt: skip
+        Rung("exact", "steady sliding of a parabola, power law, wedge or ball", exact),
+        Rung("quadrature", "steady sliding of any shape", quadrature),
+    )
 
 
 def _asymptote(scene: Scene, request: Request) -> Offer:
@@ -52,21 +53,19 @@ def _asymptote(scene: Scene, request: Request) -> Offer:
     return Offer(error, run)
 
 
-def _exact(steady: Steady, scene: Scene, request: Request) -> Offer:
-    need(lacks_closed_form(scene))
-    known = "exact, power law" if lacks_quadratic(scene) else "exact"
-    known = "exact, any foundation" if lacks_kelvin_voigt(scene) else known
-    return Offer(BEST[known], lambda: _picked(steady(scene, method="exact"), request))
+def _steady(steady: Steady, method: str, scene: Scene, request: Request) -> Offer:
+    """Offer a method of `steady`."""
+    need((lacks_closed_form if method == "exact" else lacks_quadrature)(scene))
+    known = method
+    if lacks_kelvin_voigt(scene):
+        known = "exact, any foundation" if method == "exact" else "convolution"
+    elif method == "exact" and lacks_quadratic(scene):
+        known = "exact, power law"
 
+    def run() -> Answer:
+        state, names = steady(scene, method=method), request.quantities
+        errors = {name: state.certificate.relative_error[name] for name in names}
+        own = replace(state.certificate, relative_error=errors)
+        return Answer({name: getattr(state, name) for name in names}, own, state)
 
-def _quadrature(steady: Steady, scene: Scene, request: Request) -> Offer:
-    need(lacks_quadrature(scene))
-    best = BEST["convolution" if lacks_kelvin_voigt(scene) else "quadrature"]
-    return Offer(best, lambda: _picked(steady(scene, method="quadrature"), request))
-
-
-def _picked(state: SteadyState, request: Request) -> Answer:
-    own = state.certificate
-    errors = {name: own.relative_error[name] for name in request.quantities}
-    values = {name: getattr(state, name) for name in request.quantities}
-    return Answer(values, replace(own, relative_error=errors), state)
+    return Offer(BEST[known], run)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from kvtheory.plots.style import BLUE, Picture, label, with_unit
 from kvtheory.results import QUANTITIES, SteadyState, Sweep
-from kvtheory.scene.quantities import nearest
+from kvtheory.scene.mistakes import nearest
 from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]

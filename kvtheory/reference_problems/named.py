@@ -4,7 +4,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from kvtheory.scene import Scene, load_scene
-from kvtheory.scene.quantities import mistake, nearest
+from kvtheory.scene.mistakes import mistake, nearest
 
 SCENES = {path.stem: path for path in sorted(Path(__file__).with_name("scenes").glob("*.toml"))}
 """The scene files by the names of the problems."""

@@ -79,15 +79,19 @@ class Comparison(Exported):
         rows += [f"and {len(failed) - MOST_SHOWN} more"] * (len(failed) > MOST_SHOWN)
         return "\n".join([f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows])
 
-    def _repr_html_(self) -> str:
-        rows = [
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """The checks as text, below `HEADS`."""
+        return [
             (
                 c.name, *("-" if c.ok is None else f"{x:.3g}" for x in (c.measured, c.allowed)),
                 MARKS[c.ok], c.equation, "; ".join(filter(None, (c.unit, c.note))),
             )
             for c in self.checks
         ]  # fmt: skip
-        return html_table(f"{self.source}: {self.verdict}. {self.diagnosis}", HEADS, rows)
+
+    def _repr_html_(self) -> str:
+        return html_table(f"{self.source}: {self.verdict}. {self.diagnosis}", HEADS, self.rows)
 
     def _columns(self) -> Columns:
         """Return data, theory and the allowed difference of each quantity."""

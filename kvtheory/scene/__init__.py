@@ -12,8 +12,8 @@ from kvtheory.scene.indenters import (
     Sphere,
     Wedge,
 )  # fmt: skip
+from kvtheory.scene.mistakes import SceneError
 from kvtheory.scene.model import DeadWeight, Drive, Fixed, Run, Scene, Support, Suspended
-from kvtheory.scene.quantities import SceneError
 from kvtheory.scene.waveforms import Sine, SmoothRamp, Triangle
 
 __all__ = [

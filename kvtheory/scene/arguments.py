@@ -16,20 +16,9 @@ import numpy as np
 
 from kvtheory.progress import listening
 from kvtheory.scene.drives import TIME
+from kvtheory.scene.mistakes import SHORT, Problems, SceneError, nearest, problem, shown
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import (
-    SHORT,
-    Quantity,
-    SceneError,
-    array_of,
-    collecting,
-    convert,
-    item_values,
-    items,
-    nearest,
-    problem,
-    shown,
-)
+from kvtheory.scene.quantities import Quantity, array_of, convert, item_values, items
 from kvtheory.scene.units import bare, to_si
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -49,7 +38,7 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
     (None, 2)
     >>> run(jobs="two")
     Traceback (most recent call last):
-    kvtheory.scene.quantities.SceneError: `jobs` = "two": expected a whole number of at least 1
+    kvtheory.scene.mistakes.SceneError: `jobs` = "two": expected a whole number of at least 1
     """
 
     def decorate(function: Function) -> Function:
@@ -58,19 +47,18 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
 
         @wraps(function)
         def run(*args: Any, **kwargs: Any) -> Any:
-            problems: list[str] = []
+            problems = Problems()
 
             def read(name: str, value: Any) -> Any:
                 if name not in kinds or value is defaults[name]:
                     return value
-                with collecting(problems, f"`{name}`", value):
+                with problems.catching(f"`{name}`", value):
                     return kinds[name](value)
 
             extra = args[len(parameters) :]
             args = (*map(read, parameters, args), *extra)
             kwargs = {name: read(name, value) for name, value in kwargs.items()}
-            if problems:
-                raise SceneError(problems)
+            problems.report()
             if kwargs.get("progress") is None:
                 return function(*args, **kwargs)
             with listening(kwargs["progress"]) as kwargs["progress"]:
@@ -112,20 +100,19 @@ def measured(spec: Quantity) -> Kind:
 
 def times(value: Any) -> list[float]:
     """Read times in s: one or several, also as text; report every mistake with its value."""
-    problems: list[str] = []
+    problems = Problems()
     found: list[float] = []
     for one in value if isinstance(value, (list, tuple)) else [value]:
         for given in items(one) if isinstance(one, str) else [one]:
-            with collecting(problems, "`at`", given):
+            with problems.catching("`at`", given):
                 read = item_values if isinstance(given, str) else array_of
                 array = np.atleast_1d(read(given, TIME))
                 if array.ndim > 1:
                     raise ValueError("expected one list of times")
                 found += array.tolist()
     if not found and not problems:
-        problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
-    if problems:
-        raise SceneError(problems)
+        problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    problems.report()
     return found
 
 

@@ -11,17 +11,14 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
+from kvtheory.scene.mistakes import Problems, SceneError, mistake, problem
 from kvtheory.scene.quantities import (
     Derived,
     Part,
     Quantity,
-    SceneError,
     Value,
     array_of,
-    collecting,
     convert,
-    mistake,
-    problem,
     quantities,
     quantity,
     validate,
@@ -92,43 +89,40 @@ class Drive(Part):
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        problems: list[str] = []
+        problems = Problems()
         function = None if self.function is self.waveform else self.function  # of a copy
         ways = self.velocity, self.history, function, self.waveform
         if sum(given is not None for given in ways) != 1:
             told = "drive: expected one of velocity, history and waveform, such as "
             problems.append(told + 'velocity = "100 mm/s"; or, in Python, a function')
         if not isinstance(self.waveform, Sine | Triangle | SmoothRamp | None):
-            told = "expected a Sine, Triangle or SmoothRamp"
-            problems.append(problem("drive.waveform", self.waveform, told))
+            problems.add("drive.waveform", self.waveform, "expected a Sine, Triangle or SmoothRamp")
         elif self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
             self.mark([self.waveform])
-        with collecting(problems, "drive", self):
+        with problems.catching("drive", self):
             validate(self, "drive")
         for name, value in {"damping": self.damping, "mass": self.mass}.items():
             if self.rigid and value is not None:
                 told = "needs drive.stiffness, of the spring between drive and indenter"
-                problems.append(problem(f"drive.{name}", value, told))
+                problems.add(f"drive.{name}", value, told)
         if self.damping is None:
             object.__setattr__(self, "damping", Derived(0.0))
         if self.history is not None:
-            with collecting(problems, "drive.history", self.history):
+            with problems.catching("drive.history", self.history):
                 object.__setattr__(self, "history", history_points(self.history))
         if self.function is None:
             if not (isinstance(self.breaks, tuple) and self.breaks == ()):
-                problems.append(problem("drive.breaks", self.breaks, "needs a function"))
+                problems.add("drive.breaks", self.breaks, "needs a function")
         elif not callable(self.function):
-            problems.append(problem("drive.function", self.function, "expected a function V(t)"))
-        with collecting(problems, "drive.breaks", self.breaks):
+            problems.add("drive.function", self.function, "expected a function V(t)")
+        with problems.catching("drive.breaks", self.breaks):
             breaks = sorted(np.atleast_1d(array_of(self.breaks, TIME)).tolist())
             object.__setattr__(self, "breaks", tuple(breaks))
         given = self.tolerance
         if not (isinstance(given, (int, float)) and LEAST_TOLERANCE <= given <= 1.0):
-            told = f"expected a number from {LEAST_TOLERANCE} to 1"
-            problems.append(problem("drive.tolerance", given, told))
-        if problems:
-            raise SceneError(problems)
+            problems.add("drive.tolerance", given, f"expected a number from {LEAST_TOLERANCE} to 1")
+        problems.report()
 
     def arrays(self) -> dict[str, Any]:
         """Return the arrays among the quantities; those of a waveform are keys of the drive itself."""
@@ -301,15 +295,14 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:
         told = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
         raise mistake(key, points, told)
-    problems: list[str] = []
+    problems = Problems()
     values: list[float] = []
     for index, point in enumerate(points):
         if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
-            told = 'expected a pair ["time", "velocity"]'
-            problems.append(problem(f"{key}[{index}]", point, told))
+            problems.add(f"{key}[{index}]", point, 'expected a pair ["time", "velocity"]')
             continue
         for value, spec in zip(point, (TIME, VELOCITY), strict=True):
-            with collecting(problems, f"{key}[{index}]", value):
+            with problems.catching(f"{key}[{index}]", value):
                 values.append(convert(value, spec))
     if not problems:
         times, velocities = values[::2], values[1::2]
@@ -317,13 +310,10 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
             if 0.0 < before - time <= SAME_TIME * math.ulp(before):
                 times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
         if times[0] != 0.0:
-            problems.append(problem(f"{key}[0]", points[0], "the first time must be 0 s"))
+            problems.add(f"{key}[0]", points[0], "the first time must be 0 s")
         told = "times must not decrease, and a time may occur at most twice"
-        problems += [
-            problem(f"{key}[{i}]", points[i], told)
-            for i in range(1, len(times))
-            if times[i] < times[i - 1] or (i > 1 and times[i] == times[i - 2])
-        ]
-    if problems:
-        raise SceneError(problems)
+        for i in range(1, len(times)):
+            if times[i] < times[i - 1] or (i > 1 and times[i] == times[i - 2]):
+                problems.add(f"{key}[{i}]", points[i], told)
+    problems.report()
     return tuple(zip(times, velocities, strict=True))

@@ -14,23 +14,18 @@ from kvtheory.scene.arguments import a_scene, checked, file_name, names
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
-from kvtheory.scene.quantities import (
+from kvtheory.scene.mistakes import (
     MEANT,
     Bare,
+    Problems,
     SceneError,
     absent,
-    as_given,
     closest,
-    collecting,
-    given,
-    missing,
     nearest,
-    problem,
-    quantities,
-    required,
     shown,
 )
+from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
+from kvtheory.scene.quantities import as_given, given, missing, quantities, required
 from kvtheory.scene.tables import history_from, read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -87,20 +82,16 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     if path is None and not overrides:
         return Scene.table1()
     tables, problems = _overridden(path, overrides)
-    problems += [
-        f"[{name}]: unknown section; {nearest(name, SECTIONS)}"
-        for name in tables
-        if name not in SECTIONS
-    ]
-    problems += [
-        f"[{name}]: this section is missing" for name in absent(SECTIONS, tables) if name != "run"
-    ]
+    unknown = [name for name in tables if name not in SECTIONS]
+    problems += [f"[{name}]: unknown section; {nearest(name, SECTIONS)}" for name in unknown]
+    needed = [name for name in absent(SECTIONS, tables) if name != "run"]
+    problems += [f"[{name}]: this section is missing" for name in needed]
     parts, per_width = {}, _is_per_width(tables)
     for section in (name for name in SECTIONS if name in tables):
-        with collecting(problems, section, tables[section]):
+        with problems.catching(section, tables[section]):
             parts[section] = _part(section, tables[section], per_width)
-    if problems := problems + inconsistencies(parts):
-        raise SceneError(problems)
+    problems += inconsistencies(parts)
+    problems.report()
     return Scene(**parts)
 
 
@@ -208,13 +199,13 @@ def _read(path: Path) -> dict[str, Any]:
     raise SceneError([f"{path} is not a TOML file: {told}"])
 
 
-def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], list[str]]:
+def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], Problems]:
     """Return the tables of a scene file, or of Table 1, with overrides, and the mistakes in the overrides."""
     tables: dict[str, Any] = _tables(Scene.table1()) if path is None else _read(Path(path))
     drive = tables.get("drive")
     if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
         drive["file"] = str(Path(path).parent / drive["file"])  # relative to the scene file
-    problems: list[str] = []
+    problems = Problems()
     new: dict[tuple[str, str], str] = {}
     for text in overrides:
         key, separator, value = text.partition("=")
@@ -295,24 +286,21 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
     if isinstance(name, str) and name in models:
         choice = f'{chooser} = "{name}"' if chooser else ""
         return _made(models[name], section, rest, per_width, choice)
-    problems = []
+    problems = Problems()
     if chooser in table:
         one = f"expected exactly one of: {', '.join(models)}"
         what = nearest(name, models) if isinstance(name, str) else one
-        problems.append(problem(f"{section}.{chooser}", name, what))
+        problems.add(f"{section}.{chooser}", name, what)
     elif chooser is not None and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
     meant = closest(name, models) if isinstance(name, str) else None
     if meant is not None:
-        with collecting(problems, section, table):
+        with problems.catching(section, table):
             _made(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
     elif chooser is not None:
         valid = [chooser, *dict.fromkeys(key for model in models.values() for key in _keys(model))]
-        problems += [
-            problem(f"{section}.{key}", value, f"unknown key; {nearest(key, valid)}")
-            for key, value in rest.items()
-            if key not in valid
-        ]
+        for key in [key for key in rest if key not in valid]:
+            problems.add(f"{section}.{key}", rest[key], f"unknown key; {nearest(key, valid)}")
     raise SceneError(problems)
 
 
@@ -322,7 +310,7 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     unknown = [key for key in table if key not in valid]
     misspelt = {closest(key, valid) for key in unknown}
     needed = required(cls, tuple(table))
-    problems = []
+    problems, found = Problems(), Problems()
     for name in needed:
         if name not in misspelt:
             spec = specs[name].fitting(per_width)
@@ -330,23 +318,23 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
             problems.append(missing(section, name, spec, of + ball))
     for key in unknown:
         told = f"unknown key{of}; {_hint(section, key, valid)}"
-        problems.append(problem(f"{section}.{key}", table[key], told))
+        problems.add(f"{section}.{key}", table[key], told)
     values = {key: _unitless(table[key]) for key in valid if key in table}
     values |= dict.fromkeys(needed)
-    made, found = None, list[str]()
+    made = None
     if cls is Drive and "file" in values:
         path = Path(str(values.pop("file")))
         if "history" in values:
-            found.append(problem("drive.file", str(path), "cannot be given beside drive.history"))
+            found.add("drive.file", str(path), "cannot be given beside drive.history")
         values["history"] = [(0.0, 0.0)]
-        with collecting(found, section, table):
+        with found.catching(section, table):
             values["history"] = history_from(path)
     waveform = cls in WAVEFORMS.values()
     spring = {key: values.pop(key) for key in SPRING if waveform and key in values}
-    with collecting(found, section, table):
+    with found.catching(section, table):
         made = cls(**values)
     if waveform:
-        with collecting(found, section, table):
+        with found.catching(section, table):
             made = Drive(velocity=0.0 if made is None else None, waveform=made, **spring)
     reported = [f"{section}.{name}: missing" for name in {*needed, *misspelt}]
     if misspelt & set(DRIVES):
@@ -356,8 +344,7 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
         for told in found
         if not told.startswith(tuple(reported))
     ]
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     return made
 
 

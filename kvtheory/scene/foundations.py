@@ -14,17 +14,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from kvtheory.scene.mistakes import Problems, SceneError, mistake
 from kvtheory.scene.quantities import (
     Part,
-    SceneError,
     Value,
     as_given,
-    collecting,
     derive,
     is_derived,
     missing,
-    mistake,
-    problem,
     quantities,
     quantity,
     validate,
@@ -145,7 +142,7 @@ class _Relaxed(Part):
     arms: ClassVar[Any] = ()
 
     def __post_init__(self) -> None:
-        problems: list[str] = []
+        problems = Problems()
         held: list[Any] = [self, *self._read_arms(problems)]
         lawless = self.wlf is None and self.activation_energy is None
         if self.modulus is None and is_derived(self.stiffness):
@@ -155,10 +152,10 @@ class _Relaxed(Part):
             time = getattr(part, name)
             if is_derived(time):
                 object.__setattr__(part, name, +time if lawless else as_given(time))
-        with collecting(problems, "foundation", self):
+        with problems.catching("foundation", self):
             validate(self, "foundation")
         if self.wlf is not None:
-            with collecting(problems, "foundation.wlf", self.wlf):
+            with problems.catching("foundation.wlf", self.wlf):
                 if not isinstance(self.wlf, WLF) and not _is_pair(self.wlf):
                     raise ValueError(f"expected {WLF_PAIR}")
                 law = self.wlf if isinstance(self.wlf, WLF) else WLF(*self.wlf)
@@ -171,8 +168,7 @@ class _Relaxed(Part):
         elif lawless and given:
             told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
-        if problems:
-            raise SceneError(problems)
+        problems.report()
         for i, part in enumerate(held if self.modulus is not None else ()):
             stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
             section = f"foundation.arms[{i - 1}]" if i else "foundation"
@@ -182,7 +178,7 @@ class _Relaxed(Part):
         if not lawless or len(held) > 1:
             self.mark(part for _, part in self.nested())
 
-    def _read_arms(self, problems: list[str]) -> Sequence["Arm"]:
+    def _read_arms(self, problems: Problems) -> Sequence["Arm"]:
         """Return the arms of a Prony series, converted; other foundations have none."""
         return ()
 
@@ -310,8 +306,8 @@ class GeneralizedMaxwell(_Relaxed):
     kind: ClassVar[str] = "generalized-maxwell"
     arms: tuple[Arm, ...] = ()  # type: ignore[misc]
 
-    def _read_arms(self, problems: list[str]) -> Sequence[Arm]:
-        with collecting(problems, "foundation.arms", self.arms):
+    def _read_arms(self, problems: Problems) -> Sequence[Arm]:
+        with problems.catching("foundation.arms", self.arms):
             object.__setattr__(self, "arms", _arms_of(self.arms, layer=self.modulus is not None))
             return self.arms
         return ()
@@ -376,7 +372,7 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
     mixed = "only a layer, with foundation.modulus, has arms with moduli"
     if layer:
         mixed = "a layer with foundation.modulus has arms with moduli too"
-    problems: list[str] = []
+    problems = Problems()
     arms: dict[int, Arm] = {}
     for number, pair in enumerate(given):
         key = f"foundation.arms[{number}]"
@@ -385,7 +381,7 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
         elif _is_pair(pair):
             other = _reads(pair[0], "N/m^3" if layer else "N/m^2")
         else:
-            problems.append(problem(key, pair, f"expected one of {pairs_expected}"))
+            problems.add(key, pair, f"expected one of {pairs_expected}")
             continue
         if other:
             raise mistake(key, pair, f"{mixed}; expected {pairs_expected}")
@@ -397,8 +393,8 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
             )
         except SceneError as error:
             problems += [line.replace("arm", key, 1) for line in error.problems]
-    if problems := problems + _equal_times(arms):
-        raise SceneError(problems)
+    problems += _equal_times(arms)
+    problems.report()
     return tuple(arms.values())
 
 

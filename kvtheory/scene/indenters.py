@@ -9,11 +9,13 @@ other bodies of revolution have total forces, and their shape is that of the mid
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, validate
+from kvtheory.scene.mistakes import SceneError, mistake
+from kvtheory.scene.quantities import Part, Value, quantity, validate
 from kvtheory.theory.powers import power
 
 
@@ -255,20 +257,11 @@ class Revolved(Part):
             raise mistake("indenter.profile", self.profile, told)
         self.mark([self.profile])
 
-    @property
-    def convex(self) -> bool:
-        """Whether the profile is known to be convex."""
-        return self.profile.convex
-
-    @property
-    def reach(self) -> float:
-        """Largest |x| of the profile, in m."""
-        return self.profile.reach
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Points of the profile where h' jumps or a derivative is singular, in m."""
-        return self.profile.kinks
+    convex = property(
+        attrgetter("profile.convex"), doc="Whether the profile is known to be convex."
+    )
+    reach = property(attrgetter("profile.reach"), doc="Largest |x| of the profile, in m.")
+    kinks = property(attrgetter("profile.kinks"), doc="Points where h' jumps or is singular, in m.")
 
     def height(self, x: Value, y: Value = 0.0) -> Value:
         """Return h(rho), by default in the middle plane."""

@@ -15,20 +15,17 @@ import numpy as np
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola, Revolved
+from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
     Part,
     Quantity,
-    SceneError,
     Value,
     as_given,
-    collecting,
     converted,
     derive,
     free,
     given,
     missing,
-    nearest,
-    problem,
     quantities,
     quantity,
     validate,
@@ -160,13 +157,13 @@ class Scene(Part):
 
     def __post_init__(self) -> None:
         parts = vars(self)
-        problems = []
+        problems = Problems()
         for name, kinds in PARTS.items():
             if not isinstance(parts[name], kinds):
                 told = " or ".join(kind.__name__ for kind in kinds)
-                problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
-        if problems := problems or inconsistencies(parts):
-            raise SceneError(problems)
+                problems.add(f"`{name}`", parts[name], f"expected {told}")
+        problems.report()
+        inconsistencies(parts).report()
         for name in PARTS:
             if parts[name].arrayed:
                 object.__setattr__(self, "arrayed", True)
@@ -296,17 +293,16 @@ class Scene(Part):
         >>> Scene().replace({"drive.velocity": ["1 mm/s", "1 m/s"], "support.mass": 10.0}).shape
         (2,)
         """
-        specs, problems = self.replaceable, []
+        specs, problems = self.replaceable, Problems()
         values: dict[str, Any] = {}
         for key, value in over.items():
             if key not in specs:
                 told = f"unknown key for this scene; {nearest(str(key), specs)}"
-                problems.append(problem(f"`over` {key}", value, told))
+                problems.add(f"`over` {key}", value, told)
                 continue
-            with collecting(problems, f"`over` {key}", value):
+            with problems.catching(f"`over` {key}", value):
                 values[key] = converted(value, specs[key])
-        if problems:
-            raise SceneError(problems)
+        problems.report()
         return _replaced(self, values) if values else self
 
 
@@ -338,13 +334,13 @@ PARTS: dict[str, tuple[Any, ...]] = {
 """The parts of a scene, and what each can be."""
 
 
-def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
+def inconsistencies(parts: Mapping[str, Any]) -> Problems:
     """Report where the parts of a scene, as far as given, are inconsistent.
 
     The values of a ball are totals, those of a line contact are per unit width; and on a spring a fixed
     indenter needs a mass, as its support has none.
     """
-    found = []
+    found = Problems()
     indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
     per_width = indenter is None or indenter.per_width
     for section, part in (("support", support), ("drive", drive)):
@@ -355,7 +351,7 @@ def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
             what, contact = ("that of a ball", "line") if per_width else ("per unit width", "point")
             shape = f'indenter.shape = "{indenter.shape}"'
             told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
-            found.append(problem(f"{section}.{name}", value, told))
+            found.add(f"{section}.{name}", value, told)
     if support and drive and not drive.rigid and drive.mass is None and support.depth is not None:
         spec = quantities(drive)["mass"].fitting(per_width)
         needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')

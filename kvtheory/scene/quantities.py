@@ -1,15 +1,13 @@
 """Quantities of a scene: each field of a part declares its unit, range and meaning once, for every use.
 
 Constructors, scene files and the template work from these declarations. A quantity is a float or an array of
-floats, in SI. The messages about wrong values are made here too.
+floats, in SI.
 """
 
 import dataclasses
-import difflib
 import math
-import reprlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
@@ -17,38 +15,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kvtheory.scene.mistakes import Problems, mistake
 from kvtheory.scene.units import WHOLE, bare, expected, is_usual, to_si
 
-LONGEST_SHOWN = 60
-"""Most characters of a key or a value in a message."""
-SHORT = reprlib.Repr()
-SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
 MOST = 10**8
 """Largest number of values in a range; more would be a typing error, and fill the memory."""
 
 Value = Any
 """A float, or an array of floats."""
-
-
-class SceneError(ValueError):
-    """One or more mistakes in a scene: all of them are in `problems`, the first ones in its text."""
-
-    SHOWN: ClassVar[int] = 20
-
-    def __init__(self, problems: Sequence[str]) -> None:
-        self.problems = tuple(problems)
-        more = len(self.problems) - self.SHOWN
-        told = [f"and {more:,} more mistakes"] if more > 0 else []
-        super().__init__("\n".join([*self.problems[: self.SHOWN], *told]))
-
-    def __reduce__(self) -> Any:  # pickled by the workers of a sweep
-        return type(self), (self.problems,)
-
-
-class Bare(str):
-    """A number of a scene file as text, without a unit; messages show it without quotes."""
-
-    __repr__ = str.__str__
 
 
 class Derived(float):
@@ -112,9 +86,9 @@ class Part:
             if isinstance(value, np.ndarray):
                 return function(np.asarray(value))
             if isinstance(value, Part):
-                return value.mapped(function)
+                return value.mapped(function) if value.arrayed else value
             parts = isinstance(value, tuple) and value and isinstance(value[0], Part)
-            return tuple(part.mapped(function) for part in value) if parts else value
+            return tuple(map(mapped, value)) if parts else value
 
         copy = object.__new__(self.__class__)
         values = {name: getattr(self, name) for name in _names(self.__class__)}
@@ -220,14 +194,9 @@ class Quantity:
 
 
 def quantity(
-    unit: str,
-    doc: str,
-    *,
-    minimum: float = 0.0,
-    exclusive: bool = True,
-    default: Any = dataclasses.MISSING,
-    **more: Any,
-) -> Any:
+    unit: str, doc: str, *, minimum: float = 0.0, exclusive: bool = True,
+    default: Any = dataclasses.MISSING, **more: Any,
+) -> Any:  # fmt: skip
     """Declare a dataclass field that holds a quantity in the SI unit `unit`; see `Quantity`."""
     spec = Quantity(unit, doc, minimum, exclusive, **more)
     return field(default=default, metadata={"quantity": spec})
@@ -377,7 +346,8 @@ def validate(instance: Any, section: str) -> None:
         elif value is not None:
             values[name] = value
     here = tuple(values)
-    problems = [missing(section, name, specs[name]) for name in required(instance.__class__, here)]
+    needed = required(instance.__class__, here)
+    problems = Problems(missing(section, name, specs[name]) for name in needed)
     for place, (name, value) in enumerate(values.items()):
         spec = specs[name]
         try:
@@ -389,14 +359,13 @@ def validate(instance: Any, section: str) -> None:
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
         except ValueError as error:
-            problems.append(problem(f"{section}.{name}", value, str(error)))
+            problems.add(f"{section}.{name}", value, str(error))
         if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:
                 told = f"cannot be given beside {', '.join(others)}"
-                problems.append(problem(f"{section}.{name}", value, told))
-    if problems:
-        raise SceneError(problems)
+                problems.add(f"{section}.{name}", value, told)
+    problems.report()
     if written:
         object.__setattr__(instance, "written", written)
 
@@ -430,109 +399,3 @@ def derive(instance: Any, section: str, name: str, value: Any, of: str, given: A
     object.__setattr__(instance, name, _derived(value, given))
     if np.ndim(value):
         object.__setattr__(instance, "arrayed", True)
-
-
-def problem(key: str, given: Any, what: str) -> str:
-    r"""One line about one mistake: the key, what was given, and what is wrong.
-
-    >>> problem("run.\n" + 60 * "a", [[[[[[[[5]]]]]]]], "unknown key")
-    'run.\\naaaaaaaaaaaaaaaaaaaaaaaaa...aaaaaaaaaaaaaaaaaaaaaaaaaaa = [[[[[[[...]]]]]]]: unknown key'
-    """
-    text = isinstance(given, str) and not isinstance(given, Bare)
-    value = f'"{given}"' if text else SHORT.repr(given)
-    return f"{shown(key)} = {shown(value)}: {what}"
-
-
-def shown(text: str) -> str:
-    """Return a text as a message quotes it: short, and without control characters."""
-    if len(text) > LONGEST_SHOWN:
-        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths differ at the end
-    return printable(text)
-
-
-def printable(text: str) -> str:
-    r"""Write control characters and line breaks as escapes, such as \n."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
-
-
-def mistake(key: str, given: Any, what: str) -> SceneError:
-    """Return the error about one mistake."""
-    return SceneError([problem(key, given, what)])
-
-
-@contextmanager
-def collecting(problems: list[str], key: str, given: Any) -> Iterator[None]:
-    """Append a mistake in a given value to `problems`, instead of raising it."""
-    try:
-        yield
-    except SceneError as error:
-        problems += error.problems
-    except ValueError as error:
-        problems.append(problem(key, given, str(error)))
-
-
-MEANT = {
-    symbol: name
-    for name, symbols in {
-        "modulus": "E young youngs_modulus elastic_modulus shear_modulus",
-        "temperature": "T temp",
-        "reference_temperature": "T_ref T_0 T_r",
-        "activation_energy": "E_a Q arrhenius",
-        "poisson_ratio": "nu ν poisson",
-        "thickness": "h height",
-        "stiffness": "K rigidity k_s k_x spring",
-        "retardation_time": "tau τ relaxation_time damping viscosity C",
-        "radius": "R diameter curvature",
-        "velocity": "V v speed sliding_velocity",
-        "load": "W weight force",
-        "depth": "delta δ indentation penetration",
-        "mass": "m M M_x inertia",
-        "gravity": "g acceleration",
-        "duration": "t_end end length",
-        "friction_coefficient": "mu μ µ friction",
-        "friction_force": "F F_x friction_load",
-        "normal_force": "F_z contact_force",
-        "half_length": "a contact_length half_width",
-        "peak_pressure": "p p_max pressure max_pressure",
-        "leading_edge": "x_LE front",
-        "trailing_edge": "x_TE rear",
-        "retardation_length": "l_r",
-    }.items()
-    for symbol in symbols.split()
-}
-"""Names by their symbols and synonyms, which similarity of spelling would not find."""
-
-
-def closest(name: str, valid: Iterable[str]) -> str | None:
-    """Return the one of the `valid` names that was probably meant, or None.
-
-    Symbols and synonyms are recognised too, with or without the section before a dot.
-
-    >>> closest("tau", ["radius", "retardation_time"]), closest("support.W", ["support.load"])
-    ('retardation_time', 'support.load')
-    >>> closest("V", ["support.load", "drive.velocity"])
-    'drive.velocity'
-    """
-    valid = list(valid)
-    section, dot, last = name.rpartition(".")
-    meant = section + dot + MEANT.get(last, last)
-    if meant in valid:
-        return meant
-    if not dot and (ends := [each for each in valid if each.endswith(f".{meant}")]):
-        return ends[0]
-    return next(iter(difflib.get_close_matches(name, valid, n=1, cutoff=0.5)), None)
-
-
-def nearest(name: str, valid: Iterable[str]) -> str:
-    """Suggest the closest of the `valid` names, and list them all."""
-    valid = list(valid)
-    match = closest(name, valid)
-    hint = f'did you mean "{match}"? ' if match else ""
-    return f"{hint}expected one of: {', '.join(valid)}"
-
-
-def absent(wanted: Iterable[str], given: Iterable[str]) -> list[str]:
-    """Return the wanted names that are missing, and not just misspelt."""
-    wanted, given = list(wanted), list(given)
-    meant = {closest(name, wanted) for name in given if name not in wanted}
-    return [name for name in wanted if name not in given and name not in meant]

@@ -112,30 +112,16 @@ class StaticState:
         carried = self.rigid_drive or (self.drive_inertia_number > 0.0 and along < math.inf)
         return held and finite and carried and not math.isinf(self.drive_number)
 
-    @property
-    def velocity(self) -> float:
-        """a_0/tau, in m/s."""
-        return self.half_length / self.time
-
-    @property
-    def depth_rate(self) -> float:
-        """delta_0/tau, in m/s."""
-        return self.depth / self.time
-
-    @property
-    def friction_force(self) -> float:
-        """W_0 delta_0/a_0, in N/m (in N for a ball)."""
-        return self.load * self.depth / self.half_length
-
-    @property
-    def pressure(self) -> float:
-        """K delta_0, in Pa."""
-        return self.stiffness * self.depth
-
-    @property
-    def energy(self) -> float:
-        """W_0 delta_0, in J/m (in J for a ball)."""
-        return self.load * self.depth
+    velocity = property(lambda self: self.half_length / self.time, doc="a_0/tau, in m/s.")
+    depth_rate = property(lambda self: self.depth / self.time, doc="delta_0/tau, in m/s.")
+    friction_force = property(
+        lambda self: self.load * self.depth / self.half_length,
+        doc="W_0 delta_0/a_0, in N/m (in N for a ball).",
+    )
+    pressure = property(lambda self: self.stiffness * self.depth, doc="K delta_0, in Pa.")
+    energy = property(
+        lambda self: self.load * self.depth, doc="W_0 delta_0, in J/m (J for a ball)."
+    )
 
     def named(self) -> dict[str, float]:
         """Return the values that exist by plain names, as ``"static_depth"`` and ``"drive_number"``."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from kvtheory.scene.drives import history_points
-from kvtheory.scene.quantities import mistake, shown
+from kvtheory.scene.mistakes import mistake, shown
 from kvtheory.scene.units import to_si
 
 MARKS = {

@@ -136,7 +136,8 @@ def bare(value: Any) -> tuple[Any, str | None]:
         units = attributes.get("units")
         written = ("" if units == "1" else units) if isinstance(units, str) else None
     parts = value if isinstance(value, list) else [value]
-    if masked := sum(int(np.ma.count_masked(part)) for part in parts if np.ma.is_masked(part)):
+    # As `numpy.ma.getmask` does, without its import, which takes 5 ms.
+    if masked := int(sum(np.count_nonzero(getattr(part, "_mask", False)) for part in parts)):
         raise ValueError(
             f"has {masked} masked value{'s' * (masked > 1)}; leave masked values out "
             "(`.compressed()`), or fill them (`.filled()`)"

@@ -41,7 +41,7 @@ def task(plan: Plan, start: int, stop: int) -> Task:
 
 @dataclass
 class Block:
-    """The table (`Plan.blank`) of the points from `start` to `stop`, and the errors of its columns.
+    """The table of the points from `start` to `stop`, and the largest errors of its columns.
 
     `failures` are pairs of index and reason, `statements` those of the certificates.
     """
@@ -56,23 +56,20 @@ class Block:
 
 def compute(given: Task) -> Block:
     """Solve the scenes of a task."""
-    plan, table = given.plan, given.plan.blank(given.points)
+    plan, table = given.plan, Table()
     steady = _steady(given) if plan.needed(steady=True) else Measured()
     motion = _transients(given, steady) if plan.transient else Measured()
-    told = [(name, motion.errors[name]) for name in plan.needed(steady=False) if plan.transient]
-    for column in plan.columns:
-        if column.measure != "steady":
-            table[column.name] = motion.values[column.name]
-            continue
-        table[column.name] = steady.values[column.base]
-        told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
     reasons = steady.reasons | motion.reasons
     failed = sorted(reasons)
-    table[failed] = plan.blank(len(failed))
-    errors: dict[str, float] = {}
-    for name, wrong in told:
-        wrong[failed] = 0.0
-        errors[name] = max(errors.get(name, 0.0), float(np.max(wrong)))
+    errors = {name: motion.errors[name] for name in plan.needed(steady=False) if plan.transient}
+    for name, unit, base, measure in plan.columns:
+        if measure == "steady":
+            table[name] = steady.values[base]
+            errors[name] = max(errors.get(name, 0.0), steady.errors.get(base, 0.0))
+        else:
+            table[name] = motion.values[name]
+        table[name][failed] = np.nan if unit else ""
+    errors.pop(STABLE, None)
     failures = []
     for index in failed:
         error = reasons[index]
@@ -87,8 +84,7 @@ def compute(given: Task) -> Block:
 def _steady(given: Task) -> Measured:
     """Solve steady sliding; a part that fails is bisected until the failing scene is isolated."""
     plan, names, found = given.plan, given.plan.needed(steady=True), Measured()
-    found.values = {name: np.full(given.points, np.nan) for name in names}
-    found.errors = {name: np.zeros(given.points) for name in names}
+    parts: list[list[Array]] = []
     waiting = [(0, given.points)]
     while waiting:
         a, b = waiting.pop()
@@ -103,11 +99,14 @@ def _steady(given: Task) -> Measured:
                 waiting += [((a + b) // 2, b), (a, (a + b) // 2)]
             else:
                 found.reasons[a] = error
+                parts.append([np.array([np.nan])] * len(names))
             continue
+        parts.append([np.broadcast_to(getattr(state, name), b - a) for name in names])
         found.statements.add(state.certificate.statement)
-        for name in names:
-            found.values[name][a:b] = getattr(state, name)
-            found.errors[name][a:b] = state.certificate.relative_error.get(name, 0.0)
+        for name, wrong in state.certificate.relative_error.items():
+            found.errors[name] = max(found.errors.get(name, 0.0), float(np.max(wrong)))
+    for name, arrays in zip(names, zip(*parts, strict=True), strict=True):
+        found.values[name] = np.concatenate(arrays, dtype=float)
     return found
 
 
@@ -126,8 +125,7 @@ def _transients(given: Task, steady: Measured) -> Measured:
         try:
             point = {key: float(array[index]) for key, array in given.over.items()}
             scene = given.plan.scene.replace(point)
-            if latest > scene.run.duration:
-                end = scene.run.duration
+            if latest > (end := scene.run.duration):
                 raise ValueError(f"a time of `at` is after the end of the run, {end} s")
             scenes[index] = scene
         except FAILS as error:
@@ -136,6 +134,9 @@ def _transients(given: Task, steady: Measured) -> Measured:
     with np.errstate(over="raise", invalid="raise", divide="raise"):
         found = measure(given.plan, scenes, friction)
     found.reasons |= reasons
+    for name, wrong in found.errors.items():
+        wrong[[*found.reasons]] = 0.0
+        found.errors[name] = float(np.max(wrong))
     return found
 
 

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from concurrent import futures
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import nullcontext, suppress
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import replace
 from glob import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -48,9 +49,14 @@ log = logging.getLogger(__name__)
 
 def in_memory(plan: Plan, **how: Any) -> Sweep:
     """Run a sweep and return its arrays."""
-    blocks: list[Block] = []
-    run(plan, [], blocks.append, **how)
-    return files.from_memory(plan, lambda **_: sorted(blocks, key=lambda block: block.start))
+    table, done = plan.blank(plan.points), list[Block]()
+
+    def keep(block: Block) -> None:
+        files.fill(table, block)
+        done.append(replace(block, table={}))
+
+    run(plan, [], keep, **how)
+    return files.from_memory(plan, table, sorted(done, key=lambda block: block.start))
 
 
 def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
@@ -81,18 +87,26 @@ def run(
     plan: Plan, kept: list[Block], keep: Callable[[Block], None], *, executor: Executor | None,
     jobs: int, in_flight: int | None, block: int | None, report: Progress | None,
 ) -> int:  # fmt: skip
-    """Compute all blocks that are not `kept`, and return their points; `executor` is not shut down."""
+    """Compute all blocks that are not `kept`, and return their points; `executor` is not shut down.
+
+    A block that is lost with its worker is submitted again, `TRIES` times in all. After an error or an
+    interrupt, waiting blocks are cancelled, and those returned are kept.
+    """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
-    known = jobs if executor is None else getattr(executor, "_max_workers", None)
-    workers = known or UNKNOWN_WORKERS
-    compile_ahead(plan, plan.points - before, workers)
+    workers = jobs if executor is None else getattr(executor, "_max_workers", 0) or UNKNOWN_WORKERS
+    most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
+    flying: dict[Future[Block], Task] = {}
+    again: list[Task] = []
 
-    def returned(result: Block) -> None:
+    def returned(future: Future[Block], given: Task) -> None:
         nonlocal done, failed
-        keep(result)
-        done += result.stop - result.start
-        failed += len(result.failures)
+        if (result := _result(future, given)) is None:
+            again.append(given._replace(tries=given.tries + 1))
+        else:
+            keep(result)
+            done += result.stop - result.start
+            failed += len(result.failures)
 
     def show() -> None:
         rate = (done - before) / max(monotonic() - begun, 1e-9)
@@ -101,63 +115,45 @@ def run(
         if report:
             report(done / plan.points, text + (f", {failed:,} failed" if failed else ""))
 
+    compile_ahead(plan, plan.points - before, workers)
     show()
     tasks = remaining(plan, [(one.start, one.stop) for one in kept], block)
-    most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
-    with _Workers(jobs, plan) if executor is None else nullcontext(executor) as pool:
-        _give_out(pool, tasks, returned, most, show)
-    return done - before
+    with _workers(jobs, plan) if executor is None else nullcontext(executor.submit) as submit:
+        try:
+            while True:
+                while len(flying) < most and (given := again.pop() if again else next(tasks, None)):
+                    flying[submit(compute, given)] = given
+                if not flying:
+                    return done - before
+                for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
+                    returned(future, flying.pop(future))
+                show()
+        except BaseException as error:
+            for future in flying:
+                future.cancel()
+            with suppress(OSError):  # if the disk is full, say
+                for future, given in flying.items():
+                    if future.done() and not future.cancelled():
+                        returned(future, given._replace(tries=0))
+            if isinstance(error, futures.BrokenExecutor):
+                raise RuntimeError(f"the executor is broken: {error}") from error
+            raise
 
 
-def _give_out(
-    executor: Executor, tasks: Iterator[Task], keep: Callable[[Block], None], in_flight: int,
-    show: Callable[[], None],
-) -> None:  # fmt: skip
-    """Submit the blocks, `in_flight` of them at a time.
-
-    A block that is lost with its worker is submitted again, `TRIES` times in all. After an error or an
-    interrupt, waiting blocks are cancelled, and those returned are kept.
-    """
-    flying: dict[Future[Block], Task] = {}
-    again: list[Task] = []
-    try:
-        while True:
-            while len(flying) < in_flight and (
-                given := again.pop() if again else next(tasks, None)
-            ):
-                flying[executor.submit(compute, given)] = given
-            if not flying:
-                return
-            for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
-                again += _kept(future, flying.pop(future), keep)
-            show()
-    except BaseException as error:
-        for future in flying:
-            future.cancel()
-        with suppress(OSError):  # if the disk is full, say
-            for future, given in flying.items():
-                if future.done() and not future.cancelled():
-                    _kept(future, given._replace(tries=0), keep)
-        if isinstance(error, futures.BrokenExecutor):
-            raise RuntimeError(f"the executor is broken: {error}") from error
-        raise
-
-
-def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
-    """Keep a block that has returned, or return its task if it was lost with its worker."""
+def _result(future: Future[Block], given: Task) -> Block | None:
+    """Return a block, or None if it was lost with its worker; raise if it was lost too often."""
     try:
         lost = future.exception()
     except futures.CancelledError as error:  # by the executor of a cluster
         lost = error
     if lost is None:
-        keep(future.result())
-        return []
+        return future.result()
     points = f"points {given.start} to {given.start + given.points - 1}"
     if given.tries == TRIES:
         told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
         raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
     log.warning("%s are given out again: %r", points, lost)
-    return [given._replace(tries=given.tries + 1)]
+    return None
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
@@ -179,32 +175,34 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
         at = max(at, stop)
 
 
-class _Workers(Executor):
-    """Default executor: this thread for one job, threads for NumPy, else processes; replaced if one dies."""
+@contextmanager
+def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
+    """Yield `submit` of the default workers: this thread for one job, threads for NumPy, else processes."""
 
-    def __init__(self, jobs: int, plan: Plan) -> None:
-        self.here, self.jobs, self.threads = jobs == 1, jobs, plan.vectorised
-        self.pool = self.fresh()
-
-    def fresh(self) -> Executor:
-        if self.threads or self.here:  # which start with the first task
-            return futures.ThreadPoolExecutor(self.jobs)
+    def fresh() -> Executor:
+        if plan.vectorised or jobs == 1:  # which start with the first task
+            return futures.ThreadPoolExecutor(jobs)
         spawn = multiprocessing.get_context("spawn")
-        return futures.ProcessPoolExecutor(self.jobs, spawn, initializer=_follow_parent)
+        return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
 
-    def submit(self, function: Any, /, *given: Any, **named: Any) -> Future[Any]:
-        if self.here:
-            future: Future[Any] = Future()
-            future.set_result(function(*given, **named))
+    pool = fresh()
+
+    def submit(function: Any, given: Task) -> Future[Block]:
+        nonlocal pool
+        if jobs == 1:
+            future: Future[Block] = Future()
+            future.set_result(function(given))
             return future
         try:
-            return self.pool.submit(function, *given, **named)
-        except futures.BrokenExecutor:
-            self.pool = self.fresh()
-            return self.pool.submit(function, *given, **named)
+            return pool.submit(function, given)
+        except futures.BrokenExecutor:  # a worker was killed
+            pool = fresh()
+            return pool.submit(function, given)
 
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        self.pool.shutdown(wait, cancel_futures=cancel_futures)
+    try:
+        yield submit
+    finally:
+        pool.shutdown()
 
 
 def _follow_parent() -> None:

@@ -8,10 +8,11 @@ the second line of a CSV, after the end of the data in NetCDF.
 import csv
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from importlib import import_module
 from importlib.metadata import version
+from importlib.util import find_spec
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from kvtheory.export import check_path, replace_file
 from kvtheory.results.certificate import Certificate
 from kvtheory.results.sweep import Failure, Sweep
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import EVENTS, Plan, is_csv
+from kvtheory.sweeps.plan import EVENTS, Plan, Table, is_csv
 
 Blocks = Callable[..., Iterable[Block]]
 """Returns the blocks in the order of their points, with `tables=False` without their tables."""
@@ -38,17 +39,15 @@ DIGITS = 64
 """Digits of a SHA-256."""
 PART = 2**20
 """Bytes read at a time."""
+ROWS = 4096
+"""Rows printed at a time, so that their text stays in the cache of the processor."""
 
 
 def check(path: Path) -> None:
     """Raise `ValueError` or `OSError` unless a sweep can be written to `path`."""
     check_path(path, (".csv", ".nc"))
-    if not is_csv(path):
-        try:
-            import netCDF4  # noqa: F401
-        except ModuleNotFoundError:
-            told = 'NetCDF needs netCDF4: pip install ".[data]" in the checkout'
-            raise ValueError(told) from None
+    if not is_csv(path) and find_spec("netCDF4") is None:
+        raise ValueError('NetCDF needs netCDF4: pip install ".[data]" in the checkout')
 
 
 def write(plan: Plan, blocks: Blocks, path: Path) -> None:
@@ -72,11 +71,10 @@ def finished(path: Path, plan: Plan) -> bool:
     if written != digest:
         why = "it is another file, or was changed, cut, or saved anew by another program"
         raise ValueError(f'"{path}" exists and is not a sweep as it was written: {why}; {WAYS_OUT}')
-    header = _header(path)
-    if differing := plan.differences(header["record"]):
+    record, summary = _header(path)
+    if differing := plan.differences(record):
         why = f"it differs in {', '.join(differing)}"
         raise ValueError(f'"{path}" holds another sweep: {why}; {WAYS_OUT}')
-    summary = json.loads(header["summary"])
     return bool(summary["done"] == summary["points"])
 
 
@@ -94,21 +92,19 @@ def _digest(path: Path) -> tuple[int, bytes, bytes]:
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     """Return the sweep that a finished file holds; its arrays stay there until they are used."""
-    summary = json.loads(_header(path)["summary"])
-    summary["failures"] = tuple(Failure(**failure) for failure in summary["failures"])
-    return _sweep(plan, summary, partial(_values, path, plan), computed, path)
+    return _sweep(plan, _header(path)[1], partial(_values, path, plan), computed, path)
 
 
-def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
-    """Return blocks as arrays, in which points that were not computed are missing values."""
-    missing = plan.blank(1)
-    flat = {c.name: np.repeat(missing[c.name], plan.points, axis=0) for c in plan.columns}
-    for block in blocks():
-        for name, array in flat.items():
-            array[block.start : block.stop] = block.table[name]
-    grid = tuple(axis.size for axis in plan.axes)
-    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in flat.items()}
-    summary = _summary(plan, blocks)
+def fill(table: Table, block: Block) -> None:
+    """Copy the values of a block into the table of all points."""
+    for name, array in table.items():
+        array[block.start : block.stop] = block.table[name]
+
+
+def from_memory(plan: Plan, table: Table, blocks: Iterable[Block]) -> Sweep:
+    """Return the table of all points as arrays over the axes; the blocks may be without theirs."""
+    grid, summary = tuple(axis.size for axis in plan.axes), _summary(plan, blocks)
+    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
     return _sweep(plan, summary, lambda: values, summary["done"])
 
 
@@ -116,9 +112,8 @@ def save_sweep(result: Sweep, path: Path) -> None:
     """Write the sweep of a result; `Sweep.save` documents it."""
     check(path)
     plan: Plan = result.plan
-    table = plan.blank(plan.points)
-    for name, values in result.values.items():
-        table[name] = values.reshape(table[name].shape)
+    axes = len(plan.axes)
+    table = {name: v.reshape(-1, *v.shape[axes:]) for name, v in result.values.items()}
     failures = [(failure.index, failure.reason) for failure in result.failures]
     errors = dict(result.certificate.relative_error)
     block = Block(0, plan.points, table, failures, [result.certificate.statement], errors)
@@ -127,75 +122,77 @@ def save_sweep(result: Sweep, path: Path) -> None:
 
 def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
     """Return the result that a summary describes."""
+    failures = []
+    for index, reason in summary["failures"]:
+        point = plan.values_at(index, index + 1).items()
+        failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
     return Sweep(
         scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
         units=plan.units, points=plan.points, computed=computed, failed=summary["failed"],
-        failures=summary["failures"], version=version("kvtheory"), path=path, plan=plan, read=read,
+        failures=tuple(failures), version=version("kvtheory"), path=path, plan=plan, read=read,
         certificate=Certificate("estimated", summary["certificate"], summary["relative_error"]),
     )  # fmt: skip
 
 
-def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
+def _summary(plan: Plan, blocks: Iterable[Block]) -> dict[str, Any]:
     """Return how much was computed, which scenes failed and why, and the largest errors."""
-    done, failures, statements = 0, [], set[str]()
+    done, failures, statements = 0, list[tuple[int, str]](), set[str]()
     errors: dict[str, float] = {}
-    for block in blocks(tables=False):
+    for block in blocks:
         done += block.stop - block.start
+        failures += block.failures
         statements.update(block.statements)
-        for index, reason in block.failures:
-            point = plan.values_at(index, index + 1).items()
-            failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
         for name, error in block.errors.items():
             errors[name] = max(errors.get(name, 0.0), error)
     return {
-        "points": plan.points, "done": done, "failed": len(failures), "failures": tuple(failures),
+        "points": plan.points, "done": done, "failed": len(failures), "failures": failures,
         "certificate": "; ".join(sorted(statements)), "relative_error": errors,
     }  # fmt: skip
 
 
 def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
     """Return what a file states about itself, as JSON; `_header` reads it."""
-    listed = [asdict(failure) for failure in summary["failures"][:FAILURES_LISTED]]
-    summary = {**summary, "failures": listed}
+    summary = {**summary, "failures": summary["failures"][:FAILURES_LISTED]}
     return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
 
 
-def _header(path: Path) -> Mapping[str, Any]:
-    if not is_csv(path):
-        import xarray
-
-        with xarray.open_dataset(path, engine="netcdf4") as data:
-            return dict(data.attrs)
-    with path.open(encoding="utf-8", newline="") as file:
-        comments = takewhile(lambda line: line.startswith("#"), file)
-        pairs = [line[1:].strip().partition(": ") for line in comments]
-    return {key: text for key, _, text in pairs}
+def _header(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the record of the sweep in a file, as JSON, and its summary."""
+    if is_csv(path):
+        with path.open(encoding="utf-8", newline="") as file:
+            comments = takewhile(lambda line: line.startswith("#"), file)
+            found: Any = {
+                k: v for k, _, v in (line[1:].strip().partition(": ") for line in comments)
+            }
+    else:
+        with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
+            found = data.attrs
+    return found["record"], json.loads(found["summary"])
 
 
 def _values(path: Path, plan: Plan) -> dict[str, Any]:
     """Return the arrays of a file."""
     kinds = {column.name: float if column.unit else object for column in plan.columns}
     if not is_csv(path):
-        import xarray
-
-        with xarray.open_dataset(path, engine="netcdf4") as data:
-            held = ((name, data[name].values, kind) for name, kind in kinds.items())
-            return {name: values.astype(kind, copy=False) for name, values, kind in held}
+        with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
+            return {
+                name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
+            }
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
     found, grid = {}, tuple(axis.size for axis in plan.axes)
-    for column in plan.columns:
-        cells = table[_head(column.name, column.unit)]
-        read = [float(cell or "nan") for cell in cells] if column.unit else cells
-        array = np.array(read, dtype=kinds[column.name]).reshape(*grid, -1)
-        found[column.name] = array if column.measure == "series" else array[..., 0]
+    for name, unit, _, measure in plan.columns:
+        cells = table[_head(name, unit)]
+        read = [float(cell or "nan") for cell in cells] if unit else cells
+        array = np.array(read, dtype=kinds[name]).reshape(*grid, -1)
+        found[name] = array if measure == "series" else array[..., 0]
     return found
 
 
 def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write header and rows; those of points that were not computed are left out."""
-    summary, record = _summary(plan, blocks), plan.record
+    summary, record = _summary(plan, blocks(tables=False)), plan.record
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
     done = f"{summary['done']} of {plan.points} points; the command resumes it"
     lines = [
@@ -207,49 +204,55 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
         *(f"#   {line}".rstrip() for line in record["scene"].splitlines()),
         *(f"# {key}: {text}" for key, text in _described(plan, summary).items()),
     ]
-    for failure in summary["failures"]:
-        reason = json.dumps(failure.reason, ensure_ascii=False)
-        lines.append(f"# failed: point {failure.index}, {reason}")
+    for index, reason in summary["failures"]:
+        lines.append(f"# failed: point {index}, {json.dumps(reason, ensure_ascii=False)}")
     heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
     heads += ["time [s]"] * plan.series
     heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts
     with path.open("wb") as file:
         file.write(END.join([*lines, ",".join(heads), ""]).encode())
         for block in blocks():
-            file.write(_rows(plan, block))
+            file.writelines(_rows(plan, block))
 
 
 def _head(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def _rows(plan: Plan, block: Block) -> bytes:
-    """Return the rows of a block; orjson prints the shortest decimals that read back the same."""
-    shape = block.stop - block.start, len(plan.times or ()) if plan.series else 1
-    swept = plan.values_at(block.start, block.stop).values()
-    columns = [np.repeat(column, shape[1]) for column in swept]
-    columns += [np.tile(plan.times or (), shape[0])] * plan.series
-    for column in plan.numeric:
-        values = block.table[column.name].reshape(shape[0], -1)
-        columns.append(np.broadcast_to(values, shape).reshape(-1))
-    table = np.column_stack(columns)
-    text = orjson.dumps(table, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
-    if not np.isfinite(table).all():
-        text = text.replace(b"null", b"")
-    if not plan.texts:
-        return text.replace(b"],[", END.encode()) + END.encode()
-    cells = ['"' + text.replace('"', '""') + '"' for text in block.table[EVENTS]]
-    lines = zip(text.split(b"],["), np.repeat(cells, shape[1]), strict=True)
-    return b"".join(b"%s,%s%s" % (line, cell.encode(), END.encode()) for line, cell in lines)
+def _rows(plan: Plan, block: Block) -> Iterator[bytes]:
+    """Yield the rows of a block; orjson prints the shortest decimals that read back the same."""
+    times = len(plan.times or ()) if plan.series else 1
+    for start in range(block.start, block.stop, max(1, ROWS // times)):
+        stop = min(block.stop, start + max(1, ROWS // times))
+        shape, part = (stop - start, times), slice(start - block.start, stop - block.start)
+        columns = [np.repeat(swept, times) for swept in plan.values_at(start, stop).values()]
+        columns += [np.tile(plan.times or (), shape[0])] * plan.series
+        for column in plan.numeric:
+            values = block.table[column.name][part].reshape(shape[0], -1)
+            columns.append(np.broadcast_to(values, shape).reshape(-1))
+        table = np.column_stack(columns)
+        text = orjson.dumps(table, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
+        if not np.isfinite(table).all():
+            text = text.replace(b"null", b"")
+        lines = text.split(b"],[")
+        if plan.texts:
+            cells = ['"' + text.replace('"', '""') + '"' for text in block.table[EVENTS][part]]
+            pairs = zip(lines, np.repeat(cells, times), strict=True)
+            lines = [b"%s,%s" % (line, cell.encode()) for line, cell in pairs]
+        yield END.encode().join([*lines, b""])
 
 
 def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write all points; those that were not computed are missing values."""
-    failures = (summary := _summary(plan, blocks))["failures"]
-    data = from_memory(plan, blocks).to_xarray()
+    table = plan.blank(plan.points)
+    for block in blocks():
+        fill(table, block)
+    kept = list(blocks(tables=False))
+    data, summary = from_memory(plan, table, kept).to_xarray(), _summary(plan, kept)
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
-    data["failure_index"] = "failure", np.array([f.index for f in failures], dtype=np.int64)
-    data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=str)
+    indices, reasons = [*zip(*summary["failures"], strict=True)] or [(), ()]
+    data["failure_index"] = "failure", np.array(indices, dtype=np.int64)
+    data["failure_reason"] = "failure", np.array(reasons, dtype=str)
     data.to_netcdf(path, engine="netcdf4")
     with path.open("ab") as file:
         file.write(b"0" * DIGITS)

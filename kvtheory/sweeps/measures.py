@@ -5,7 +5,7 @@ where nothing is compiled or events are requested, are solved one by one, into t
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -46,8 +46,8 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
     block = _Motions(plan, scenes, friction)
     block.follow()
     asked = [column for column in plan.columns if column.measure != "steady"]
-    values = {column.name: block.values(column) for column in asked}
-    return Measured(values, block.errors, block.reasons, block.statements)
+    block.measured.values = {column.name: block.values(column) for column in asked}
+    return block.measured
 
 
 def relative(statement: str) -> str:
@@ -59,17 +59,16 @@ class _Motions:
     """The transients of a block: the request, and arrays of results with a row for each index."""
 
     def __init__(self, plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> None:
-        size, measures = len(friction), {c.measure for c in plan.columns}
+        size = len(friction)
         wanted = {(COLUMNS[c.base], SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
-        wanted |= {PEAK} if "peak_to_steady_friction" in measures else set()
+        wanted |= {PEAK for c in plan.columns if c.measure == "peak_to_steady_friction"}
         self.plan, self.wanted = plan, sorted(wanted)
+        names = estimate.unknown("", sprung=True).relative_error
+        self.measured = Measured(errors={name: np.zeros(size) for name in names})
         self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
         self.friction = np.full(size, np.nan)
-        self.reasons: dict[int, Exception] = {}
-        self.statements, self.texts = set[str](), [""] * size
+        self.texts = np.full(size, "", object)
         self.cycles = np.full((size, len(CYCLE)), np.nan)
-        known = estimate.unknown("", sprung=True).relative_error
-        self.errors = {name: np.zeros(size) for name in known}
         self.found = bulk.Results(
             status=np.full(size, -1),
             other=np.full(size, -1),
@@ -86,7 +85,7 @@ class _Motions:
                 self.scenes[index] = scene, units, scaled_drive(scene, units)
                 self.friction[index] = friction[index] / units.friction_force
             except FAILS as error:
-                self.reasons[index] = error
+                self.measured.reasons[index] = error
 
     def follow(self) -> None:
         """Solve the scenes, in one call if all drives are rigid, no text is requested and compiling pays."""
@@ -100,7 +99,7 @@ class _Motions:
                 try:
                     self.follow_alone(index)
                 except FAILS as error:
-                    self.reasons[index] = error
+                    self.measured.reasons[index] = error
 
     def follow_together(self) -> None:
         """Solve all scenes in one call of the compiled kernel."""
@@ -113,7 +112,6 @@ class _Motions:
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)
-        at = np.array(self.plan.times or (), dtype=float)
         ends = np.array([drive.end for drive in drives])
         scenes = bulk.Scenes(
             np.array([float(u.inertia_number) for u in units]),
@@ -124,10 +122,11 @@ class _Motions:
             np.concatenate([drive.rows for drive in drives]),
         )
         columns, senses = np.array(self.wanted, dtype=np.int64).reshape(-1, 2).T.copy()
+        at = np.array(self.plan.times or (), dtype=float)
         times = np.minimum(at / np.array([[u.time] for u in units]), ends[:, None])
         samples = (maxima.SAMPLES + 1) * ROOM * 2**DOUBLINGS
-        instants = np.zeros((2, samples))
-        states, rows = np.zeros((2, samples, e_.SIZE)), np.zeros((2, e_.SIZE))
+        instants, states = np.zeros((2, samples)), np.zeros((2, samples, e_.SIZE))
+        rows = np.zeros((2, e_.SIZE))
         room = bulk.Workspace(instants[0], states[0], instants[1], states[1], rows)
         found = bulk.Results(*(array[indices] for array in self.found))
         request = bulk.Request(columns, senses, times, SETTLED)
@@ -139,17 +138,13 @@ class _Motions:
         errors = estimate.errors(
             deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
         )
-        for name, error in errors.items():
-            self.errors[name][indices] = error
-        self.statements.add(relative(estimate.STATEMENT))
+        self.tell(indices, errors, estimate.STATEMENT)
 
     def follow_alone(self, index: int) -> None:
         """Solve one scene."""
         scene, units, _ = self.scenes[index]
         solution, _, errors = certified(scene, None, self.plan.rtol)
         motion, found = solution.motion, self.found
-        for name, error in errors.relative_error.items():
-            self.errors[name][index] = error
         found.largest[index] = motion.largest(*self.wanted)
         found.settled[index] = motion.settled(self.friction[index], SETTLED)
         if self.plan.times:
@@ -160,20 +155,26 @@ class _Motions:
             self.cycles[index] = cycle(motion)
         if self.plan.texts:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
-        self.statements.add(relative(errors.statement))
+        self.tell(index, errors.relative_error, errors.statement)
+
+    def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
+        """Keep the errors of scenes, and what the certificate states of them."""
+        for name, error in errors.items():
+            self.measured.errors[name][where] = error
+        self.measured.statements.add(relative(statement))
 
     def values(self, column: Column) -> Any:
         """Return a column in SI: a value, or a series, for each index."""
-        found, name, measure, scale = self.found, column.base, column.measure, ""
+        found, name, measure = self.found, column.base, column.measure
+        scale = QUANTITIES[name].scale if name else ""
         if measure == EVENTS:
             return self.texts
         if measure == "series":
-            values, scale = found.states[..., COLUMNS[name]], QUANTITIES[name].scale
+            values = found.states[..., COLUMNS[name]]
         elif measure == "end":
-            values, scale = found.last[:, COLUMNS[name]], QUANTITIES[name].scale
+            values = found.last[:, COLUMNS[name]]
         elif measure in SENSES:
             when, values = found.largest[:, self.wanted.index((COLUMNS[name], SENSES[measure]))].T
-            scale = QUANTITIES[name].scale
             if measure == "time_of_max":
                 values, scale = when, "time"
         elif measure in CYCLE:
@@ -183,17 +184,15 @@ class _Motions:
             steady = np.where(self.friction == 0.0, np.nan, np.abs(self.friction))
             values = found.largest[:, self.wanted.index(PEAK), 1] / steady
         elif measure == "settling_time":  # counted from the last change of the drive
-            changes = np.zeros(len(self.friction))
-            for index, (scene, _, _) in self.scenes.items():
-                changes[index] = scene.drive.last_change
-            values = np.maximum(found.settled * self.scales("time") - changes, 0.0)
+            changes = self.each(lambda scene, units: scene.drive.last_change / units.time)
+            values, scale = np.maximum(found.settled - changes, 0.0), "time"
         else:
             values = found.take_offs.astype(float)
-        return (values.T * self.scales(scale)).T
+        return (values.T * self.each(lambda _, units: getattr(units, scale) if scale else 1.0)).T
 
-    def scales(self, attribute: str) -> Array:
-        """Return a scale of the static state at each index; without a name it is 1."""
-        scales = np.full(len(self.friction), np.nan if attribute else 1.0)
-        for index, (_, units, _) in self.scenes.items() if attribute else ():
-            scales[index] = getattr(units, attribute)
-        return scales
+    def each(self, value: Callable[[Scene, StaticState], Any]) -> Array:
+        """Return a value of each scene, NaN where none was solved."""
+        values = np.full(len(self.friction), np.nan)
+        for index, (scene, units, _) in self.scenes.items():
+            values[index] = value(scene, units)
+        return values

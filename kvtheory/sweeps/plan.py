@@ -20,26 +20,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.progress import duration
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
+from kvtheory.scene.mistakes import Problems, SceneError, nearest, problem
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import (
-    Quantity,
-    SceneError,
-    array_of,
-    collecting,
-    item_values,
-    items,
-    nearest,
-    problem,
-    quantities,
-)
+from kvtheory.scene.quantities import Quantity, array_of, item_values, items, quantities
 
 Array = NDArray[np.float64]
-Table = NDArray[np.void]
+Table = dict[str, NDArray[Any]]
+"""An array over points for each column, of a series with the times as second axis."""
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
 """Errors that mean a scene has no solution; any other is a bug."""
@@ -63,13 +54,9 @@ CYCLE = {
 """Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
-ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
-"""Scenes per second and core, within a factor of three: measured for Table 1."""
 CELL = 21
 """Bytes of a number in a CSV, with its comma or end of line."""
 GB = 1e9
-ANNOUNCED = 10.0
-"""Expected duration in s from which a sweep is announced."""
 
 
 class Column(NamedTuple):
@@ -85,14 +72,13 @@ def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
 ) -> tuple[Column, ...]:
     """Return columns by name, or report every wrong one; None is all steady quantities, or all series."""
-    steady = {**STEADY_UNITS, STABLE: "1"}
-    rows = [Column(name, unit, name, "steady") for name, unit in steady.items()]
+    rows = [Column(STABLE, "1", STABLE, "steady")]
+    for name, unit in STEADY_UNITS.items():
+        rows += [Column(each, unit, name, "steady") for each in (name, f"{name}.steady")]
     for name, unit in SERIES_UNITS.items():
         rows += [Column(name, unit, name, "series")] * series
-        for measure in MEASURES:
-            of = "s" if measure == "time_of_max" else unit
-            rows.append(Column(f"{name}.{measure}", of, name, measure))
-    rows += [Column(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
+        of = {**dict.fromkeys(MEASURES, unit), "time_of_max": "s"}
+        rows += [Column(f"{name}.{each}", of[each], name, each) for each in MEASURES]
     rows += [Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
     known = {row.name: row for row in rows if row.base != "time"}
     if names is None:
@@ -110,17 +96,17 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     """Return the axes of a sweep, or report every mistake; `kvtheory.sweep` describes `over`."""
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])
-    specs, problems = scene.replaceable, []
+    specs, problems = scene.replaceable, Problems()
     swept: dict[str, Array] = {}
     axes: list[dict[str, Array]] = []
     for given, values in over.items():
         keys, lists = (given, values) if isinstance(given, tuple) else ((given,), (values,))
         if not isinstance(lists, (tuple, list, np.ndarray)) or len(keys) != len(lists):
-            problems.append(problem(f"`over` {given}", values, "expected a list for each key"))
+            problems.add(f"`over` {given}", values, "expected a list for each key")
             continue
         arrays: dict[str, Array] = {}
         for key, value in zip(keys, lists, strict=True):
-            with collecting(problems, f"`over` {key}", value):
+            with problems.catching(f"`over` {key}", value):
                 if key in swept:
                     raise SceneError([f"`over` {key} is swept twice"])
                 if key not in specs:
@@ -130,8 +116,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
             problems.append(f"`over`: values that vary together must be equally many, got {sizes}")
         axes.append(arrays)
-    if problems:
-        raise SceneError(problems)
+    problems.report()
     waveform = scene.drive.waveform
     own = {f"drive.{name}" for name in (quantities(waveform) if waveform else ())} & swept.keys()
     if own and "drive.velocity" in swept.keys() - own:
@@ -211,16 +196,16 @@ class Plan:
         }
 
     def blank(self, points: int) -> Table:
-        """Return a table of missing values, NaN or no text: a row for each point, a field for each column."""
-        times = (len(self.times or ()),)
-        kinds = [
-            (c.name, "<f8" if c.unit else object, times if c.measure == "series" else ())
-            for c in self.columns
-        ]
-        table = np.empty(points, kinds)
-        for column in self.columns:
-            table[column.name] = np.nan if column.unit else ""
-        return table
+        """Return a table of missing values, NaN or no text."""
+        return {
+            column.name: np.full(self.shape(column, points), np.nan)
+            if column.unit else np.full(points, "", object)
+            for column in self.columns
+        }  # fmt: skip
+
+    def shape(self, column: Column, points: int) -> tuple[int, ...]:
+        """Return the shape of a column of a table."""
+        return (points, len(self.times or ())) if column.measure == "series" else (points,)
 
     @property
     def units(self) -> Mapping[str, str]:
@@ -260,10 +245,10 @@ class Plan:
 
 @dataclass
 class Measured:
-    """Values and errors by name over the scenes of a block, the reasons of failures, and statements."""
+    """Values by name over the scenes of a block, their errors, the reasons of failures, and statements."""
 
-    values: dict[str, Any] = field(default_factory=dict)
-    errors: dict[str, Array] = field(default_factory=dict)
+    values: Table = field(default_factory=dict)
+    errors: dict[str, Any] = field(default_factory=dict)
     reasons: dict[int, Exception] = field(default_factory=dict)
     statements: set[str] = field(default_factory=set)
 
@@ -273,35 +258,19 @@ def is_csv(path: Path) -> bool:
     return path.suffix.lower() == ".csv"
 
 
-def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
+def refuse_what_cannot_fit(plan: Plan, path: Path | None) -> None:
     """Raise `ValueError` if a sweep needs more than memory or disk hold."""
-    limits = {}
-    if path is None or not is_csv(path):
-        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
-            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / GB
-            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
-    if path is not None and path.parent.is_dir():
-        free = shutil.disk_usage(path.parent).free / GB
-        limits[f'free beside "{path}"; choose fewer points'] = free
-    needed, _, size = _size(plan, path, jobs)
-    for where, limit in limits.items():
-        if needed > limit:
-            told = f"{plan.points:,} points need {size}; there are"
-            raise ValueError(f"{told} {limit:,.1f} GB {where}")
-
-
-def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
-    """Return the size of a sweep into a file in words, if it takes a while."""
-    _, seconds, size = _size(plan, path, jobs)
-    return f"{plan.points:,} points: {size}" if seconds > ANNOUNCED else ""
-
-
-def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
-    """Return about how many GB and seconds a sweep needs, and both in words."""
-    slow = IN_MOTION if plan.transient else BY_QUADRATURE
-    seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
-    needed = 2.0 * plan.points * plan.blank(0).itemsize
+    needed, limits = 2.0 * plan.points * sum(each.nbytes for each in plan.blank(1).values()), {}
     if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
         needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
-    return needed / GB, seconds, f"about {needed / GB:,.1f} GB and {duration(seconds)}"
+    else:
+        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
+    if path is not None and path.parent.is_dir():
+        limits[f'free beside "{path}"; choose fewer points'] = shutil.disk_usage(path.parent).free
+    for where, limit in limits.items():
+        if needed > limit:
+            told = f"{plan.points:,} points need about {needed / GB:,.1f} GB"
+            raise ValueError(f"{told}; there are {limit / GB:,.1f} GB {where}")

@@ -4,7 +4,7 @@ The result is sampled, and elements enter and leave between samples. The scheme 
 the edges, so that samples carry no sawtooth; what may lie between two samples counts as error.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -28,12 +28,7 @@ SOON = np.geomspace(1e-3, 1.0, 13)[:-1]
 BETWEEN = 0.25
 """Fraction of the difference to the next sample: twice what a parabola may rise between both."""
 SAMPLED = f"; of largest and smallest values, and {BETWEEN:g} times what they differ from the next sample by"
-EXTREMES: Mapping[str, tuple[Callable[[Array], Array], float]] = {
-    "max": (np.positive, 1.0),
-    "min": (np.negative, -1.0),
-    "peak_to_steady_friction": (np.abs, 1.0),
-}
-"""What is maximized of the values, and the sign that turns its maximum into the answer."""
+EXTREMES = "max", "min", "peak_to_steady_friction"
 
 
 def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
@@ -72,8 +67,9 @@ def _extreme(
 ) -> tuple[float, float]:
     """Return an extreme of the samples, and by how much it may be exceeded between two of them."""
     order = np.argsort(time, kind="stable")
-    maximized, sign = EXTREMES[measure]
-    height, piece = maximized(row[order]), np.searchsorted(changes, time[order], side="right")
+    sign, row = -1.0 if measure == "min" else 1.0, row[order]
+    height = np.abs(row) if measure == "peak_to_steady_friction" else sign * row
+    piece = np.searchsorted(changes, time[order], side="right")
     # Samples just before a change and at it are not neighbours; nor are those in flight, without edges.
     steps = np.where(np.diff(piece) == 0, np.abs(np.nan_to_num(np.diff(height))), 0.0)
     beside = np.maximum(np.append(steps, 0.0), np.append(0.0, steps))

@@ -7,6 +7,7 @@ of its content and of the sweep, so that a damaged block, or one of another swee
 
 import hashlib
 import json
+import math
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,10 +17,10 @@ from typing import Any
 import numpy as np
 
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.plan import EVENTS, Plan, Table
 
-APPLICATION = 0x6B765358
-"""Marks the SQLite file as a work file of a sweep ("kvSX")."""
+APPLICATION = 0x6B765332
+"""Marks the SQLite file as a work file of a sweep in this layout ("kvS2")."""
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
@@ -36,7 +37,7 @@ class WorkFile:
 
     def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
         self.path, self._plan, existed = path, plan, path.exists()
-        self._record = json.dumps(plan.record)
+        self._record, self._own = json.dumps(plan.record), set[int]()
         with _reported(path):
             self._base = sqlite3.connect(path, isolation_level=None, timeout=0.0)
             try:
@@ -53,10 +54,10 @@ class WorkFile:
         (tables,) = run("SELECT count(*) FROM sqlite_master").fetchone()
         if tables and application != APPLICATION:
             raise ValueError(f'"{self.path}" {NOT_OURS}')
-        # A log written ahead costs 0.1 ms for each block. With exclusive locking it needs no shared
-        # memory, which network file systems lack.
-        run("PRAGMA journal_mode=WAL")
-        # Only a power cut can spoil the file then; steady states take seconds to compute again.
+        # Steady states take seconds to compute again: only a power cut can spoil their file, which is
+        # written once, without waiting for the disk. For transients a log is written ahead, in 0.1 ms for
+        # each block. With exclusive locking it needs no shared memory, which network file systems lack.
+        run(f"PRAGMA journal_mode={'DELETE' if self._plan.vectorised else 'WAL'}")
         run(f"PRAGMA synchronous={'OFF' if self._plan.vectorised else 'NORMAL'}")
         run(f"PRAGMA wal_autocheckpoint={CHECKPOINT // PAGE}")
         run("BEGIN EXCLUSIVE")
@@ -79,31 +80,35 @@ class WorkFile:
 
     def keep(self, block: Block) -> None:
         """Keep a block; it is safe when this returns."""
-        table = block.table
-        content = table.tobytes()
-        if table.dtype.hasobject:
-            content = json.dumps(table.tolist(), default=np.ndarray.tolist).encode()
-        told = json.dumps([block.failures, block.statements, block.errors])
+        names = [column.name for column in self._plan.numeric]
+        content = b"".join(np.ascontiguousarray(block.table[name]).data for name in names)
+        texts = block.table[EVENTS].tolist() if self._plan.texts else []
+        told = json.dumps([block.failures, block.statements, block.errors, texts])
         row = block.start, block.stop, told, _digest(content)
         with _reported(self.path):
             insert = "INSERT INTO blocks VALUES (?, ?, ?, ?, ?, ?)"
             self._base.execute(insert, (*row, self._seal(*row), content))
+        self._own.add(block.start)
 
     def blocks(self, *, tables: bool = True) -> Iterator[Block]:
         """Yield the kept blocks in the order of their points, on request without their tables."""
         last = "content" if tables else "NULL"
         select = f"SELECT start, stop, told, digest, seal, {last} FROM blocks ORDER BY start"
-        table = self._plan.blank(0)
         with _reported(self.path):
             for *row, seal, content in self._base.execute(select):
                 start, stop, told, digest = row
-                if seal != self._seal(*row) or (tables and digest != _digest(content)):
+                unknown = tables and start not in self._own
+                if seal != self._seal(*row) or (unknown and digest != _digest(content)):
                     raise sqlite3.DatabaseError(f"the block from point {start} on was changed")
-                if tables and table.dtype.hasobject:
-                    table = np.array([tuple(each) for each in json.loads(content)], table.dtype)
-                elif tables:
-                    table = np.frombuffer(content, table.dtype)
-                yield Block(start, stop, table, *json.loads(told))
+                *about, texts = json.loads(told)
+                table: Table = {EVENTS: np.array(texts, object)} if texts else {}
+                at = 0
+                for column in self._plan.numeric if tables else ():
+                    shape = self._plan.shape(column, stop - start)
+                    numbers = np.frombuffer(content, count=math.prod(shape), offset=at)
+                    table[column.name] = numbers.reshape(shape)
+                    at += numbers.nbytes
+                yield Block(start, stop, table, *about)
 
     def _seal(self, *row: Any) -> str:
         """Return the digest of a row and of the identity of the sweep."""
@@ -113,8 +118,8 @@ class WorkFile:
         """Release the file, whose blocks remain for the next run; or remove it."""
         self._base.close()
         if remove:
-            for path in (self.path, self.path.with_name(f"{self.path.name}-wal")):
-                path.unlink(missing_ok=True)
+            for suffix in ("", "-wal", "-journal"):
+                self.path.with_name(f"{self.path.name}{suffix}").unlink(missing_ok=True)
 
 
 @contextmanager
