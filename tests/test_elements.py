@@ -311,7 +311,7 @@ def test_compiled_kernels_give_what_interpreted_ones_give(name, monkeypatch):
     pytest.importorskip("numba")
     (scene, scheme), found = BOTH_WAYS[name], []
     for enough in (sys.maxsize, -1):
-        monkeypatch.setattr(simulation, "WORTHWHILE", enough)
+        monkeypatch.setattr(row, "WORTHWHILE", enough)
         options = {"scheme": scheme, "per_length": "30 /mm", "certify": False}
         found.append(kv.elements(scene, at=[0.0, 0.003, 0.011, 0.02], **options))
     slow, fast = found
@@ -377,9 +377,9 @@ def test_steps_that_find_no_element_fly():
     """In flight the indenter falls freely."""
     for scheme in SCHEMES.values():
         model = Model.of(kv.Scene(), 5e-6, parts=scheme.row.parts_of_elements)
-        elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1))
+        elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1), scheme)
         elements.lay(model.depth, lambda x, y: 0.0 * x)
-        new = elements.step(scheme, IndenterState(0.0, -1e-3, 0.0), 1e-4)
+        new = elements.step(IndenterState(0.0, -1e-3, 0.0), 1e-4)
         assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
 
 

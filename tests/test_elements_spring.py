@@ -91,7 +91,7 @@ def energies(row, state, h, count):
             model.law.stiffness * model.spacing * float(np.square(row.states(state.time)[0]).sum())
         )
         found.append(0.5 * (moving + model.spring * risen**2 + springs) + lifted)
-        state = row.step(SCHEMES["exponential"], state, h)
+        state = row.step(state, h)
     return np.array(found)
 
 
@@ -102,7 +102,7 @@ def test_no_step_gains_energy_however_long(support, h):
     drive = kv.Drive(velocity=0.0, stiffness="0.1 MN/m^2", mass="0.2 kg/mm")
     scene = kv.Scene(support=kv.Scene.table1(support).support, drive=drive)
     model = Model.of(scene, 2e-5)
-    row = ElementRow(model, model.path(scene), 1e7)
+    row = ElementRow(model, model.path(scene), SCHEMES["exponential"], 1e7)
     start = IndenterState(0.0, model.depth, 0.0, along_rate=0.02)
     energy = energies(row, start, h, 60)
     assert energy[0] > energy[-1]
@@ -119,7 +119,7 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
     lacking = []
     for density in (2e4, 4e4, 8e4):
         model = Model.of(scene, 1.0 / density)
-        row, h = ElementRow(model, model.path(scene)), 4.0 / density
+        row, h = ElementRow(model, model.path(scene), SCHEMES["exponential"]), 4.0 / density
         state, rows = IndenterState(0.0, model.depth, 0.0), []
         K_i, tau = model.law.arm_stiffness[:, None], model.law.arm_time[:, None]
         for _ in range(round(0.04 / h) + 1):
@@ -133,7 +133,7 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
                 model.spacing * (s * s / (K_i * tau)).sum() + 1e3 * state.along_rate**2,
                 0.1 * held,
             ))  # fmt: skip
-            last, state = state, row.step(SCHEMES["exponential"], state, h)
+            last, state = state, row.step(state, h)
         stored, lost, power = np.array(rows).T
         # That of friction on the base, F_x = k_x x + c_x x' + M_x x''.
         work = np.trapezoid(power, dx=h) + 0.1 * model.mass_along * last.along_rate

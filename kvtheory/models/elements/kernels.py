@@ -82,9 +82,8 @@ class Elements(NamedTuple):
 
     Arrays over strips and elements: `u` is the compression, `touched` whether an element is in contact;
     `arms` are then the forces of its arms, else its modes. Elements `low` to `high` of a strip are near the
-    indenter and up to date; one elsewhere is as it was at `since`. An element may stay in contact above the
-    plane z = 0, so that all in contact are in `first` to `last`. `numbers` holds i + shift of the elements of
-    a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
+    indenter and up to date; one elsewhere is as it was at `since`. `numbers` holds i + shift of the elements
+    of a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
     """
 
     u: Array
@@ -93,8 +92,6 @@ class Elements(NamedTuple):
     touched: Flags
     low: Runs
     high: Runs
-    first: Runs
-    last: Runs
     counts: Runs
     numbers: Array
     ones: Array
@@ -117,12 +114,10 @@ class Elements(NamedTuple):
     rule: ContactRule
     tableau: Array
     fitted: bool
-    explicit: bool
     spacing: float
     shift: float
     across: float
     parts: bool
-    per_width: bool
     mass: float
     weight: float
     spring: float
@@ -297,9 +292,9 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
         return OUTGROWN
     s, dx, first, (stored, width) = e.surface, e.spacing, e.counts[FIRST], e.u.shape
     left, right = extent(s, e.profile, depth, -1.0), extent(s, e.profile, depth, 1.0)
-    strips = 1 + int(s.stretch * right / e.across) if e.across else 1
-    for j in range(strips, stored):
-        strips = j + 1 if e.first[j] < e.last[j] else strips
+    strips, runs, r = 1 + int(s.stretch * right / e.across) if e.across else 1, e.counts[BEGUN], 0
+    if runs:  # an element may stay in contact above the plane z = 0
+        strips = max(strips, e.begun[runs - 1, 0] + 1)
     for j in range(stored):
         low = high = e.low[j]
         if j < strips:
@@ -307,8 +302,9 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
             bent = math.sqrt(max(1.0 - share * share, 0.0))
             low = math.floor((-left * bent - max(places[0], places[1])) / dx) - SPARE - first
             high = math.ceil((right * bent - min(places[0], places[1])) / dx) + SPARE + 1 - first
-            if e.first[j] < e.last[j]:
-                low, high = min(low, e.first[j] - SPARE), max(high, e.last[j] + SPARE)
+            while r < runs and e.begun[r, 0] == j:
+                low, high = min(low, e.begun[r, 1] - SPARE), max(high, e.begun[r, 2] + SPARE)
+                r += 1
             if low < 0 or high > width or strips > stored:
                 e.counts[LOW], e.counts[HIGH], e.counts[STRIPS] = low + first, high + first, strips
                 return LACKING
@@ -437,12 +433,9 @@ def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, f
 
 def begin(e: Elements) -> None:
     """Take the runs at the end of a step for those at the start of the next."""
-    for j in range(e.counts[STRIPS]):
-        e.first[j] = e.last[j] = 0
     for r in range(e.counts[ENDED]):
-        j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
-        e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
-        e.begun[r, 0], e.begun[r, 1], e.begun[r, 2] = j, low, high
+        for n in range(3):
+            e.begun[r, n] = e.ended[r, n]
     e.counts[BEGUN] = e.counts[ENDED]
 
 
@@ -580,7 +573,7 @@ def _lay(
     θ, which depends on the elements that are pressed if the indenter sinks by `first`.
     """
     (place, travel), arms = way, e.arms.shape[0]
-    tip = e.law.damping > 0.0 and e.per_width and travel != 0.0
+    tip = e.law.damping > 0.0 and not e.across and travel != 0.0
     for j in range(e.counts[STRIPS]):
         low, high, height, meets = e.low[j], e.high[j], e.height[j], e.meets[j]
         heights(e, j, place)
@@ -762,7 +755,7 @@ def _slide(
     (place, travel), arms = way, e.arms.shape[0]
     for j in range(e.counts[STRIPS]):
         slopes(e, j, e.low[j], e.high[j], place - 0.5 * travel)
-    for n in range(e.kinks.size if e.per_width and e.law.damping and travel else 0):
+    for n in range(e.kinks.size if not e.across and e.law.damping and travel else 0):
         passed = _passed(e, e.kinks[n], place, travel)
         slopes(
             e, 0, passed[0], passed[1], place - travel
@@ -900,7 +893,7 @@ def _stage(
 def report(
     e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
 ) -> int:
-    """Write the report at an instant into `found`, in the order of `error_estimate.COLUMNS`.
+    """Write the report at an instant into `found`, in the order of `simulation.COLUMNS`.
 
     `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
     last with V >= 0, Y). An element is in contact if the indenter touches its surface and its pressure
@@ -931,7 +924,7 @@ def report(
             slopes(e, j, low, high, place)
         first = _end(e, j, low, -1, place, state[DEPTH]) if e.parts else WHOLE
         last = _end(e, j, high - 1, 1, place, state[DEPTH]) if e.parts else WHOLE
-        split = _split(e, low, high, place, sliding) if e.parts and e.per_width else (0.0, 0.0)
+        split = _split(e, low, high, place, sliding) if e.parts and not e.across else (0.0, 0.0)
         normal = dotted(p, e.ones, low, high) + first[1] + last[1] + split[0]
         along = dotted(p, e.slope[j], low, high) + first[2] + last[2] + split[1]
         for end in (first, last):
@@ -1006,7 +999,7 @@ def _end(
     share = min(before, now, 1.0)
     p_edge = 0.0 if now <= share else p[i] + share * (p[i + out] - p[i])
     x = e.spacing * e.numbers[i] + place
-    for n in range(e.kinks.size if e.per_width else 0):
+    for n in range(e.kinks.size if not e.across else 0):
         # There p falls at once, by -C V times the jump of h'.
         ahead = (e.kinks[n] - x) / e.spacing * out
         p_kink = p[i] + ahead * (p[i] - p[i - out])
@@ -1137,7 +1130,7 @@ def advance(
     step: int, reported: int, until: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    none = _law_at(course.law, 0)
+    none, explicit = _law_at(course.law, 0), e.tableau.shape[0] > 1
     law = _law_at(course.law, 2 * course.which[step - 1] + 2) if step else none
     while True:
         now = course.times[step]
@@ -1149,7 +1142,7 @@ def advance(
         if step == until:
             return DONE, step, reported
         law, Y = _law_at(course.law, 2 * course.which[step] + 2), course.Y[step]
-        if e.explicit:
+        if explicit:
             half = _law_at(course.law, 2 * course.which[step] + 1)
             status = explicit_step(e, (none, half, law), state, now, Y, course.V[step])
         else:
@@ -1169,11 +1162,11 @@ def advance(
         if not abs(state[ALONG_RATE]) <= course.limits[1]:
             return THROWN_ALONG, step, reported
         imbalance = forces = 0.0
-        for n in range(WINDOW if e.explicit else 0):
+        for n in range(WINDOW if explicit else 0):
             known = balances[1, n] > 0.0
             imbalance, forces = (
                 imbalance + balances[0, n],
                 forces + balances[1, n] if known else math.inf,
             )
-        if e.explicit and imbalance > course.limits[2] * forces:
+        if explicit and imbalance > course.limits[2] * forces:
             return UNBALANCED, step, reported

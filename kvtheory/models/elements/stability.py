@@ -168,15 +168,17 @@ def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
 
 def divergence(
     status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, state: Array,
-    balances: Array,
+    balances: Array, deepest: float,
 ) -> DivergenceError:  # fmt: skip
-    """Return the error about a run that `kernels.advance` found to be unstable."""
-    sign = f"where the indenter is thrown upward with {-state[kernels.RATE]:.3g} m/s"
-    if status == kernels.THROWN_ALONG:
-        sign = f"where the indenter is thrown along x with {abs(state[kernels.ALONG_RATE]):.3g} m/s"
-    elif status == kernels.UNBALANCED:
-        share = balances[0].sum() / balances[1].sum()
-        sign = f"where the forces fail to balance the motion by {share:.0%}"
+    """Return the error about a run that was found to be unstable, or sank to `deepest` static depths."""
+    up, along = -state[kernels.RATE], abs(state[kernels.ALONG_RATE])
+    sign = {
+        kernels.OUTGROWN: f"the indenter sank to {deepest:g} times its static depth",
+        kernels.THROWN_UP: f"the indenter is thrown upward with {up:.3g} m/s",
+        kernels.THROWN_ALONG: f"the indenter is thrown along x with {along:.3g} m/s",
+        kernels.UNBALANCED: "the forces fail to balance the motion by "
+        f"{balances[0].sum() / balances[1].sum():.0%}",
+    }[status]
     return DivergenceError(
-        f"the run diverged at t = {time:.6g} s, {sign}: {describe(scheme, model, path, h)}"
+        f"the run diverged at t = {time:.6g} s, where {sign}: {describe(scheme, model, path, h)}"
     )
