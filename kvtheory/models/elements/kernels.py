@@ -55,8 +55,6 @@ TIE = 1e-9
 """Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
 """Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
-WHOLE = (0.5, 0.0, 0.0, 0.0, 0.0)
-"""The end of a run of whole elements, as `_end` returns it: half an element beyond the last."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -115,7 +113,6 @@ class Elements(NamedTuple):
     tableau: Array
     fitted: bool
     spacing: float
-    shift: float
     across: float
     parts: bool
     mass: float
@@ -180,17 +177,8 @@ COMPILED = {
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
-INLINED = (
-    "implicit_step",
-    "_lay",
-    "relax",
-    "_judge_edges",
-    "_sink",
-    "_slide",
-    "finish",
-    "begin",
-    "find_runs",
-)
+INLINED = ("implicit_step", "_lay", "relax", "_judge_edges", "_sink", "_slide", "finish", "begin",
+           "find_runs")  # fmt: skip
 """Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
@@ -237,9 +225,11 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
         return 0.0
     if s.exponent == 2.0:
         return math.sqrt(2.0 * s.size * depth)
-    if s.exponent == 0.0:
-        return min(math.sqrt(min(depth, s.size) * (2.0 * s.size - min(depth, s.size))), s.inside)
-    return min(s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent), s.inside)
+    deep = min(depth, s.size)
+    far = math.sqrt(deep * (2.0 * s.size - deep))
+    if s.exponent:
+        far = s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent)
+    return min(far, s.inside)
 
 
 def weigh(weights: Array, dy: float, rim: float) -> Array:
@@ -356,15 +346,26 @@ def gap(e: Elements, j: int, i: int, place: float, depth: float) -> float:
     return w
 
 
-def gaps(
-    e: Elements, j: int, i: int, out: int, place: float, depth: float
-) -> tuple[float, float, float]:
+def gaps(e: Elements, j: int, i: int, out: int, place: float, depth: float) -> Any:
     """Return the overlap of an element and of the next two in the direction `out`, -1 or 1."""
     w, far = gap(e, j, i, place, depth), gap(e, j, i + out, place, depth)
     return w, far, gap(e, j, i + 2 * out, place, depth)
 
 
 # An element over a step
+
+
+def _follow(e: Elements, j: int, at: Array, places: tuple[float, float], V: float) -> None:
+    """Write height and slope at two places, and to `meets` p = K g + C g' of elements on the indenter.
+
+    g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12).
+    """
+    height, slope, p = e.height[j], e.slope[j], e.meets[j]
+    heights(e, j, places[0])
+    slopes(e, j, e.low[j], e.high[j], places[1])
+    for i in over(e.low[j], e.high[j]):
+        g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
+        p[i] = e.law.stiffness * g + e.law.damping * g_rate
 
 
 def ramp_functions(z: float) -> tuple[float, float]:
@@ -412,13 +413,8 @@ def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, f
         for i in over(low, high):
             late[i], rise[i], free[i] = pressed[i] != touched[i], depths[1] - height[i] - u[i], 0.0
         for k in range(e.arms.shape[0]):
-            arm, share, held, ramp, fall = (
-                e.arms[k, j],
-                e.law.shares[k],
-                step.held[k],
-                step.ramp[k],
-                step.fall[k],
-            )
+            arm, share = e.arms[k, j], e.law.shares[k]
+            held, ramp, fall = step.held[k], step.ramp[k], step.fall[k]
             for i in over(low, high):
                 new = choose(touched[i], held * arm[i] + ramp * rise[i], fall * arm[i])
                 arm[i] = choose(late[i], arm[i], new)
@@ -516,7 +512,12 @@ def implicit_step(
     gained = state[GAINED] * h / max(state[LAST], h)
     guess = state[ALONG_RATE] + gained / 2.0 + 5.0 / 12.0 * state[CURVED]  # Adams-Bashforth
     slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
-    most, sunk, new_along_rate, known = _deepest_fall(e, state, h), 0.0, 0.0, False
+    most, sunk, new_along_rate, known = 0.0, 0.0, 0.0, False
+    if math.isfinite(e.mass):  # how far it could sink without a foundation, at any θ from 1/2 to 1
+        q = e.spring * h * h / e.mass
+        pull = max(e.weight + e.spring * (e.depth - depth), 0.0)
+        falls = (1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)) * pull * h * h / e.mass
+        most = h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + falls
     _weigh(e, depth + 0.5 * h * state[RATE])
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
@@ -551,16 +552,6 @@ def implicit_step(
         state[GAINED], state[CURVED] = gained, gained - state[GAINED] if state[LAST] == h else 0.0
         state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
     return DONE
-
-
-def _deepest_fall(e: Elements, state: Array, h: float) -> float:
-    """Return how far the indenter could sink in a step without a foundation, at any θ from 1/2 to 1."""
-    if math.isinf(e.mass):
-        return 0.0
-    q = e.spring * h * h / e.mass
-    pull = max(e.weight + e.spring * (e.depth - state[DEPTH]), 0.0)
-    most = 1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)
-    return float(h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / e.mass)
 
 
 def _lay(
@@ -606,10 +597,8 @@ def _lay(
         _load_late(e, law, place - travel, depth, first)
     if e.parts:
         _judge_edges(e, law, known, place - travel, depth, first)
-    wide = (
-        max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN])) * e.spacing
-    )
-    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+    wide = max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN]))
+    return exponential_fit(law.h * law.damping * e.spacing * wide / e.mass) if e.fitted else 1.0
 
 
 def _judge_edges(
@@ -650,7 +639,7 @@ def _press(e: Elements, sunk: float) -> bool:
 
 def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
     """Return the range of elements that pass a kink of the shape in a step."""
-    at = (kink - place) / e.spacing - e.shift - e.counts[FIRST]
+    at = (kink - place) / e.spacing - e.numbers[0]
     start, end = min(at, at + travel / e.spacing), max(at, at + travel / e.spacing)
     return max(math.floor(start + NEAR) + 1, e.low[0]), min(math.ceil(end - NEAR), e.high[0])
 
@@ -757,9 +746,8 @@ def _slide(
         slopes(e, j, e.low[j], e.high[j], place - 0.5 * travel)
     for n in range(e.kinks.size if not e.across and e.law.damping and travel else 0):
         passed = _passed(e, e.kinks[n], place, travel)
-        slopes(
-            e, 0, passed[0], passed[1], place - travel
-        )  # pressed by the flank that they come from
+        # These are pressed by the flank that they come from.
+        slopes(e, 0, passed[0], passed[1], place - travel)
     for r in range(e.counts[ENDED]):
         j, weight = e.ended[r, 0], e.weights[e.ended[r, 0]]
         width += weight * (e.ended[r, 2] - e.ended[r, 1])
@@ -800,10 +788,7 @@ def explicit_step(
     """
     h, M, M_x = laws[2].h, e.mass, e.mass_along
     stages, begin = e.tableau.shape[0] - 1, Y[0] - state[ALONG]
-    rates, at = (
-        e.stages,
-        e.stages[stages + 1],
-    )  # of depth, its rate, and both along x, at each stage
+    rates, at = e.stages, e.stages[stages + 1]  # of depth, its rate, and both along x
     for i in range(stages + 1):
         share = e.tableau[i, 0] if i < stages else 1.0
         for n in range(4):
@@ -849,12 +834,8 @@ def _stage(
     for j in range(e.counts[STRIPS]):
         low, high, left, p = e.low[j], e.high[j], e.before[j], e.meets[j]
         u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
-        heights(e, j, place)
-        slopes(e, j, low, high, place)
+        _follow(e, j, at, (place, place), V)
         relax(e, law, j, low, high, left)
-        for i in over(low, high):
-            g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
-            p[i] = e.law.stiffness * g + e.law.damping * g_rate
         for k in range(arms):
             arm = e.arms[k, j]
             for i in over(low, high):
@@ -922,9 +903,9 @@ def report(
         p, top = e.meets[j], low + np.argmax(e.meets[j, low:high])
         if not e.parts:
             slopes(e, j, low, high, place)
-        first = _end(e, j, low, -1, place, state[DEPTH]) if e.parts else WHOLE
-        last = _end(e, j, high - 1, 1, place, state[DEPTH]) if e.parts else WHOLE
-        split = _split(e, low, high, place, sliding) if e.parts and not e.across else (0.0, 0.0)
+        first = _end(e, j, low, -1, place, state[DEPTH])
+        last = _end(e, j, high - 1, 1, place, state[DEPTH])
+        split = _split(e, low, high, place, sliding)
         normal = dotted(p, e.ones, low, high) + first[1] + last[1] + split[0]
         along = dotted(p, e.slope[j], low, high) + first[2] + last[2] + split[1]
         for end in (first, last):
@@ -932,7 +913,7 @@ def report(
                 at_edge, edge_doubt = end[3], end[4]
         if p[top] > peak or not peak:
             reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
-            peak, doubt = _peak(e, p, top, reach, low, high) if e.parts else (p[top], 0.0)
+            peak, doubt = _peak(e, p, top, reach, low, high)
         force += e.weights[j] * normal
         push += e.weights[j] * along
         if j == 0:
@@ -956,7 +937,7 @@ def _behind(e: Elements, V: float) -> float:
 
 
 def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: float) -> None:
-    """Write p of the elements to `meets`, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12), and `slope`.
+    """Write p of the elements to `meets`.
 
     For a detached element, it is the pressure it would have had it followed the indenter in the last step:
     brought down by the gap at the start of the step, and then moving with the indenter.
@@ -964,11 +945,7 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
     for j in range(e.counts[STRIPS]):
         low, high, p = e.low[j], e.high[j], e.meets[j]
         u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
-        heights(e, j, place)
-        slopes(e, j, low, high, place - _behind(e, V))
-        for i in over(low, high):
-            g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
-            p[i] = e.law.stiffness * g + e.law.damping * g_rate
+        _follow(e, j, state, (place, place - _behind(e, V)), V)
         for k in range(e.arms.shape[0]):
             arm, brought = e.arms[k, j], e.law.arm_stiffness[k] * law.held[k]
             moved = (law.ramp[k] - brought) * law.h
@@ -981,16 +958,17 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
             e.pressed[j, i] = held[i] & ((p[i] >= 0.0) | e.rule.pulls)
 
 
-def _end(
-    e: Elements, j: int, i: int, out: int, place: float, depth: float
-) -> tuple[float, float, float, float, float]:
+def _end(e: Elements, j: int, i: int, out: int, place: float, depth: float) -> Any:
     """Return how far outward of the last element i of a run the edge is, in elements.
 
     Then what the sums of p and of p h' gain by ending there, p at the edge, and how much p differs between
     the elements beside it. An edge peels where p falls to zero, between two elements by a straight line,
     and touches where the indenter meets the free surface. Where V jumps, an edge that peeled until then, by
-    the pressure before, is still where it was, or has gone further in.
+    the pressure before, is still where it was, or has gone further in. A run of whole elements ends half an
+    element beyond the last.
     """
+    if not e.parts:
+        return 0.5, 0.0, 0.0, 0.0, 0.0
     p, p_before, slope = e.meets[j], e.before[j], e.slope[j]
     now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
     touches, straight = touching(gaps(e, j, i + out, out, place, depth))
@@ -1037,7 +1015,7 @@ def _split(e: Elements, low: int, high: int, place: float, V: float) -> tuple[fl
     first order in the spacing.
     """
     normal = along = 0.0
-    for n in range(e.kinks.size):
+    for n in range(e.kinks.size if e.parts and not e.across else 0):
         kink, x_0 = e.kinks[n], e.spacing * e.numbers[0] + place
         k = round((kink - x_0) / e.spacing)
         if not low < k < high - 1:
@@ -1055,9 +1033,7 @@ def _split(e: Elements, low: int, high: int, place: float, V: float) -> tuple[fl
     return normal, along
 
 
-def _peak(
-    e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int
-) -> tuple[float, float]:
+def _peak(e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int) -> Any:
     """Return the peak near element k, from the parabola through three, and its uncertainty.
 
     A shape with kinks has no such parabola: there the peak is known to within one element. Arms remember
@@ -1066,6 +1042,8 @@ def _peak(
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
     doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
+    if not e.parts:
+        return here, 0.0
     if e.kinks.size:
         return here, min(abs(here - before), abs(here - after))
     bend = 2.0 * here - before - after
@@ -1164,9 +1142,7 @@ def advance(
         imbalance = forces = 0.0
         for n in range(WINDOW if explicit else 0):
             known = balances[1, n] > 0.0
-            imbalance, forces = (
-                imbalance + balances[0, n],
-                forces + balances[1, n] if known else math.inf,
-            )
+            imbalance += balances[0, n]
+            forces += balances[1, n] if known else math.inf
         if explicit and imbalance > course.limits[2] * forces:
             return UNBALANCED, step, reported

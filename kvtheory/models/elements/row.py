@@ -74,7 +74,7 @@ class ElementRow:
             law = law._replace(rates=0.0 * law.rates)
         self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
         self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
-        names = ("spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length",
+        names = ("spacing", "across", "mass", "weight", "spring", "depth", "half_length",
                  "mass_along", "spring_along", "damping_along")  # fmt: skip
         self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
             "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
@@ -134,7 +134,9 @@ class ElementRow:
             If the indenter sinks deeper than the row was made for.
         """
         self.state[:4] = state[1:]
-        course = course_of(self.path, self.stored.law, [state.time, state.time + h], [h])
+        course = course_of(
+            self.path, self.stored.law, state.time + np.array([0.0, h]), np.array([h])
+        )
         if self.run(course, np.zeros((0, 1)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))
@@ -208,13 +210,11 @@ class ElementRow:
 
 
 def course_of(
-    path: BaseMotion, law: Element, times: Sequence[float], steps: Sequence[float],
-    after: Sequence[int] = (), about: Any = (),
+    path: BaseMotion, law: Element, times: Array, steps: Array, after: Any = (), about: Any = (),
     limits: Sequence[float] = (-math.inf, math.inf, math.inf),
 ) -> Course:  # fmt: skip
     """Return the course of steps between these times, with the motion of the base and of an element."""
-    ends, h = np.array(times), np.array(steps)
-    t = np.stack([ends[:-1], ends[:-1] + 0.5 * h, ends[1:]], axis=1)
+    t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
     before = t.copy()
     before[:, 2] -= SAME_TIME * np.spacing(t[:, 2])
 
@@ -225,7 +225,7 @@ def course_of(
         return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)
 
     reports = np.array(about, dtype=float).reshape(len(after), 5)
-    lengths, which = np.unique(h, return_inverse=True)
+    lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
-    return Course(ends, h, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
+    return Course(times, steps, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
                   np.array(limits), over, which)  # fmt: skip

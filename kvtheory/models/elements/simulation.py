@@ -25,6 +25,7 @@ from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import POWERS, BaseMotion
 from kvtheory.scene.model import Scene
+from kvtheory.theory.laws import Array
 
 ELEMENTS_PER_STEP = 2.0
 """Elements that pass in a step, as in the paper: dt = 2 dx/V."""
@@ -85,8 +86,9 @@ Rows = dict[str, Any]
 between the elements beside its peak, inside the contact and at its edge (Pa)."""
 COLUMNS = (*SERIES_UNITS, "peak_doubt", "edge_doubt")
 
-Leg = tuple[float, float, int]
-"""Start, end and number of steps."""
+Timetable = tuple[Array, Array, Array, Array]
+"""Times before and after the steps, their lengths, after which of them something is reported, and what: see
+`kernels.Course`."""
 
 
 def simulate(
@@ -118,20 +120,21 @@ def simulate(
             "elements (`per_length`), or a shorter run"
         )
     own_step = time_step is None and not scheme.tableau
-    legs = _legs(stops, path.changes, h, _graded(model, path, h, stops[-1]) if own_step else {})
-    h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
+    graded = _graded(model, path, h, stops[-1]) if own_step else {}
+    times, steps, after, about = fine = _timetable(path, stops, wanted, h, graded)
+    h = float(steps.max(initial=0.0)) or h
     warning = stability.doubts(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
-    runs = [(model, scheme, legs, 1.0)]
+    best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)
+    runs = [(model, scheme, fine, 1.0)]
     if certify:
         coarse = [
             Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0) for shift in SHIFTS
         ]
         runs += [(other, best, half, COARSE) for other in coarse]
         if scheme is not best:
-            runs += [(Model.of(scene, spacing, parts=True), best, legs, 1.0)]
+            runs += [(Model.of(scene, spacing, parts=True), best, fine, 1.0)]
     ends = np.cumsum([0.0, *(share for *_, share in runs)]) / sum(share for *_, share in runs)
 
     def part(k: int) -> Progress:
@@ -140,7 +143,7 @@ def simulate(
         return lambda share, said: told(float(ends[k] + own * share), said + words)
 
     (rows, row), *others = (
-        _run(one, path, by, steps, wanted, part(k)) for k, (one, by, steps, _) in enumerate(runs)
+        _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
     )
     certificate = UNKNOWN
     if certify:
@@ -150,7 +153,7 @@ def simulate(
     )
     return kind(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
-        time_step=h, steps=sum(count for _, _, count in legs),
+        time_step=h, steps=len(steps),
         element_updates=int(row.stored.counts[kernels.UPDATES]), warning=warning, model="elements",
         certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
     )  # fmt: skip
@@ -224,49 +227,49 @@ def _instants(
     return [*regular, end], [*regular, end]
 
 
-def _legs(
-    stops: Sequence[float], breaks: Sequence[float], h: float, graded: dict[float, float]
-) -> list[Leg]:
-    """Return for each stop the start and step count of the leg that ends there; no steps if it is there."""
-    legs: list[Leg] = []
+def _timetable(
+    path: BaseMotion, stops: Sequence[float], wanted: list[float], h: float, graded: dict[float, float]
+) -> Timetable:  # fmt: skip
+    """Return steps of at most h, or of the graded lengths, that end on the stops."""
+    asked, times, lengths, after, about = (
+        set(wanted),
+        [0.0],
+        list[float](),
+        list[int](),
+        list[Any](),
+    )
     start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({*stops, *graded}):
-        # An even number of steps of at most h, so that half as many fit too.
-        count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
-        count = count if stop - start > TOGETHER * step else 0
-        legs.append((start, stop, count))
-        if count or stop in breaks:
+        if stop - start > TOGETHER * step:
+            # An even number of steps, so that half as many fit too.
+            count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
+            lengths += [(stop - start) / count] * count
+            times += [start + (stop - start) * k / count for k in range(1, count)] + [stop]
             start = stop
+        elif stop in path.changes:
+            times[-1] = start = stop
+        if stop in asked:
+            before, Y = path.velocity(times[-1], before=True), path.displacement(times[-1])
+            about.append((stop, path.velocity(stop), before, path.forward(stop), Y))
+            after.append(len(lengths))
         step = graded.get(stop, step)
-    return legs
+    return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
 
 
 @np.errstate(all="ignore")  # the kernels check the results
 def _run(
-    model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
+    model: Model, path: BaseMotion, scheme: Scheme, table: Timetable, wanted: list[float],
     progress: Progress,
 ) -> tuple[Rows, ElementRow]:  # fmt: skip
     """Take all steps and report at the wanted instants; if the indenter sinks deep, store more elements."""
-    asked, times, steps, after, about = set(wanted), [0.0], list[float](), list[int](), list[Any]()
-    for start, stop, count in legs:
-        if count:
-            steps += [(stop - start) / count] * count
-            times += [start + (stop - start) * k / count for k in range(1, count)] + [stop]
-        elif stop in path.changes:
-            times[-1] = stop
-        if stop in asked:
-            before, Y = path.velocity(times[-1], before=True), path.displacement(times[-1])
-            about.append((stop, path.velocity(stop), before, path.forward(stop), Y))
-            after.append(len(steps))
-    limits, place = stability.limits(model, path), {each[0]: k for k, each in enumerate(about)}
+    times, steps, _, about = table
+    limits, place = stability.limits(model, path), {t: k for k, t in enumerate(about[:, 0])}
     kept, deepest = KEPT_DEPTH, min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
     while True:
         row = ElementRow(model, path, scheme, kept)
-        course = course_of(path, row.stored.law, times, steps, after, about, limits)
-        balances, found = (
-            np.zeros((2, kernels.WINDOW)),
-            np.full((len(after), len(COLUMNS)), math.nan),
-        )
+        course = course_of(path, row.stored.law, *table, limits)
+        balances = np.zeros((2, kernels.WINDOW))
+        found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
         pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
         status, done, reported, until = kernels.DONE, 0, 0, -1
@@ -280,7 +283,15 @@ def _run(
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, max(steps), times[done], row.state, balances, deepest
+                status,
+                scheme,
+                model,
+                path,
+                float(steps.max()),
+                times[done],
+                row.state,
+                balances,
+                deepest,
             )
             error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
             raise error

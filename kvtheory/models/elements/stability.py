@@ -6,7 +6,6 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -92,30 +91,16 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 
     For Kelvin-Voigt its eigenvalues are R(σ h), R(z) = 1 + z + z^2/2 + ... of the tableau (F15).
     """
-    *stages, weights = scheme.tableau
-    law, M, k_s = model.law, model.mass, model.spring
-    start = np.eye(2 + law.arm_stiffness.size)
-    u, held = start[:1], np.delete(start, 1, axis=0)
-    rates, pulls = list[Array](), list[Array]()
-
-    def along(a: Sequence[float]) -> tuple[Array, Array]:
-        return tuple(
-            start[k] + h * sum((x * y for x, y in zip(a, slopes, strict=True)), 0.0 * start[k])
-            for k, slopes in enumerate((rates, pulls))
+    start, rates = np.eye(2 + model.law.arm_stiffness.size), list[Array]()
+    for c, *a in scheme.table:
+        at = start[:2] + h * sum(
+            (x * rate for x, rate in zip(a, rates, strict=False)), 0.0 * start[:2]
         )
-
-    def moved(c: float, depth: Array) -> Array:
-        step = law.step(c * h)
-        kept, ramp = np.append(1.0, step.held), np.append(1.0, step.ramp)
-        return kept[:, None] * held + ramp[:, None] * (depth - u)
-
-    for c, *a in stages:
-        depth, rate = along(a)
-        p = law.pressure(depth, rate) + moved(c, depth)[1:].sum(axis=0)
-        rates.append(rate)
-        pulls.append(-(length * p + k_s * depth) / M)
-    depth, rate = along(weights)
-    return np.vstack([depth, rate, moved(1.0, depth)[1:]])
+        step = model.law.step(c * h)
+        arms = step.held[:, None] * start[2:] + step.ramp[:, None] * (at[0] - start[0])
+        force = length * (model.law.pressure(*at) + arms.sum(axis=0)) + model.spring * at[0]
+        rates.append(np.array([at[1], -force / model.mass]))
+    return np.vstack([at, arms])
 
 
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
