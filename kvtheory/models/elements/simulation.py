@@ -110,8 +110,8 @@ def simulate(
     model = replace(model, rule=rule, start=start)
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
-    stops, wanted = _instants(scene, path, h, at)
-    count = stops[-1] / h
+    wanted = _instants(scene, path, h) if at is None else list(at)
+    count = max(wanted) / h
     elements = model.strips(model.depth) * 2.0 * model.half_length / model.spacing
     if elements * count > MOST_OF_ALL:
         raise ValueError(
@@ -120,8 +120,8 @@ def simulate(
             "elements (`per_length`), or a shorter run"
         )
     own_step = time_step is None and not scheme.tableau
-    graded = _graded(model, path, h, stops[-1]) if own_step else {}
-    times, steps, after, about = fine = _timetable(path, stops, wanted, h, graded)
+    graded = _graded(model, path, h, max(wanted)) if own_step else {}
+    times, steps, after, about = fine = _timetable(path, wanted, h, graded)
     h = float(steps.max(initial=0.0)) or h
     warning = stability.doubts(scheme, model, path, h)
     if warning and warn is not None:
@@ -129,27 +129,25 @@ def simulate(
     best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)
     runs = [(model, scheme, fine, 1.0)]
     if certify:
-        coarse = [
-            Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0) for shift in SHIFTS
-        ]
-        runs += [(other, best, half, COARSE) for other in coarse]
+        for shift in SHIFTS:
+            coarse = Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0)
+            runs.append((coarse, best, half, COARSE))
         if scheme is not best:
-            runs += [(Model.of(scene, spacing, parts=True), best, fine, 1.0)]
-    ends = np.cumsum([0.0, *(share for *_, share in runs)]) / sum(share for *_, share in runs)
+            runs.append((Model.of(scene, spacing, parts=True), best, fine, 1.0))
+    ends = np.cumsum([0.0, *(share for *_, share in runs)])
 
     def part(k: int) -> Progress:
         """Return the progress of one of several runs by its share of the work; the later ones are checks."""
-        told, own, words = progress or silent, ends[k + 1] - ends[k], " for the error" * (k > 0)
-        return lambda share, said: told(float(ends[k] + own * share), said + words)
+        begun, end = ends[k : k + 2] / ends[-1]
+        told, words = progress or silent, " for the error" * (k > 0)
+        return lambda share, said: told(float(begun + (end - begun) * share), said + words)
 
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
     )
-    certificate = UNKNOWN
-    if certify:
-        certificate = _estimate(model, path, h, rows, *(other for other, _ in others))
+    certificate = _estimate(model, path, h, rows, [other for other, _ in others])
     kind, names = (
-        (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
+        (Simulation, TRANSIENT_UNITS) if not model.sprung else (SprungSimulation, SERIES_UNITS)
     )
     return kind(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
@@ -210,36 +208,26 @@ def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float,
     return found
 
 
-def _instants(
-    scene: Scene, path: BaseMotion, h: float, at: Sequence[float] | None
-) -> tuple[list[float], list[float]]:
-    """Return the instants on which steps end, in order, and those that are reported, as asked for."""
-    end = scene.run.duration if at is None else max(at)
-    breaks = [t for t in path.changes if t < end]
-    if at is not None:
-        return sorted({*breaks, *at, 0.0}), list(at)
+def _instants(scene: Scene, path: BaseMotion, h: float) -> list[float]:
+    """Return regular instants, which are ends of steps, for each piece of the drive."""
+    end = scene.run.duration
     stride = h * 2.0 * math.ceil(end / h / ROWS / 2.0)
-    regular = [
+    found = [
         start + k * stride
-        for start, stop in itertools.pairwise([*breaks, end])
+        for start, stop in itertools.pairwise([*(t for t in path.changes if t < end), end])
         for k in range(math.ceil((stop - start) / stride * (1.0 - 1e-9)))
     ]
-    return [*regular, end], [*regular, end]
+    return [*found, end]
 
 
 def _timetable(
-    path: BaseMotion, stops: Sequence[float], wanted: list[float], h: float, graded: dict[float, float]
-) -> Timetable:  # fmt: skip
-    """Return steps of at most h, or of the graded lengths, that end on the stops."""
-    asked, times, lengths, after, about = (
-        set(wanted),
-        [0.0],
-        list[float](),
-        list[int](),
-        list[Any](),
-    )
+    path: BaseMotion, wanted: list[float], h: float, graded: dict[float, float]
+) -> Timetable:
+    """Return steps of at most h, or of the graded lengths, that end on the wanted instants."""
+    asked, end = set(wanted), max(wanted)
+    times, lengths, after, about = [0.0], list[float](), list[int](), list[Any]()
     start, step = 0.0, graded.get(0.0, h)
-    for stop in sorted({*stops, *graded}):
+    for stop in sorted({0.0, *asked, *graded, *(t for t in path.changes if t < end)}):
         if stop - start > TOGETHER * step:
             # An even number of steps, so that half as many fit too.
             count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
@@ -263,11 +251,10 @@ def _run(
 ) -> tuple[Rows, ElementRow]:  # fmt: skip
     """Take all steps and report at the wanted instants; if the indenter sinks deep, store more elements."""
     times, steps, _, about = table
-    limits, place = stability.limits(model, path), {t: k for k, t in enumerate(about[:, 0])}
-    kept, deepest = KEPT_DEPTH, min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
+    kept, deepest = KEPT_DEPTH, BALL_DEEPEST if model.across else DEEPEST
     while True:
         row = ElementRow(model, path, scheme, kept)
-        course = course_of(path, row.stored.law, *table, limits)
+        course = course_of(path, row.stored.law, *table, stability.limits(model, path))
         balances = np.zeros((2, kernels.WINDOW))
         found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
@@ -279,25 +266,20 @@ def _run(
             if done:
                 progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
         if status == kernels.DONE:
-            return dict(zip(COLUMNS, found[[place[time] for time in wanted]].T, strict=True)), row
+            asked = found[np.searchsorted(about[:, 0], wanted)]
+            return dict(zip(COLUMNS, asked.T, strict=True)), row
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status,
-                scheme,
-                model,
-                path,
-                float(steps.max()),
-                times[done],
-                row.state,
-                balances,
-                deepest,
-            )
+                status, scheme, model, path, float(steps.max()), times[done], row.state, balances, deepest
+            )  # fmt: skip
             error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
             raise error
 
 
-def _estimate(model: Model, path: BaseMotion, h: float, rows: Rows, *others: Rows) -> Certificate:
+def _estimate(
+    model: Model, path: BaseMotion, h: float, rows: Rows, others: list[Rows]
+) -> Certificate:
     """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
 
     An edge that exists in one of two runs only is not compared.
@@ -305,11 +287,11 @@ def _estimate(model: Model, path: BaseMotion, h: float, rows: Rows, *others: Row
     Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
     sum of both differences, |e - 4 c| + |e - c|, is at least 3/4 |e|. For the best scheme it is 3 |e|.
     """
+    if not others:
+        return UNKNOWN
     scale, differences = scales(model.at_rest), {}
     for name in scale:
-        apart = [
-            float(np.nanmax(np.abs(rows[name] - other[name]), initial=0.0)) for other in others
-        ]
+        apart = [float(np.nanmax(abs(rows[name] - other[name]), initial=0.0)) for other in others]
         differences[name] = max(apart[: len(SHIFTS)]) + sum(apart[len(SHIFTS) :])
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
     known = KNOWN if (model.law.damping > 0.0 or (model.law.arm_time < h).any()) else 0.0
