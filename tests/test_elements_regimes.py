@@ -159,20 +159,6 @@ def test_table_1_against_the_continuum():
     np.testing.assert_allclose(run.velocity, theory.velocity, rtol=1e-15)
 
 
-@pytest.mark.parametrize("velocity", [0.1, -0.07])
-@pytest.mark.parametrize("support", [kv.Fixed("0.2 mm"), kv.DeadWeight("0.1 kg/mm")])
-def test_a_wedge_slides_steadily_on_its_tip(support, velocity):
-    """Its pressure ends at the tip with a jump, which whole elements find to the first order only."""
-    scene = kv.Scene(kv.Wedge(0.1), support=support, drive=kv.Drive(velocity), run=kv.Run(0.4))
-    state = kv.steady(scene)
-    for density in ("50 /mm", "83 /mm"):
-        run = kv.elements(scene, per_length=density, at=[0.39991])
-        assert run.friction_force == pytest.approx(state.friction_force, rel=2e-4)
-        assert run.normal_force == pytest.approx(state.load, rel=2e-4)
-        assert run.depth == pytest.approx(state.depth, rel=2e-4)
-        assert run.trailing_edge == pytest.approx(0.0, abs=1e-9)
-
-
 def test_a_start_faster_than_elements_pass_is_resolved():
     """The dampers stop the ball in a thirtieth of the time in which two elements pass."""
     scene = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(load="9.8 N"))

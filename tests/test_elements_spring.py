@@ -158,19 +158,6 @@ def test_fast_arms_are_the_damper_of_the_continuum_in_first_order(scene, name, t
     assert far[0] / far[1] == pytest.approx(2.0, abs=0.4 if name == "spring_force" else 0.2)
 
 
-@pytest.mark.parametrize("shape", [kv.Circle(0.01), kv.Wedge(0.1)])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_it_ends_in_the_steady_sliding_of_quadrature(shape, direction):
-    drive = kv.Drive(velocity=direction * 0.1, stiffness=1e7, damping=1e5)
-    scene = kv.Scene(shape, drive=drive, run=kv.Run(0.5))
-    steady = kv.steady(scene, method="quadrature")
-    end = kv.elements(scene, per_length="50 /mm", at=[0.5], certify=False)
-    assert end.spring_force[0] == pytest.approx(float(steady.friction_force), rel=2e-3)
-    assert end.friction_force[0] == pytest.approx(float(steady.friction_force), rel=6e-3)
-    assert end.sliding_velocity[0] == pytest.approx(direction * 0.1, rel=1e-3)
-    assert direction * (end.trailing_edge[0] - end.leading_edge[0]) > 0.0
-
-
 def test_a_stiff_spring_meets_the_rigid_drive_at_first_order():
     found = []
     how = {"per_length": "50 /mm", "at": [0.01, 0.02], "time_step": "0.4 ms", "certify": False}
