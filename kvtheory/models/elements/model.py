@@ -81,12 +81,11 @@ class Model:
         support, given, drive = scene.support, scene.foundation, scene.drive
         arms = [(arm.stiffness, arm.relaxation_time) for arm in given.arms]
         law = Element.of(given.stiffness, 0.0 if arms else given.damping, arms)
-        along = {} if drive.rigid else {
-            "mass_along": scene.drive_mass, "spring_along": drive.stiffness or 0.0,
-            "damping_along": drive.damping,
-        }  # fmt: skip
         model = cls(scene.indenter, law, 1.0, support.mass, support.weight, 0.0, support.depth or 1.0,
-                    parts, shift, **along)  # fmt: skip
+                    parts, shift)  # fmt: skip
+        if not drive.rigid:
+            model = replace(model, mass_along=scene.drive_mass, spring_along=drive.stiffness or 0.0,
+                            damping_along=drive.damping)  # fmt: skip
         if not all(map(math.isfinite, span(model.indenter, model.depth))):
             raise ValueError(out_of_range(scene))
         depth = model.depth if scene.held else model.sliding_depth(0.0)
@@ -97,13 +96,13 @@ class Model:
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        model = replace(model, spacing=coarser * dx, spring=0.0 if scene.held else support.spring)
+        model = replace(model, spacing=coarser * dx)
         if not scene.indenter.per_width:
             dy = model.half_width(depth) * min(PER_STRIP * dx / high, 1.0 / FEWEST_STRIPS)
             model = replace(model, across=coarser * (1.0 + 0.5 * shift) * dy)
         if not scene.held:
             depth = root(lambda d: model.static_load(d) - model.weight, depth)
-        model = replace(model, depth=depth)
+            model = replace(model, spring=support.spring, depth=depth)
         at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
         return replace(model, at_rest=at_rest)
 
@@ -228,10 +227,8 @@ class Model:
         dx, dy = (high - low) / (along - 1), self.half_width(depth) / strips
         if strips > 1:
             across = kernels.weigh(np.empty(strips), dy, 0.0)
-        x, y = (
-            np.tile(np.linspace(low, high, along), strips),
-            np.repeat(dy * np.arange(strips), along),
-        )
+        x = np.tile(np.linspace(low, high, along), strips)
+        y = np.repeat(dy * np.arange(strips), along)
         return self.height(x, y), self.slope(x, y), np.repeat(dx * across, along)
 
 

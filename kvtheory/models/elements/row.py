@@ -134,9 +134,8 @@ class ElementRow:
             If the indenter sinks deeper than the row was made for.
         """
         self.state[:4] = state[1:]
-        course = course_of(
-            self.path, self.stored.law, state.time + np.array([0.0, h]), np.array([h])
-        )
+        times = state.time + np.array([0.0, h])
+        course = course_of(self.path, self.stored.law, times, np.array([h]))
         if self.run(course, np.zeros((0, 1)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))

@@ -25,12 +25,9 @@ RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
-
-GROWS = 1e-10
-"""Growth per step above which it is not rounding."""
-SHORTEST, LIMIT_RTOL = 1e-6, 1e-9
-"""Search for the largest stable step: least step times the fastest rate, and relative tolerance."""
-
+GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
+"""Search for the largest stable step: growth per step above rounding, least step times the fastest rate, and
+relative tolerance."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
@@ -38,16 +35,11 @@ ELEMENTS = 4.0
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
-    What stands here for the length of a line contact is the area (m^2) of a ball.
-    Each is the longest over the velocities of the drive; between those the velocity is linear, and
-    the length falls with |V|. A drive that passes through rest has the contact at rest among them, and
-    so has an indenter on a spring, which may stick. A step that is too long for the latter only, at a
-    start, is unstable at first and may recover.
+    Of a ball, they are areas (m^2). Each is the longest over the velocities of the drive, at the slowest
+    motion in each direction; an indenter on a spring may stick, which is a contact at rest. A step that is
+    too long at the static depth only is unstable at first and may recover.
     """
-    velocities = path.velocities
-    if model.sprung:
-        velocities = [0.0, *velocities]
-    # The slowest motion in each direction has the longest contact.
+    velocities = [0.0, *path.velocities] if model.sprung else path.velocities
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
               max((V for V in velocities if V <= 0.0), default=velocities[0])}  # fmt: skip
     held = math.isinf(model.mass)
@@ -93,9 +85,8 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
     """
     start, rates = np.eye(2 + model.law.arm_stiffness.size), list[Array]()
     for c, *a in scheme.table:
-        at = start[:2] + h * sum(
-            (x * rate for x, rate in zip(a, rates, strict=False)), 0.0 * start[:2]
-        )
+        moved = (x * rate for x, rate in zip(a, rates, strict=False))
+        at = start[:2] + h * sum(moved, 0.0 * start[:2])
         step = model.law.step(c * h)
         arms = step.held[:, None] * start[2:] + step.ramp[:, None] * (at[0] - start[0])
         force = length * (model.law.pressure(*at) + arms.sum(axis=0)) + model.spring * at[0]
@@ -126,17 +117,16 @@ def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
     of = f"{length * 1e3:.4g} mm" if model.indenter.per_width else f"{length * 1e6:.4g} mm^2"
     return (
-        f"its time step, {h * 1e3:.4g} ms, {has} for a contact "
-        f'of L = {of}, where the scheme "{scheme.row.name}" is stable up to '
-        f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
-        f'"{DEFAULT}", which is stable at any step'
+        f"its time step, {h * 1e3:.4g} ms, {has} for a contact of L = {of}, where the scheme "
+        f'"{scheme.row.name}" is stable up to dt = {limit * 1e3:.4g} ms; a time step of '
+        f'{ADVISED * limit * 1e3:.3g} ms would do, or the scheme "{DEFAULT}", which is stable at any step'
     )
 
 
 def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
-    """Return the speeds, upward and along, that no stable run reaches, and the imbalance that it stays below.
+    """Return the speeds, upward and along, and the imbalance that no stable run reaches.
 
-    They are for `kernels.advance`; a run with a mistake in the rule of contact has none.
+    A run with a mistake in the rule of contact has no limits.
     """
     if model.rule != RIGHT:
         return -math.inf, math.inf, math.inf
