@@ -1,5 +1,7 @@
 """`kv.elements` on a Prony series: the law of one element, its schemes, and runs against other methods."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
@@ -13,8 +15,8 @@ from kvtheory.models.elements.stability import amplification, lengths, limit_at
 from kvtheory.results.table import scales
 from kvtheory.theory.laws import Element
 from tests import prony_elements
+from tests.spring_random import of_unit_scales
 
-LOAD = 4.0 / 3.0
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 ARMS = [(3e10, 0.01), (1e10, 0.1)]
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
@@ -40,11 +42,11 @@ def left_alone(law, state, h):
 
 
 def scaled(history, support="dead-weight", arms=((3.0, 0.2), (0.5, 2.0)), end=1.0):
-    """Return a scene with static half length and depth 1 and static load 4/3."""
-    held = {"fixed": kv.Fixed(1.0), "dead-weight": kv.DeadWeight(0.1 * LOAD, 10.0),
-            "suspended": kv.Suspended(0.1 * LOAD, LOAD, 10.0)}[support]  # fmt: skip
-    foundation = kv.GeneralizedMaxwell(1.0, arms=arms)
-    return kv.Scene(kv.Parabola(0.5), foundation, held, kv.Drive(history=history), kv.Run(end))
+    """Return a scene with static half length, depth and load 1."""
+    kappa = {"fixed": np.inf, "dead-weight": 0.0, "suspended": 1.0}[support]
+    scene = of_unit_scales(0.1, kappa, kv.Drive(history=history), end)
+    rubber = kv.GeneralizedMaxwell(0.75, [(0.75 * K, tau) for K, tau in arms])
+    return replace(scene, foundation=rubber)
 
 
 # The law of one element
