@@ -177,8 +177,8 @@ COMPILED = {
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
-INLINED = ("implicit_step", "_lay", "relax", "_judge_edges", "_sink", "_slide", "finish", "begin",
-           "find_runs")  # fmt: skip
+INLINED = ("implicit_step", "_thresholds", "relax", "_judge_edges", "_solve_depth", "_solve_along",
+           "finish", "begin", "find_runs")  # fmt: skip
 """Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
@@ -276,7 +276,7 @@ def slopes(e: Elements, j: int, low: int, high: int, place: float) -> None:
 # The row
 
 
-def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -> int:
+def update_window(e: Elements, now: float, places: tuple[float, float], depth: float) -> int:
     """Bring up to date the elements that an indenter of at most this depth can meet at both places."""
     if not (depth < e.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
         return OUTGROWN
@@ -318,7 +318,7 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
 
 
 def find_runs(e: Elements) -> None:
-    """Write the runs of pressed elements; those at both ends of the strips are taken to be out of them."""
+    """Write the runs of pressed elements; the first and last element of a strip belong to none."""
     count = start = 0
     for j in range(e.counts[STRIPS]):
         pressed = e.pressed[j]
@@ -333,8 +333,8 @@ def find_runs(e: Elements) -> None:
     e.counts[ENDED] = min(count, e.ended.shape[0])
 
 
-def _crowded(e: Elements) -> bool:
-    """Whether there are more runs than have room."""
+def _too_many_runs(e: Elements) -> bool:
+    """Whether there are more runs than the arrays hold."""
     e.counts[LOW], e.counts[HIGH] = e.low[0] + e.counts[FIRST], e.high[0] + e.counts[FIRST]
     return bool(e.counts[RUNS] > e.ended.shape[0])
 
@@ -379,7 +379,7 @@ def ramp_functions(z: float) -> tuple[float, float]:
     return phi_1, 0.5 * series
 
 
-def entered(before: float, rise: float) -> float:
+def share_in_contact(before: float, rise: float) -> float:
     """Return the share of a step in which an element was in contact, from its overlap at start and end."""
     return rise / (rise - min(before, 0.0)) if rise > 0.0 else 0.0
 
@@ -423,7 +423,7 @@ def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, f
             u[i] = choose(late[i], u[i], choose(pressed[i], depths[1] - height[i], free[i]))
         for i in flagged(late, low, high):
             if late[i]:
-                _turn(e, step, j, i, before, depths)
+                _change_contact(e, step, j, i, before, depths)
     begin(e)
 
 
@@ -435,7 +435,7 @@ def begin(e: Elements) -> None:
     e.counts[BEGUN] = e.counts[ENDED]
 
 
-def _turn(
+def _change_contact(
     e: Elements, step: ElementStep, j: int, i: int, before: float, depths: tuple[float, float]
 ) -> None:
     """Complete a step for an element that comes into contact in it or detaches.
@@ -448,7 +448,7 @@ def _turn(
     if e.pressed[j, i]:
         relax(e, step, j, i, i + 1, e.meets[j])
         g, left = depths[1] - e.height[j, i], e.meets[j, i]
-        share = entered(gap(e, j, i, before, depths[0]), g - left)
+        share = share_in_contact(gap(e, j, i, before, depths[0]), g - left)
         for k in range(old.size):
             y = 0.0
             for m in range(old.size):
@@ -524,12 +524,12 @@ def implicit_step(
         travel = place - (Y[0] - along)
         sinks = min(most, ROOM * e.depth)
         while True:
-            status = attend(e, now, (place, place - travel), depth + sinks)
+            status = update_window(e, now, (place, place - travel), depth + sinks)
             if status != DONE:
                 return status
             first = min(h * state[RATE], sinks)
-            theta = _lay(e, law, known, depth, (place, travel), first)
-            sunk = _sink(e, law, theta, first, state)
+            theta = _thresholds(e, law, known, depth, (place, travel), first)
+            sunk = _solve_depth(e, law, theta, first, state)
             # If elements were missed, it sinks too deep, never too little.
             known = not sunk > sinks or sinks == most
             if known:
@@ -538,10 +538,10 @@ def implicit_step(
         if not sprung:
             break
         before = slid
-        slid, new_along_rate = _slide(e, law, (place, travel), state, sunk, slid)
+        slid, new_along_rate = _solve_along(e, law, (place, travel), state, sunk, slid)
         if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     finish(e, law, place - travel, (depth, depth + sunk))
     if math.isfinite(e.mass):
@@ -554,7 +554,7 @@ def implicit_step(
     return DONE
 
 
-def _lay(
+def _thresholds(
     e: Elements, law: ElementStep, known: bool, depth: float, way: tuple[float, float], first: float
 ) -> float:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
@@ -594,7 +594,7 @@ def _lay(
     _press(e, first)
     find_runs(e)
     if arms:
-        _load_late(e, law, place - travel, depth, first)
+        _weigh_entering(e, law, place - travel, depth, first)
     if e.parts:
         _judge_edges(e, law, known, place - travel, depth, first)
     wide = max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN]))
@@ -652,7 +652,9 @@ def _extent(e: Elements, runs: Runs, count: int) -> float:
     return width
 
 
-def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first: float) -> None:
+def _weigh_entering(
+    e: Elements, law: ElementStep, place: float, depth: float, first: float
+) -> None:
     """Write to `before` the weight of each element: below 1 if it comes into contact within the step.
 
     Its arms are loaded during part of the step only.
@@ -663,7 +665,7 @@ def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first:
             e.before[j, i] = 1.0
         for i in flagged(e.late[j], e.low[j], e.high[j]):
             if e.late[j, i]:
-                share = entered(gap(e, j, i, place, depth), first - e.meets[j, i])
+                share = share_in_contact(gap(e, j, i, place, depth), first - e.meets[j, i])
                 stiff = 0.5 * e.law.stiffness
                 for k in range(e.arms.shape[0]):
                     _, phi_2 = ramp_functions(law.h * share / e.law.arm_time[k])
@@ -671,7 +673,7 @@ def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first:
                 e.before[j, i] = share * stiff / law.stiffness
 
 
-def _sink(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
+def _solve_depth(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
@@ -731,7 +733,7 @@ def _kinks(e: Elements, sunk: float) -> tuple[float, float, float, float]:
     return area, wider, bent, push
 
 
-def _slide(
+def _solve_along(
     e: Elements, law: ElementStep, way: tuple[float, float], state: Array, sunk: float, slid: float
 ) -> tuple[float, float]:  # fmt: skip
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
@@ -804,7 +806,7 @@ def explicit_step(
                 return status
             rates[i, RATE], rates[i, ALONG_RATE] = pull / M, drag / M_x
     find_runs(e)
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     finish(e, laws[2], begin, (state[DEPTH], at[DEPTH]))
     if math.isfinite(M):
@@ -824,7 +826,7 @@ def _stage(
 ) -> tuple[int, float, float]:  # fmt: skip
     """Find which elements press at a stage, and return M δ'' and M_x x'' there, after the status (Eq. 17)."""
     place = places[0] if within and e.rule.still else places[1]
-    status = attend(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
+    status = update_window(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
     if status != DONE:
         return status, 0.0, 0.0
     V, rule, arms = velocity - at[ALONG_RATE], e.rule, e.arms.shape[0]
@@ -847,7 +849,7 @@ def _stage(
             if not e.late[j, i]:
                 continue
             rise, stiff = at[DEPTH] - height[i] - left[i], 0.0
-            share = entered(gap(e, j, i, places[0], state[DEPTH]), rise)
+            share = share_in_contact(gap(e, j, i, places[0], state[DEPTH]), rise)
             for k in range(arms):
                 phi_1, _ = ramp_functions(law.h * share / e.law.arm_time[k])
                 stiff += e.law.arm_stiffness[k] * phi_1
@@ -883,7 +885,7 @@ def report(
     """
     time, V, V_before, forward = about[0], about[1], about[2], about[3]
     place = about[4] - state[ALONG]
-    status = attend(e, now, (place, place), state[DEPTH])
+    status = update_window(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
     sliding, peak, doubt, at_edge, edge_doubt = V - state[ALONG_RATE], 0.0, 0.0, 0.0, 0.0
@@ -896,7 +898,7 @@ def report(
         _pressure(e, state, law, place, sliding)
     force, push, left, right = 0.0, 0.0, math.nan, math.nan
     find_runs(e)
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     for r in range(e.counts[ENDED]):
         j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]

@@ -99,7 +99,7 @@ class ElementRow:
 
         In contact are those where `contact`(x) or, without it, those that are compressed.
         """
-        while kernels.attend(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
+        while kernels.update_window(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row = self.stored
         for each in (row.u, row.arms, row.touched):

@@ -123,7 +123,7 @@ def simulate(
     graded = _graded(model, path, h, max(wanted)) if own_step else {}
     times, steps, after, about = fine = _timetable(path, wanted, h, graded)
     h = float(steps.max(initial=0.0)) or h
-    warning = stability.doubts(scheme, model, path, h)
+    warning = stability.step_warning(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
     best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)

@@ -94,7 +94,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
     return np.vstack([at, arms])
 
 
-def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+def step_warning(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return a warning about a time step before the run begins, or an empty text."""
     if h > limit_at(scheme, model, max(lengths(model, path))):
         return f"the run may diverge: {describe(scheme, model, path, h)}"
