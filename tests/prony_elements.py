@@ -26,41 +26,30 @@ def run(scene, times, *, per_half_length=150, step=2e-3):
     low, high = motion.extremes(0.0, times[-1])
     dx = 1.0 / per_half_length
     X = dx * np.arange(np.floor((-REACH - high) / dx), np.ceil((REACH - low) / dx) + 1)
-    state = [1.0, 0.0, np.maximum(1.0 - X * X, 0.0) * np.ones_like(K_i)]
+    state = np.append([1.0, 0.0], np.maximum(1.0 - X * X, 0.0) * np.ones_like(K_i))
 
-    def pressed(t, d, y):
-        x = X + motion.displacement(t)
-        p = np.maximum(K_g * (d - x * x) - (K_i * y).sum(axis=0), 0.0)
-        return x, p
+    def pressed(t, now):
+        x, y = X + motion.displacement(t), now[2:].reshape(K_i.size, X.size)
+        return x, y, np.maximum(K_g * (now[0] - x * x) - (K_i * y).sum(axis=0), 0.0)
 
     def slopes(t, now):
-        d, v, y = now
-        _, p = pressed(t, d, y)
+        _, y, p = pressed(t, now)
         u = (p + (K_i * y).sum(axis=0)) / K_g
-        pull = 0.0 if held else (W - k_s * (d - 1.0) - dx * p.sum()) / M
-        return [v, pull, (u - y) / tau]
-
-    def moved(now, by, h):
-        return [a + h * b for a, b in zip(now, by, strict=True)]
-
-    def report(t, now):
-        x, p = pressed(t, now[0], now[2])
-        return now[0], now[1], dx * p.sum(), -2.0 * dx * (x @ p), p.max()
+        pull = 0.0 if held else (W - k_s * (now[0] - 1.0) - dx * p.sum()) / M
+        return np.append([now[1], pull], (u - y) / tau)
 
     rows, t = [], 0.0
-    stops = sorted({*times, *(c for c in motion.changes if c < times[-1])})
-    for stop in stops:
+    for stop in sorted({*times, *(c for c in motion.changes if c < times[-1])}):
         count = int(np.ceil((stop - t) / step))
         for k in range(count):
             h, at = (stop - t) / count, t + k * (stop - t) / count
             k1 = slopes(at, state)
-            k2 = slopes(at + 0.5 * h, moved(state, k1, 0.5 * h))
-            k3 = slopes(at + 0.5 * h, moved(state, k2, 0.5 * h))
-            k4 = slopes(at + h, moved(state, k3, h))
-            mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
-            state = moved(state, mean, h)
+            k2 = slopes(at + 0.5 * h, state + 0.5 * h * k1)
+            k3 = slopes(at + 0.5 * h, state + 0.5 * h * k2)
+            state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + slopes(at + h, state + h * k3))
         t = stop
         if stop in times:
-            rows.append(report(t, state))
+            x, _, p = pressed(t, state)
+            rows.append((*state[:2], dx * p.sum(), -2.0 * dx * (x @ p), p.max()))
     names = ("depth", "depth_rate", "normal_force", "friction_force", "peak_pressure")
     return dict(zip(names, np.array(rows).T, strict=True))

@@ -9,15 +9,14 @@ from scipy.linalg import expm
 
 import kvtheory as kv
 from kvtheory.charts.stability import growth
-from kvtheory.models.elements.kernels import exponential_fit
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import amplification, lengths, limit_at
 from kvtheory.results.table import scales
 from kvtheory.theory.laws import Element
 from tests import prony_elements
+from tests.spring_random import of_unit_scales
 
-LOAD = 4.0 / 3.0
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 ARMS = [(3e10, 0.01), (1e10, 0.1)]
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
@@ -43,11 +42,11 @@ def left_alone(law, state, h):
 
 
 def scaled(history, support="dead-weight", arms=((3.0, 0.2), (0.5, 2.0)), end=1.0):
-    """Return a scene with static half length and depth 1 and static load 4/3."""
-    held = {"fixed": kv.Fixed(1.0), "dead-weight": kv.DeadWeight(0.1 * LOAD, 10.0),
-            "suspended": kv.Suspended(0.1 * LOAD, LOAD, 10.0)}[support]  # fmt: skip
-    foundation = kv.GeneralizedMaxwell(1.0, arms=arms)
-    return kv.Scene(kv.Parabola(0.5), foundation, held, kv.Drive(history=history), kv.Run(end))
+    """Return a scene with static half length, depth and load 1."""
+    kappa = {"fixed": np.inf, "dead-weight": 0.0, "suspended": 1.0}[support]
+    scene = of_unit_scales(0.1, kappa, kv.Drive(history=history), end)
+    rubber = kv.GeneralizedMaxwell(0.75, [(0.75 * K, tau) for K, tau in arms])
+    return replace(scene, foundation=rubber)
 
 
 # The law of one element
@@ -120,27 +119,6 @@ def test_kelvin_voigt_is_the_limit_of_a_stiff_and_fast_arm_in_first_order(h):
 # Schemes
 
 
-def test_no_implicit_step_amplifies_on_any_arms():
-    """The matrix of a step of the implicit schemes, the contact held."""
-    rng = np.random.default_rng(3)
-    for _ in range(500):
-        law, (M, L, k_s, h) = random_law(rng), 10.0 ** rng.uniform([-4, -2, -2, -4], [3, 1, 2, 3])
-        step, count = law.step(h), law.arm_stiffness.size
-        for theta in (0.5, exponential_fit(h * step.damping * L / M), 1.0):
-            # Columns: d, v, s_i at the start; unknown are the depth and the rate at the end.
-            stiff = L * step.stiffness + theta * k_s
-            new = np.array([[stiff, M / h], [1.0, -h * theta]])
-            old = np.zeros((2, 2 + count))
-            old[0, :2] = stiff - L * law.stiffness - k_s, M / h
-            old[0, 2:] = -L * step.weights
-            old[1, :2] = 1.0, h * (1.0 - theta)
-            whole = np.zeros((2 + count, 2 + count))
-            whole[:2] = np.linalg.solve(new, old)
-            whole[2:, 2:] = np.diag(step.held)
-            whole[2:] += step.ramp[:, None] * (whole[0] - np.eye(2 + count)[0])
-            assert np.abs(np.linalg.eigvals(whole)).max() <= 1.0 + 1e-9
-
-
 @pytest.mark.parametrize("arms", [ARMS, [(1e14, 1e-5)], [(1e12, 1e-3)]])
 def test_measured_stability_limit_of_the_papers_scheme_is_the_derived_one(arms):
     """By two runs side by side, whose difference grows or does not."""
@@ -164,35 +142,6 @@ def test_the_matrix_of_a_step_has_the_stability_polynomial_of_kelvin_voigt():
         R = np.polynomial.polynomial.polyval(h * sigma, SCHEMES[name].stability_polynomial)
         found = np.linalg.eigvals(amplification(SCHEMES[name], model, length, h))
         assert np.sort(found) == pytest.approx(np.sort(R), rel=1e-10)
-
-
-# Against exact steady sliding
-
-
-def test_many_arms_over_ten_decades_end_in_exact_steady_sliding():
-    arms = [(2e9, float(tau)) for tau in np.geomspace(1e-9, 1e-1, 20)]
-    scene = replace(
-        kv.Scene.table1("fixed"),
-        foundation=kv.GeneralizedMaxwell(1e10, arms=arms),
-        run=kv.Run(0.05),
-    )
-    steady = kv.steady(scene)
-    end = kv.elements(scene, per_length="50 /mm", at=[0.05])
-    for column, name in (("normal_force", "load"), ("friction_force", "friction_force")):
-        claimed = end.certificate.relative_error[column] * scales(Model.of(scene).at_rest)[column]
-        error = abs(getattr(end, column)[0] - getattr(steady, name))
-        assert error <= claimed
-        assert error < 2e-3 * abs(getattr(steady, name))
-
-
-def test_the_order_is_two():
-    """The force of a fixed indenter, spacing and step halved together, against exact."""
-    scene = replace(kv.Scene.table1("fixed"), foundation=RUBBER, run=kv.Run(0.1))
-    truth, errors = kv.steady(scene).load, []
-    for density in (2e4, 4e4, 8e4):
-        end = kv.elements(scene, per_length=density, at=[0.1], certify=False)
-        errors.append(abs(end.normal_force[0] / truth - 1.0))
-    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2.0, 2.0], abs=0.25)
 
 
 # Against brute force, in time

@@ -93,7 +93,7 @@ def _walk(
     """Yield steps from rest or steady sliding, with initial velocity `nudge`, until it sinks too deep."""
     scheme = SCHEMES[name]
     model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
-    row = ElementRow(model, model.path(scene), DEEP)
+    row = ElementRow(model, model.path(scene), scheme, DEEP)
     state = IndenterState(0.0, model.depth, nudge)
     if steady is not None:
         depth, front, back = map(float, (steady.depth, steady.leading_edge, steady.trailing_edge))
@@ -109,7 +109,7 @@ def _walk(
     with np.errstate(all="ignore"):
         while True:
             try:
-                state = row.step(scheme, state, time_step)
+                state = row.step(state, time_step)
             except (OutgrownError, OverflowError, ValueError):  # of a depth that is not a number
                 return
             yield state

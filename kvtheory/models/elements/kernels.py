@@ -55,8 +55,6 @@ TIE = 1e-9
 """Relative tolerance within which an element counts as on the surface."""
 AT_REST = 1e-12
 """Share of a_0/tau: slower sliding on a spring counts as rest, where the drive tells which edge leads."""
-WHOLE = (0.5, 0.0, 0.0, 0.0, 0.0)
-"""The end of a run of whole elements, as `_end` returns it: half an element beyond the last."""
 WINDOW = 40
 """Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
@@ -82,9 +80,8 @@ class Elements(NamedTuple):
 
     Arrays over strips and elements: `u` is the compression, `touched` whether an element is in contact;
     `arms` are then the forces of its arms, else its modes. Elements `low` to `high` of a strip are near the
-    indenter and up to date; one elsewhere is as it was at `since`. An element may stay in contact above the
-    plane z = 0, so that all in contact are in `first` to `last`. `numbers` holds i + shift of the elements of
-    a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
+    indenter and up to date; one elsewhere is as it was at `since`. `numbers` holds i + shift of the elements
+    of a strip, `ones` as many ones. From `height` on all is work space, so that a step allocates nothing.
     """
 
     u: Array
@@ -93,8 +90,6 @@ class Elements(NamedTuple):
     touched: Flags
     low: Runs
     high: Runs
-    first: Runs
-    last: Runs
     counts: Runs
     numbers: Array
     ones: Array
@@ -117,12 +112,9 @@ class Elements(NamedTuple):
     rule: ContactRule
     tableau: Array
     fitted: bool
-    explicit: bool
     spacing: float
-    shift: float
     across: float
     parts: bool
-    per_width: bool
     mass: float
     weight: float
     spring: float
@@ -185,17 +177,8 @@ COMPILED = {
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
-INLINED = (
-    "implicit_step",
-    "_lay",
-    "relax",
-    "_judge_edges",
-    "_sink",
-    "_slide",
-    "finish",
-    "begin",
-    "find_runs",
-)
+INLINED = ("implicit_step", "_thresholds", "relax", "_judge_edges", "_solve_depth", "_solve_along",
+           "finish", "begin", "find_runs")  # fmt: skip
 """Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
@@ -242,9 +225,11 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
         return 0.0
     if s.exponent == 2.0:
         return math.sqrt(2.0 * s.size * depth)
-    if s.exponent == 0.0:
-        return min(math.sqrt(min(depth, s.size) * (2.0 * s.size - min(depth, s.size))), s.inside)
-    return min(s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent), s.inside)
+    deep = min(depth, s.size)
+    far = math.sqrt(deep * (2.0 * s.size - deep))
+    if s.exponent:
+        far = s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent)
+    return min(far, s.inside)
 
 
 def weigh(weights: Array, dy: float, rim: float) -> Array:
@@ -291,15 +276,15 @@ def slopes(e: Elements, j: int, low: int, high: int, place: float) -> None:
 # The row
 
 
-def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -> int:
+def update_window(e: Elements, now: float, places: tuple[float, float], depth: float) -> int:
     """Bring up to date the elements that an indenter of at most this depth can meet at both places."""
     if not (depth < e.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
         return OUTGROWN
     s, dx, first, (stored, width) = e.surface, e.spacing, e.counts[FIRST], e.u.shape
     left, right = extent(s, e.profile, depth, -1.0), extent(s, e.profile, depth, 1.0)
-    strips = 1 + int(s.stretch * right / e.across) if e.across else 1
-    for j in range(strips, stored):
-        strips = j + 1 if e.first[j] < e.last[j] else strips
+    strips, runs, r = 1 + int(s.stretch * right / e.across) if e.across else 1, e.counts[BEGUN], 0
+    if runs:  # an element may stay in contact above the plane z = 0
+        strips = max(strips, e.begun[runs - 1, 0] + 1)
     for j in range(stored):
         low = high = e.low[j]
         if j < strips:
@@ -307,8 +292,9 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
             bent = math.sqrt(max(1.0 - share * share, 0.0))
             low = math.floor((-left * bent - max(places[0], places[1])) / dx) - SPARE - first
             high = math.ceil((right * bent - min(places[0], places[1])) / dx) + SPARE + 1 - first
-            if e.first[j] < e.last[j]:
-                low, high = min(low, e.first[j] - SPARE), max(high, e.last[j] + SPARE)
+            while r < runs and e.begun[r, 0] == j:
+                low, high = min(low, e.begun[r, 1] - SPARE), max(high, e.begun[r, 2] + SPARE)
+                r += 1
             if low < 0 or high > width or strips > stored:
                 e.counts[LOW], e.counts[HIGH], e.counts[STRIPS] = low + first, high + first, strips
                 return LACKING
@@ -332,7 +318,7 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
 
 
 def find_runs(e: Elements) -> None:
-    """Write the runs of pressed elements; those at both ends of the strips are taken to be out of them."""
+    """Write the runs of pressed elements; the first and last element of a strip belong to none."""
     count = start = 0
     for j in range(e.counts[STRIPS]):
         pressed = e.pressed[j]
@@ -347,8 +333,8 @@ def find_runs(e: Elements) -> None:
     e.counts[ENDED] = min(count, e.ended.shape[0])
 
 
-def _crowded(e: Elements) -> bool:
-    """Whether there are more runs than have room."""
+def _too_many_runs(e: Elements) -> bool:
+    """Whether there are more runs than the arrays hold."""
     e.counts[LOW], e.counts[HIGH] = e.low[0] + e.counts[FIRST], e.high[0] + e.counts[FIRST]
     return bool(e.counts[RUNS] > e.ended.shape[0])
 
@@ -360,15 +346,26 @@ def gap(e: Elements, j: int, i: int, place: float, depth: float) -> float:
     return w
 
 
-def gaps(
-    e: Elements, j: int, i: int, out: int, place: float, depth: float
-) -> tuple[float, float, float]:
+def gaps(e: Elements, j: int, i: int, out: int, place: float, depth: float) -> Any:
     """Return the overlap of an element and of the next two in the direction `out`, -1 or 1."""
     w, far = gap(e, j, i, place, depth), gap(e, j, i + out, place, depth)
     return w, far, gap(e, j, i + 2 * out, place, depth)
 
 
 # An element over a step
+
+
+def _follow(e: Elements, j: int, at: Array, places: tuple[float, float], V: float) -> None:
+    """Write height and slope at two places, and to `meets` p = K g + C g' of elements on the indenter.
+
+    g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12).
+    """
+    height, slope, p = e.height[j], e.slope[j], e.meets[j]
+    heights(e, j, places[0])
+    slopes(e, j, e.low[j], e.high[j], places[1])
+    for i in over(e.low[j], e.high[j]):
+        g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
+        p[i] = e.law.stiffness * g + e.law.damping * g_rate
 
 
 def ramp_functions(z: float) -> tuple[float, float]:
@@ -382,7 +379,7 @@ def ramp_functions(z: float) -> tuple[float, float]:
     return phi_1, 0.5 * series
 
 
-def entered(before: float, rise: float) -> float:
+def share_in_contact(before: float, rise: float) -> float:
     """Return the share of a step in which an element was in contact, from its overlap at start and end."""
     return rise / (rise - min(before, 0.0)) if rise > 0.0 else 0.0
 
@@ -416,13 +413,8 @@ def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, f
         for i in over(low, high):
             late[i], rise[i], free[i] = pressed[i] != touched[i], depths[1] - height[i] - u[i], 0.0
         for k in range(e.arms.shape[0]):
-            arm, share, held, ramp, fall = (
-                e.arms[k, j],
-                e.law.shares[k],
-                step.held[k],
-                step.ramp[k],
-                step.fall[k],
-            )
+            arm, share = e.arms[k, j], e.law.shares[k]
+            held, ramp, fall = step.held[k], step.ramp[k], step.fall[k]
             for i in over(low, high):
                 new = choose(touched[i], held * arm[i] + ramp * rise[i], fall * arm[i])
                 arm[i] = choose(late[i], arm[i], new)
@@ -431,22 +423,19 @@ def finish(e: Elements, step: ElementStep, before: float, depths: tuple[float, f
             u[i] = choose(late[i], u[i], choose(pressed[i], depths[1] - height[i], free[i]))
         for i in flagged(late, low, high):
             if late[i]:
-                _turn(e, step, j, i, before, depths)
+                _change_contact(e, step, j, i, before, depths)
     begin(e)
 
 
 def begin(e: Elements) -> None:
     """Take the runs at the end of a step for those at the start of the next."""
-    for j in range(e.counts[STRIPS]):
-        e.first[j] = e.last[j] = 0
     for r in range(e.counts[ENDED]):
-        j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
-        e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
-        e.begun[r, 0], e.begun[r, 1], e.begun[r, 2] = j, low, high
+        for n in range(3):
+            e.begun[r, n] = e.ended[r, n]
     e.counts[BEGUN] = e.counts[ENDED]
 
 
-def _turn(
+def _change_contact(
     e: Elements, step: ElementStep, j: int, i: int, before: float, depths: tuple[float, float]
 ) -> None:
     """Complete a step for an element that comes into contact in it or detaches.
@@ -459,7 +448,7 @@ def _turn(
     if e.pressed[j, i]:
         relax(e, step, j, i, i + 1, e.meets[j])
         g, left = depths[1] - e.height[j, i], e.meets[j, i]
-        share = entered(gap(e, j, i, before, depths[0]), g - left)
+        share = share_in_contact(gap(e, j, i, before, depths[0]), g - left)
         for k in range(old.size):
             y = 0.0
             for m in range(old.size):
@@ -523,19 +512,24 @@ def implicit_step(
     gained = state[GAINED] * h / max(state[LAST], h)
     guess = state[ALONG_RATE] + gained / 2.0 + 5.0 / 12.0 * state[CURVED]  # Adams-Bashforth
     slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
-    most, sunk, new_along_rate, known = _deepest_fall(e, state, h), 0.0, 0.0, False
+    most, sunk, new_along_rate, known = 0.0, 0.0, 0.0, False
+    if math.isfinite(e.mass):  # how far it could sink without a foundation, at any θ from 1/2 to 1
+        q = e.spring * h * h / e.mass
+        pull = max(e.weight + e.spring * (e.depth - depth), 0.0)
+        falls = (1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)) * pull * h * h / e.mass
+        most = h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + falls
     _weigh(e, depth + 0.5 * h * state[RATE])
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
         sinks = min(most, ROOM * e.depth)
         while True:
-            status = attend(e, now, (place, place - travel), depth + sinks)
+            status = update_window(e, now, (place, place - travel), depth + sinks)
             if status != DONE:
                 return status
             first = min(h * state[RATE], sinks)
-            theta = _lay(e, law, known, depth, (place, travel), first)
-            sunk = _sink(e, law, theta, first, state)
+            theta = _thresholds(e, law, known, depth, (place, travel), first)
+            sunk = _solve_depth(e, law, theta, first, state)
             # If elements were missed, it sinks too deep, never too little.
             known = not sunk > sinks or sinks == most
             if known:
@@ -544,10 +538,10 @@ def implicit_step(
         if not sprung:
             break
         before = slid
-        slid, new_along_rate = _slide(e, law, (place, travel), state, sunk, slid)
+        slid, new_along_rate = _solve_along(e, law, (place, travel), state, sunk, slid)
         if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     finish(e, law, place - travel, (depth, depth + sunk))
     if math.isfinite(e.mass):
@@ -560,17 +554,7 @@ def implicit_step(
     return DONE
 
 
-def _deepest_fall(e: Elements, state: Array, h: float) -> float:
-    """Return how far the indenter could sink in a step without a foundation, at any θ from 1/2 to 1."""
-    if math.isinf(e.mass):
-        return 0.0
-    q = e.spring * h * h / e.mass
-    pull = max(e.weight + e.spring * (e.depth - state[DEPTH]), 0.0)
-    most = 1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)
-    return float(h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / e.mass)
-
-
-def _lay(
+def _thresholds(
     e: Elements, law: ElementStep, known: bool, depth: float, way: tuple[float, float], first: float
 ) -> float:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
@@ -580,7 +564,7 @@ def _lay(
     θ, which depends on the elements that are pressed if the indenter sinks by `first`.
     """
     (place, travel), arms = way, e.arms.shape[0]
-    tip = e.law.damping > 0.0 and e.per_width and travel != 0.0
+    tip = e.law.damping > 0.0 and not e.across and travel != 0.0
     for j in range(e.counts[STRIPS]):
         low, high, height, meets = e.low[j], e.high[j], e.height[j], e.meets[j]
         heights(e, j, place)
@@ -610,13 +594,11 @@ def _lay(
     _press(e, first)
     find_runs(e)
     if arms:
-        _load_late(e, law, place - travel, depth, first)
+        _weigh_entering(e, law, place - travel, depth, first)
     if e.parts:
         _judge_edges(e, law, known, place - travel, depth, first)
-    wide = (
-        max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN])) * e.spacing
-    )
-    return exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+    wide = max(_extent(e, e.ended, e.counts[ENDED]), _extent(e, e.begun, e.counts[BEGUN]))
+    return exponential_fit(law.h * law.damping * e.spacing * wide / e.mass) if e.fitted else 1.0
 
 
 def _judge_edges(
@@ -657,7 +639,7 @@ def _press(e: Elements, sunk: float) -> bool:
 
 def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
     """Return the range of elements that pass a kink of the shape in a step."""
-    at = (kink - place) / e.spacing - e.shift - e.counts[FIRST]
+    at = (kink - place) / e.spacing - e.numbers[0]
     start, end = min(at, at + travel / e.spacing), max(at, at + travel / e.spacing)
     return max(math.floor(start + NEAR) + 1, e.low[0]), min(math.ceil(end - NEAR), e.high[0])
 
@@ -670,7 +652,9 @@ def _extent(e: Elements, runs: Runs, count: int) -> float:
     return width
 
 
-def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first: float) -> None:
+def _weigh_entering(
+    e: Elements, law: ElementStep, place: float, depth: float, first: float
+) -> None:
     """Write to `before` the weight of each element: below 1 if it comes into contact within the step.
 
     Its arms are loaded during part of the step only.
@@ -681,7 +665,7 @@ def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first:
             e.before[j, i] = 1.0
         for i in flagged(e.late[j], e.low[j], e.high[j]):
             if e.late[j, i]:
-                share = entered(gap(e, j, i, place, depth), first - e.meets[j, i])
+                share = share_in_contact(gap(e, j, i, place, depth), first - e.meets[j, i])
                 stiff = 0.5 * e.law.stiffness
                 for k in range(e.arms.shape[0]):
                     _, phi_2 = ramp_functions(law.h * share / e.law.arm_time[k])
@@ -689,7 +673,7 @@ def _load_late(e: Elements, law: ElementStep, place: float, depth: float, first:
                 e.before[j, i] = share * stiff / law.stiffness
 
 
-def _sink(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
+def _solve_depth(e: Elements, law: ElementStep, theta: float, sunk: float, state: Array) -> float:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
@@ -749,7 +733,7 @@ def _kinks(e: Elements, sunk: float) -> tuple[float, float, float, float]:
     return area, wider, bent, push
 
 
-def _slide(
+def _solve_along(
     e: Elements, law: ElementStep, way: tuple[float, float], state: Array, sunk: float, slid: float
 ) -> tuple[float, float]:  # fmt: skip
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
@@ -762,11 +746,10 @@ def _slide(
     (place, travel), arms = way, e.arms.shape[0]
     for j in range(e.counts[STRIPS]):
         slopes(e, j, e.low[j], e.high[j], place - 0.5 * travel)
-    for n in range(e.kinks.size if e.per_width and e.law.damping and travel else 0):
+    for n in range(e.kinks.size if not e.across and e.law.damping and travel else 0):
         passed = _passed(e, e.kinks[n], place, travel)
-        slopes(
-            e, 0, passed[0], passed[1], place - travel
-        )  # pressed by the flank that they come from
+        # These are pressed by the flank that they come from.
+        slopes(e, 0, passed[0], passed[1], place - travel)
     for r in range(e.counts[ENDED]):
         j, weight = e.ended[r, 0], e.weights[e.ended[r, 0]]
         width += weight * (e.ended[r, 2] - e.ended[r, 1])
@@ -807,10 +790,7 @@ def explicit_step(
     """
     h, M, M_x = laws[2].h, e.mass, e.mass_along
     stages, begin = e.tableau.shape[0] - 1, Y[0] - state[ALONG]
-    rates, at = (
-        e.stages,
-        e.stages[stages + 1],
-    )  # of depth, its rate, and both along x, at each stage
+    rates, at = e.stages, e.stages[stages + 1]  # of depth, its rate, and both along x
     for i in range(stages + 1):
         share = e.tableau[i, 0] if i < stages else 1.0
         for n in range(4):
@@ -826,7 +806,7 @@ def explicit_step(
                 return status
             rates[i, RATE], rates[i, ALONG_RATE] = pull / M, drag / M_x
     find_runs(e)
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     finish(e, laws[2], begin, (state[DEPTH], at[DEPTH]))
     if math.isfinite(M):
@@ -846,7 +826,7 @@ def _stage(
 ) -> tuple[int, float, float]:  # fmt: skip
     """Find which elements press at a stage, and return M δ'' and M_x x'' there, after the status (Eq. 17)."""
     place = places[0] if within and e.rule.still else places[1]
-    status = attend(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
+    status = update_window(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
     if status != DONE:
         return status, 0.0, 0.0
     V, rule, arms = velocity - at[ALONG_RATE], e.rule, e.arms.shape[0]
@@ -856,12 +836,8 @@ def _stage(
     for j in range(e.counts[STRIPS]):
         low, high, left, p = e.low[j], e.high[j], e.before[j], e.meets[j]
         u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
-        heights(e, j, place)
-        slopes(e, j, low, high, place)
+        _follow(e, j, at, (place, place), V)
         relax(e, law, j, low, high, left)
-        for i in over(low, high):
-            g, g_rate = at[DEPTH] - height[i], at[RATE] - V * slope[i]
-            p[i] = e.law.stiffness * g + e.law.damping * g_rate
         for k in range(arms):
             arm = e.arms[k, j]
             for i in over(low, high):
@@ -873,7 +849,7 @@ def _stage(
             if not e.late[j, i]:
                 continue
             rise, stiff = at[DEPTH] - height[i] - left[i], 0.0
-            share = entered(gap(e, j, i, places[0], state[DEPTH]), rise)
+            share = share_in_contact(gap(e, j, i, places[0], state[DEPTH]), rise)
             for k in range(arms):
                 phi_1, _ = ramp_functions(law.h * share / e.law.arm_time[k])
                 stiff += e.law.arm_stiffness[k] * phi_1
@@ -900,7 +876,7 @@ def _stage(
 def report(
     e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
 ) -> int:
-    """Write the report at an instant into `found`, in the order of `error_estimate.COLUMNS`.
+    """Write the report at an instant into `found`, in the order of `simulation.COLUMNS`.
 
     `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
     last with V >= 0, Y). An element is in contact if the indenter touches its surface and its pressure
@@ -909,7 +885,7 @@ def report(
     """
     time, V, V_before, forward = about[0], about[1], about[2], about[3]
     place = about[4] - state[ALONG]
-    status = attend(e, now, (place, place), state[DEPTH])
+    status = update_window(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
     sliding, peak, doubt, at_edge, edge_doubt = V - state[ALONG_RATE], 0.0, 0.0, 0.0, 0.0
@@ -922,16 +898,16 @@ def report(
         _pressure(e, state, law, place, sliding)
     force, push, left, right = 0.0, 0.0, math.nan, math.nan
     find_runs(e)
-    if _crowded(e):
+    if _too_many_runs(e):
         return LACKING
     for r in range(e.counts[ENDED]):
         j, low, high = e.ended[r, 0], e.ended[r, 1], e.ended[r, 2]
         p, top = e.meets[j], low + np.argmax(e.meets[j, low:high])
         if not e.parts:
             slopes(e, j, low, high, place)
-        first = _end(e, j, low, -1, place, state[DEPTH]) if e.parts else WHOLE
-        last = _end(e, j, high - 1, 1, place, state[DEPTH]) if e.parts else WHOLE
-        split = _split(e, low, high, place, sliding) if e.parts and e.per_width else (0.0, 0.0)
+        first = _end(e, j, low, -1, place, state[DEPTH])
+        last = _end(e, j, high - 1, 1, place, state[DEPTH])
+        split = _split(e, low, high, place, sliding)
         normal = dotted(p, e.ones, low, high) + first[1] + last[1] + split[0]
         along = dotted(p, e.slope[j], low, high) + first[2] + last[2] + split[1]
         for end in (first, last):
@@ -939,7 +915,7 @@ def report(
                 at_edge, edge_doubt = end[3], end[4]
         if p[top] > peak or not peak:
             reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
-            peak, doubt = _peak(e, p, top, reach, low, high) if e.parts else (p[top], 0.0)
+            peak, doubt = _peak(e, p, top, reach, low, high)
         force += e.weights[j] * normal
         push += e.weights[j] * along
         if j == 0:
@@ -963,7 +939,7 @@ def _behind(e: Elements, V: float) -> float:
 
 
 def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: float) -> None:
-    """Write p of the elements to `meets`, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12), and `slope`.
+    """Write p of the elements to `meets`.
 
     For a detached element, it is the pressure it would have had it followed the indenter in the last step:
     brought down by the gap at the start of the step, and then moving with the indenter.
@@ -971,11 +947,7 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
     for j in range(e.counts[STRIPS]):
         low, high, p = e.low[j], e.high[j], e.meets[j]
         u, height, slope, held = e.u[j], e.height[j], e.slope[j], e.touched[j]
-        heights(e, j, place)
-        slopes(e, j, low, high, place - _behind(e, V))
-        for i in over(low, high):
-            g, g_rate = state[DEPTH] - height[i], state[RATE] - V * slope[i]
-            p[i] = e.law.stiffness * g + e.law.damping * g_rate
+        _follow(e, j, state, (place, place - _behind(e, V)), V)
         for k in range(e.arms.shape[0]):
             arm, brought = e.arms[k, j], e.law.arm_stiffness[k] * law.held[k]
             moved = (law.ramp[k] - brought) * law.h
@@ -988,16 +960,17 @@ def _pressure(e: Elements, state: Array, law: ElementStep, place: float, V: floa
             e.pressed[j, i] = held[i] & ((p[i] >= 0.0) | e.rule.pulls)
 
 
-def _end(
-    e: Elements, j: int, i: int, out: int, place: float, depth: float
-) -> tuple[float, float, float, float, float]:
+def _end(e: Elements, j: int, i: int, out: int, place: float, depth: float) -> Any:
     """Return how far outward of the last element i of a run the edge is, in elements.
 
     Then what the sums of p and of p h' gain by ending there, p at the edge, and how much p differs between
     the elements beside it. An edge peels where p falls to zero, between two elements by a straight line,
     and touches where the indenter meets the free surface. Where V jumps, an edge that peeled until then, by
-    the pressure before, is still where it was, or has gone further in.
+    the pressure before, is still where it was, or has gone further in. A run of whole elements ends half an
+    element beyond the last.
     """
+    if not e.parts:
+        return 0.5, 0.0, 0.0, 0.0, 0.0
     p, p_before, slope = e.meets[j], e.before[j], e.slope[j]
     now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
     touches, straight = touching(gaps(e, j, i + out, out, place, depth))
@@ -1006,7 +979,7 @@ def _end(
     share = min(before, now, 1.0)
     p_edge = 0.0 if now <= share else p[i] + share * (p[i + out] - p[i])
     x = e.spacing * e.numbers[i] + place
-    for n in range(e.kinks.size if e.per_width else 0):
+    for n in range(e.kinks.size if not e.across else 0):
         # There p falls at once, by -C V times the jump of h'.
         ahead = (e.kinks[n] - x) / e.spacing * out
         p_kink = p[i] + ahead * (p[i] - p[i - out])
@@ -1044,7 +1017,7 @@ def _split(e: Elements, low: int, high: int, place: float, V: float) -> tuple[fl
     first order in the spacing.
     """
     normal = along = 0.0
-    for n in range(e.kinks.size):
+    for n in range(e.kinks.size if e.parts and not e.across else 0):
         kink, x_0 = e.kinks[n], e.spacing * e.numbers[0] + place
         k = round((kink - x_0) / e.spacing)
         if not low < k < high - 1:
@@ -1062,9 +1035,7 @@ def _split(e: Elements, low: int, high: int, place: float, V: float) -> tuple[fl
     return normal, along
 
 
-def _peak(
-    e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int
-) -> tuple[float, float]:
+def _peak(e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int) -> Any:
     """Return the peak near element k, from the parabola through three, and its uncertainty.
 
     A shape with kinks has no such parabola: there the peak is known to within one element. Arms remember
@@ -1073,6 +1044,8 @@ def _peak(
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
     doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
+    if not e.parts:
+        return here, 0.0
     if e.kinks.size:
         return here, min(abs(here - before), abs(here - after))
     bend = 2.0 * here - before - after
@@ -1137,7 +1110,7 @@ def advance(
     step: int, reported: int, until: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    none = _law_at(course.law, 0)
+    none, explicit = _law_at(course.law, 0), e.tableau.shape[0] > 1
     law = _law_at(course.law, 2 * course.which[step - 1] + 2) if step else none
     while True:
         now = course.times[step]
@@ -1149,7 +1122,7 @@ def advance(
         if step == until:
             return DONE, step, reported
         law, Y = _law_at(course.law, 2 * course.which[step] + 2), course.Y[step]
-        if e.explicit:
+        if explicit:
             half = _law_at(course.law, 2 * course.which[step] + 1)
             status = explicit_step(e, (none, half, law), state, now, Y, course.V[step])
         else:
@@ -1169,11 +1142,9 @@ def advance(
         if not abs(state[ALONG_RATE]) <= course.limits[1]:
             return THROWN_ALONG, step, reported
         imbalance = forces = 0.0
-        for n in range(WINDOW if e.explicit else 0):
+        for n in range(WINDOW if explicit else 0):
             known = balances[1, n] > 0.0
-            imbalance, forces = (
-                imbalance + balances[0, n],
-                forces + balances[1, n] if known else math.inf,
-            )
-        if e.explicit and imbalance > course.limits[2] * forces:
+            imbalance += balances[0, n]
+            forces += balances[1, n] if known else math.inf
+        if explicit and imbalance > course.limits[2] * forces:
             return UNBALANCED, step, reported

@@ -29,10 +29,8 @@ FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
 FEWEST, MOST = 8, 2_000_000
 """Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
-SAMPLES = 2049
-"""Of the surface, where a depth is wanted to about a thousandth."""
-SAMPLES_ALONG, SAMPLES_ACROSS = 257, 16
-"""The same of a ball, along a strip and from its middle plane to its rim."""
+SAMPLES, SAMPLES_ALONG, SAMPLES_ACROSS = 2049, 257, 16
+"""Of the surface, where a depth is wanted to about a thousandth; of a ball, along a strip and to its rim."""
 
 
 @dataclass(frozen=True)
@@ -83,12 +81,11 @@ class Model:
         support, given, drive = scene.support, scene.foundation, scene.drive
         arms = [(arm.stiffness, arm.relaxation_time) for arm in given.arms]
         law = Element.of(given.stiffness, 0.0 if arms else given.damping, arms)
-        along = {} if drive.rigid else {
-            "mass_along": scene.drive_mass, "spring_along": drive.stiffness or 0.0,
-            "damping_along": drive.damping,
-        }  # fmt: skip
         model = cls(scene.indenter, law, 1.0, support.mass, support.weight, 0.0, support.depth or 1.0,
-                    parts, shift, **along)  # fmt: skip
+                    parts, shift)  # fmt: skip
+        if not drive.rigid:
+            model = replace(model, mass_along=scene.drive_mass, spring_along=drive.stiffness or 0.0,
+                            damping_along=drive.damping)  # fmt: skip
         if not all(map(math.isfinite, span(model.indenter, model.depth))):
             raise ValueError(out_of_range(scene))
         depth = model.depth if scene.held else model.sliding_depth(0.0)
@@ -99,13 +96,13 @@ class Model:
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        model = replace(model, spacing=coarser * dx, spring=0.0 if scene.held else support.spring)
+        model = replace(model, spacing=coarser * dx)
         if not scene.indenter.per_width:
             dy = model.half_width(depth) * min(PER_STRIP * dx / high, 1.0 / FEWEST_STRIPS)
             model = replace(model, across=coarser * (1.0 + 0.5 * shift) * dy)
         if not scene.held:
             depth = root(lambda d: model.static_load(d) - model.weight, depth)
-        model = replace(model, depth=depth)
+            model = replace(model, spring=support.spring, depth=depth)
         at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
         return replace(model, at_rest=at_rest)
 
@@ -158,9 +155,19 @@ class Model:
 
     @cached_property
     def profile(self) -> "PythonProfile | None":
-        """The profile if it is a Python function, which is interpreted."""
-        line = self.indenter.profile if isinstance(self.indenter, Revolved) else self.indenter
-        return PythonProfile(line, self.depth) if isinstance(line, Profile) else None
+        """The profile if it is given by Python functions; its extent is interpolated between some depths."""
+        line = getattr(self.indenter, "profile", self.indenter)
+        if not isinstance(line, Profile):
+            return None
+
+        def extent(depth: float, side: float) -> float:
+            level = math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL)
+            below = math.floor(level)
+            depths = (self.depth * LEVEL**k for k in (below, below + 1))
+            low, high = (side * span(line, each)[side > 0.0] for each in depths)
+            return float(low * (high / low) ** (level - below))
+
+        return PythonProfile(line.height, line.slope, extent)
 
     def height(self, x: Any, y: Any = 0.0) -> Any:
         """Return h(x, y), huge where the indenter has no surface."""
@@ -195,38 +202,34 @@ class Model:
 
     def tilt(self, extent: float) -> float:
         """Return the integral of h'^2 over a contact of this length or area, as steep as the one at rest."""
-        x, y, weight = self._samples(self.depth)
-        inside = weight * (self.height(x, y) <= self.depth)
-        return extent * float(inside @ np.square(self.slope(x, y))) / float(inside.sum())
+        h, slope, weight = self._samples(self.depth)
+        inside = weight * (h <= self.depth)
+        return extent * float(inside @ np.square(slope)) / float(inside.sum())
 
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
         """Return extent and normal force of a contact that slides steadily on a continuous foundation."""
-        x, y, weight = self._samples(depth)
-        g = depth - self.height(x, y)
-        p = self.law.pressure(g, -V * self.slope(x, y))
-        pressed = (p > 0.0) & (g >= 0.0)
+        h, slope, weight = self._samples(depth)
+        p = self.law.pressure(depth - h, -V * slope)
+        pressed = (p > 0.0) & (h <= depth)
         return float(weight @ pressed), float(weight[pressed] @ p[pressed])
 
     def sliding_depth(self, V: float) -> float:
         """Return the depth at which that contact carries the load, to within a thousandth."""
-
-        def surplus(depth: float) -> float:
-            force = self.sliding(depth, V)[1] + self.spring * (depth - self.depth)
-            return force / self.weight - 1.0
-
-        return root(surplus, self.depth, 1e-9)
+        force = lambda d: self.sliding(d, V)[1] + self.spring * (d - self.depth)  # noqa: E731
+        return root(lambda d: force(d) / self.weight - 1.0, self.depth, 1e-9)
 
     def _samples(self, depth: float) -> tuple[Array, Array, Array]:
-        """Return x and y of points under the indenter, and their quadrature weights, in m or m^2."""
+        """Return h and dh/dx at points under the indenter, and their quadrature weights, in m or m^2."""
+        along, strips, across = SAMPLES, 1, np.ones(1)
+        if not self.indenter.per_width:
+            along, strips = SAMPLES_ALONG, SAMPLES_ACROSS
         low, high = span(self.indenter, depth)
-        if self.indenter.per_width:
-            each = (high - low) / (SAMPLES - 1)
-            return np.linspace(low, high, SAMPLES), np.zeros(SAMPLES), np.full(SAMPLES, each)
-        along, strips = SAMPLES_ALONG, SAMPLES_ACROSS
         dx, dy = (high - low) / (along - 1), self.half_width(depth) / strips
+        if strips > 1:
+            across = kernels.weigh(np.empty(strips), dy, 0.0)
         x = np.tile(np.linspace(low, high, along), strips)
         y = np.repeat(dy * np.arange(strips), along)
-        return x, y, dx * np.repeat(kernels.weigh(np.empty(strips), dy, 0.0), along)
+        return self.height(x, y), self.slope(x, y), np.repeat(dx * across, along)
 
 
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
@@ -246,19 +249,18 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
     while below > 0.0:
         high, above, low = low, below, 0.5 * low
         below = function(low)
-    step, side = 0, 0
+    step, rising = 0, None
     while low < (x := 0.5 * (low + high)) < high and high - low > rtol * high:
         step += 1
         if step % 4 and 0.0 < above - below < math.inf:
             secant = low - below * ((high - low) / (above - below))
             x = min(max(secant, math.nextafter(low, high)), math.nextafter(high, low))
-        value = function(x)
-        if value > 0.0:
-            high, above, below = x, value, below * (0.5 if side > 0 else 1.0)
-            side = 1
+        value, before = function(x), rising
+        rising = value > 0.0
+        if rising:
+            high, above, below = x, value, below * (0.5 if before is True else 1.0)
         else:
-            low, below, above = x, value, above * (0.5 if side < 0 else 1.0)
-            side = -1
+            low, below, above = x, value, above * (0.5 if before is False else 1.0)
     return high
 
 
@@ -269,7 +271,7 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
     >>> surface_of(Wedge(inclination=0.5))[:3]
     (1.0, 1.0, 0.5)
     """
-    line = indenter.profile if isinstance(indenter, (Revolved, Sphere)) else indenter
+    line: Any = getattr(indenter, "profile", indenter)
     size, exponent, steep, across, stretch = 1.0, 2.0, 1.0, 0.0, 1.0
     if isinstance(line, Wedge):
         exponent, steep = 1.0, line.inclination
@@ -287,26 +289,11 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
 
 
 class PythonProfile(NamedTuple):
-    """A profile given by Python functions; its extent is found at some depths and interpolated."""
+    """Height h(x), slope h'(x), and extent to one side at a depth, by Python functions."""
 
-    line: Profile
-    depth: float
-
-    def height(self, x: Any) -> Any:
-        """Return h(x)."""
-        return self.line.height(x)
-
-    def slope(self, x: Any) -> Any:
-        """Return h'(x)."""
-        return self.line.slope(x)
-
-    def extent(self, depth: float, side: float) -> float:
-        """Return about how far to one side h = `depth` is."""
-        level = math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL)
-        below = math.floor(level)
-        ends = (span(self.line, self.depth * LEVEL**k)[side > 0.0] for k in (below, below + 1))
-        low, high = (side * end for end in ends)
-        return float(low * (high / low) ** (level - below))
+    height: Callable[[Any], Any]
+    slope: Callable[[Any], Any]
+    extent: Callable[[float, float], float]
 
 
 @lru_cache(maxsize=1024)
@@ -318,16 +305,14 @@ def span(indenter: Indenter, depth: float) -> tuple[float, float]:
     >>> span(Wedge(inclination=0.5), 0.25)
     (-0.5, 0.5)
     """
-    surface = surface_of(indenter)
-    line = indenter.profile if isinstance(indenter, Revolved) else indenter
+    line, far = getattr(indenter, "profile", indenter), surface_of(indenter).inside
     if not isinstance(line, Profile):
-        far = kernels.extent(surface, None, depth, 1.0)
-        return -far, far
-    end, ends = surface.inside, []
-    for side in (-1.0, 1.0):
-        if math.isfinite(end) and line.height(side * end) < depth:
-            ends.append(side * end)
-        else:
-            height = lambda x, side=side: float(line.height(side * min(x, end))) - depth  # noqa: E731
-            ends.append(side * root(height, min(depth, end)))
-    return ends[0], ends[1]
+        reached = kernels.extent(surface_of(indenter), None, depth, 1.0)
+        return -reached, reached
+
+    def reach(side: float) -> float:
+        if math.isfinite(far) and line.height(side * far) < depth:
+            return far
+        return root(lambda x: float(line.height(side * min(x, far))) - depth, min(depth, far))
+
+    return -reach(-1.0), reach(1.0)

@@ -27,14 +27,10 @@ KEPT_DEPTH = 4.0
 WORTHWHILE = 10_000
 """Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
 kernels takes half a second; compiling them, once per installation, about twenty seconds."""
-COLUMNS = 13
-"""Numbers of a report, see `error_estimate.COLUMNS`."""
 
 
 class OutgrownError(ArithmeticError):
-    """The indenter sank so deep that it may meet elements no longer stored; `rows` are the results so far."""
-
-    rows: Sequence[tuple[float, ...]] = ()
+    """The indenter sank so deep that it may meet elements no longer stored."""
 
 
 class IndenterState(NamedTuple):
@@ -64,46 +60,46 @@ def compiled_advance() -> Any:
 
 
 class ElementRow:
-    """The stored elements, the motion of the base, and the indenter above them.
+    """The stored elements, the motion of the base, and the indenter above them, moved by a scheme.
 
     `compiled` says whether its steps are compiled.
     """
 
-    def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
-        self.model, self.path, self.compiled = model, path, False
-        longest = model.law.longest_time if model.rule.relaxes else math.inf
-        self.memory = -longest * math.log(FORGOTTEN)
-        self.deepest = kept_depth * model.depth
-        self.state = np.zeros(kernels.CURVED + 1)
-        self.use(SCHEMES[DEFAULT])
-        self.stored = self._empty(0, 1, 1)
-        depth = model.start * model.depth
-        rest = lambda x, y: np.maximum(depth - model.height(x, y), 0.0)  # noqa: E731
-        self.lay(max(depth, model.depth), rest)
-        self.state[kernels.DEPTH] = depth
-
-    def use(self, scheme: Scheme) -> None:
-        """Use a scheme for all further steps."""
-        model, law, self.scheme = self.model, self.model.law, scheme
-        names = ("spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length",
+    def __init__(
+        self, model: Model, path: BaseMotion, scheme: Scheme = SCHEMES[DEFAULT],
+        kept_depth: float = KEPT_DEPTH,
+    ) -> None:  # fmt: skip
+        self.model, self.path, self.compiled, law = model, path, False, model.law
+        if not model.rule.relaxes:
+            law = law._replace(rates=0.0 * law.rates)
+        self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
+        self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
+        names = ("spacing", "across", "mass", "weight", "spring", "depth", "half_length",
                  "mass_along", "spring_along", "damping_along")  # fmt: skip
         self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
             "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
-            "law": law if model.rule.relaxes else law._replace(rates=0.0 * law.rates),
-            "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
-            "per_width": model.indenter.per_width, "deepest": self.deepest,
+            "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
             "rest_velocity": model.at_rest.velocity,
             "kinks": np.array(model.indenter.kinks, dtype=float),
         }  # fmt: skip
-        if hasattr(self, "stored"):
-            self.stored = self.stored._replace(**self.constants)
+        self.stored = self._empty(0, 1, 1)
+        depth = model.start * model.depth
+        self.lay(max(depth, model.depth), lambda x, y: np.maximum(depth - model.height(x, y), 0.0))
+        self.state[kernels.DEPTH] = depth
+
+    def compile(self, steps: int) -> None:
+        """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
+        work = steps * self.stored.u.shape[0]
+        pays = Tally.steps + work > WORTHWHILE and compilation.available()
+        Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
+        self.compiled = pays and self.model.profile is None
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
         """Compress the elements that an indenter of this depth meets at Y = 0 by `surface`(x, y).
 
         In contact are those where `contact`(x) or, without it, those that are compressed.
         """
-        while kernels.attend(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
+        while kernels.update_window(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row = self.stored
         for each in (row.u, row.arms, row.touched):
@@ -129,7 +125,7 @@ class ElementRow:
                 self._move(float(course.times[step]))
         return status, step, reported
 
-    def step(self, scheme: Scheme, state: IndenterState, h: float) -> IndenterState:
+    def step(self, state: IndenterState, h: float) -> IndenterState:
         """Take one step from a state.
 
         Raises
@@ -137,13 +133,10 @@ class ElementRow:
         OutgrownError
             If the indenter sinks deeper than the row was made for.
         """
-        if scheme is not self.scheme:
-            self.use(scheme)
         self.state[:4] = state[1:]
-        times = np.array([state.time, state.time + h])
+        times = state.time + np.array([0.0, h])
         course = course_of(self.path, self.stored.law, times, np.array([h]))
-        nothing = np.zeros((0, COLUMNS)), np.zeros((2, kernels.WINDOW))
-        if self.run(course, *nothing, (0, 0), 1)[0] != kernels.DONE:
+        if self.run(course, np.zeros((0, 1)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))
 
@@ -164,16 +157,15 @@ class ElementRow:
         """Return elements that are undisturbed."""
         size, runs = self.model.law.arm_stiffness.size, max(runs, 2 * strips)
         state, flags = np.zeros((6, strips, width)), np.zeros((3, strips, width), dtype=bool)
-        counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
-        counts[kernels.FIRST], ends = first, np.zeros((4, strips), dtype=np.int64)
+        low, high, counts = (np.zeros(n, np.int64) for n in (strips, strips, kernels.UPDATES + 1))
+        counts[kernels.FIRST], (begun, ended) = first, np.zeros((2, runs, 3), dtype=np.int64)
         return Elements(
-            u=state[0], arms=np.zeros((size, strips, width)), since=state[1], touched=flags[0], low=ends[0],
-            high=ends[1], first=ends[2], last=ends[3], counts=counts,
-            numbers=np.arange(float(first), first + width) + self.model.shift, ones=np.ones(width),
-            height=state[2], meets=state[3], slope=state[4], before=state[5], pressed=flags[1], late=flags[2],
-            falling=np.zeros((strips, 2), dtype=bool), weights=np.ones(strips),
-            begun=np.zeros((runs, 3), dtype=np.int64), ended=np.zeros((runs, 3), dtype=np.int64),
-            relaxed=np.zeros((runs, 2)), modes=np.zeros(size), stages=np.zeros((6, 4)), **self.constants,
+            u=state[0], arms=np.zeros((size, strips, width)), since=state[1], touched=flags[0], low=low,
+            high=high, counts=counts, numbers=np.arange(float(first), first + width) + self.model.shift,
+            ones=np.ones(width), height=state[2], meets=state[3], slope=state[4], before=state[5],
+            pressed=flags[1], late=flags[2], falling=np.zeros((strips, 2), dtype=bool),
+            weights=np.ones(strips), begun=begun, ended=ended, relaxed=np.zeros((runs, 2)),
+            modes=np.zeros(size), stages=np.zeros((6, 4)), **self.constants,
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
@@ -184,10 +176,8 @@ class ElementRow:
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
         new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
-        new.counts[kernels.STRIPS], new.counts[kernels.UPDATES] = (
-            strips,
-            old.counts[kernels.UPDATES],
-        )
+        new.counts[kernels.STRIPS] = strips
+        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
@@ -219,24 +209,22 @@ class ElementRow:
 
 
 def course_of(
-    path: BaseMotion, law: Element, times: Array, steps: Array, after: Sequence[int] = (), about: Any = (),
+    path: BaseMotion, law: Element, times: Array, steps: Array, after: Any = (), about: Any = (),
     limits: Sequence[float] = (-math.inf, math.inf, math.inf),
 ) -> Course:  # fmt: skip
     """Return the course of steps between these times, with the motion of the base and of an element."""
     t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
     before = t.copy()
     before[:, 2] -= SAME_TIME * np.spacing(t[:, 2])
-    Y, V = _motion(path, t)[0], _motion(path, before)[1]
+
+    def motion(times: Array) -> tuple[Array, Array]:
+        k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
+        pieces: Any = path.rows.T[:, k]
+        Y, V, _ = evaluate(pieces, times)  # type: ignore[arg-type]
+        return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)
+
     reports = np.array(about, dtype=float).reshape(len(after), 5)
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
-    return Course(times, steps, Y, V, np.array(after, dtype=np.int64), reports, np.array(limits), over,
-                  which)  # fmt: skip
-
-
-def _motion(path: BaseMotion, times: Array) -> tuple[Array, Array]:
-    """Return Y and V at all these times."""
-    k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
-    pieces: Any = path.rows.T[:, k]
-    Y, V, _ = evaluate(pieces, times)  # type: ignore[arg-type]
-    return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)
+    return Course(times, steps, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
+                  np.array(limits), over, which)  # fmt: skip

@@ -4,27 +4,28 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from kvtheory import compilation
 from kvtheory.models.elements import kernels, stability
-from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Rows, estimate
 from kvtheory.models.elements.model import Model
-from kvtheory.models.elements.row import (
-    KEPT_DEPTH,
-    WORTHWHILE,
-    ElementRow,
-    OutgrownError,
-    Tally,
-    course_of,
-)
+from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, RIGHT, SCHEMES, ContactRule, Scheme
-from kvtheory.progress import Progress
-from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation, units_for
-from kvtheory.results.errors import DivergenceError
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.progress import Progress, silent
+from kvtheory.results import (
+    SERIES_UNITS,
+    TRANSIENT_UNITS,
+    Certificate,
+    Simulation,
+    SprungSimulation,
+    units_for,
+)
+from kvtheory.results.certificate import AT_REST
+from kvtheory.results.table import scales
+from kvtheory.scene.base_motion import POWERS, BaseMotion
 from kvtheory.scene.model import Scene
+from kvtheory.theory.laws import Array
 
 ELEMENTS_PER_STEP = 2.0
 """Elements that pass in a step, as in the paper: dt = 2 dx/V."""
@@ -61,8 +62,33 @@ it by less than a millionth of what one step does, and times that differ by roun
 DEEPEST, BALL_DEEPEST = 1e7, 256.0
 """Times the static depth: no scene sinks deeper. Of a ball, elements grow as the depth, not as its root."""
 
-Leg = tuple[float, float, int]
-"""Start, end and number of steps."""
+SAFETY = 4.0
+"""Factor on the estimated errors: a difference can be small by chance. With one coarse run a bound was
+exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
+are seldom both small by chance."""
+KNOWN = 0.5
+"""Uncertainty of an edge, in elements, after a change of the drive, if a damper leaves pressure on it."""
+KINKED = 0.05
+"""Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere."""
+ROUNDING = 1e-12
+"""Least error, due to rounding, where a method is exact."""
+SHIFTS = (0.0, 0.5)
+"""Offsets of the elements of the coarse runs, in spacings."""
+RELATIVE_TO = (
+    "of the scene at rest: depth relative to δ_0, its rate to δ_0/τ, edges to a_0, normal force to W_0, "
+    "friction force to W_0 δ_0/a_0, pressure to K δ_0"
+)
+ON_SPRING = ", sliding velocity to a_0/τ, spring force as friction"
+UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
+
+Rows = dict[str, Any]
+"""A report at each instant: the columns of a time series as on a spring, and by how much the pressure differs
+between the elements beside its peak, inside the contact and at its edge (Pa)."""
+COLUMNS = (*SERIES_UNITS, "peak_doubt", "edge_doubt")
+
+Timetable = tuple[Array, Array, Array, Array]
+"""Times before and after the steps, their lengths, after which of them something is reported, and what: see
+`kernels.Course`."""
 
 
 def simulate(
@@ -84,8 +110,8 @@ def simulate(
     model = replace(model, rule=rule, start=start)
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
-    stops, wanted = _instants(scene, path, h, at)
-    count = stops[-1] / h
+    wanted = _instants(scene, path, h) if at is None else list(at)
+    count = max(wanted) / h
     elements = model.strips(model.depth) * 2.0 * model.half_length / model.spacing
     if elements * count > MOST_OF_ALL:
         raise ValueError(
@@ -94,40 +120,40 @@ def simulate(
             "elements (`per_length`), or a shorter run"
         )
     own_step = time_step is None and not scheme.tableau
-    legs = _legs(stops, path.changes, h, _graded(model, path, h, stops[-1]) if own_step else {})
-    h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
-    warning = stability.doubts(scheme, model, path, h)
+    graded = _graded(model, path, h, max(wanted)) if own_step else {}
+    times, steps, after, about = fine = _timetable(path, wanted, h, graded)
+    h = float(steps.max(initial=0.0)) or h
+    warning = stability.step_warning(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
-    checks = [(half, 2.0, shift) for shift in SHIFTS] + [(legs, 1.0, 0.0)] * (scheme is not best)
-    checks = checks if certify else []
-    work = np.cumsum([0.0, 1.0, *(COARSE if coarser > 1.0 else 1.0 for _, coarser, _ in checks)])
-
-    def part(k: int) -> Progress | None:
-        """Return the progress of one of several runs by its share of the work; the later ones are checks."""
-        if progress is None:
-            return None
-        begun, own = work[k] / work[-1], (work[k + 1] - work[k]) / work[-1]
-        words = " for the error" * (k > 0)
-        return lambda share, told: progress(float(begun + own * share), told + words)
-
-    rows, row = _with_room(model, path, scheme, legs, wanted, part(0))
-    updates, certificate = int(row.stored.counts[kernels.UPDATES]), UNKNOWN
+    best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)
+    runs = [(model, scheme, fine, 1.0)]
     if certify:
-        others = []
-        for k, (steps, coarser, shift) in enumerate(checks):
-            other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
-            others.append(_with_room(other, path, best, steps, wanted, part(k + 1))[0])
-        certificate = estimate(model, path, h, rows, others[: len(SHIFTS)], others[len(SHIFTS) :])
+        for shift in SHIFTS:
+            coarse = Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0)
+            runs.append((coarse, best, half, COARSE))
+        if scheme is not best:
+            runs.append((Model.of(scene, spacing, parts=True), best, fine, 1.0))
+    ends = np.cumsum([0.0, *(share for *_, share in runs)])
+
+    def part(k: int) -> Progress:
+        """Return the progress of one of several runs by its share of the work; the later ones are checks."""
+        begun, end = ends[k : k + 2] / ends[-1]
+        told, words = progress or silent, " for the error" * (k > 0)
+        return lambda share, said: told(float(begun + (end - begun) * share), said + words)
+
+    (rows, row), *others = (
+        _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
+    )
+    certificate = _estimate(model, path, h, rows, [other for other, _ in others])
     kind, names = (
-        (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
+        (Simulation, TRANSIENT_UNITS) if not model.sprung else (SprungSimulation, SERIES_UNITS)
     )
     return kind(
-        **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
-        steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
-        model="elements", certificate=certificate, compiled=row.compiled,
-        units=units_for(scene.indenter, names),
+        **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
+        time_step=h, steps=len(steps),
+        element_updates=int(row.stored.counts[kernels.UPDATES]), warning=warning, model="elements",
+        certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
     )  # fmt: skip
 
 
@@ -182,112 +208,109 @@ def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float,
     return found
 
 
-def _instants(
-    scene: Scene, path: BaseMotion, h: float, at: Sequence[float] | None
-) -> tuple[list[float], list[float]]:
-    """Return the instants on which steps end, in order, and those that are reported, as asked for."""
-    end = scene.run.duration if at is None else max(at)
-    breaks = [t for t in path.changes if t < end]
-    if at is not None:
-        return sorted({*breaks, *at, 0.0}), list(at)
+def _instants(scene: Scene, path: BaseMotion, h: float) -> list[float]:
+    """Return regular instants, which are ends of steps, for each piece of the drive."""
+    end = scene.run.duration
     stride = h * 2.0 * math.ceil(end / h / ROWS / 2.0)
-    regular = [
+    found = [
         start + k * stride
-        for start, stop in itertools.pairwise([*breaks, end])
+        for start, stop in itertools.pairwise([*(t for t in path.changes if t < end), end])
         for k in range(math.ceil((stop - start) / stride * (1.0 - 1e-9)))
     ]
-    return [*regular, end], [*regular, end]
+    return [*found, end]
 
 
-def _legs(
-    stops: Sequence[float], breaks: Sequence[float], h: float, graded: dict[float, float]
-) -> list[Leg]:
-    """Return for each stop the start and step count of the leg that ends there; no steps if it is there."""
-    legs: list[Leg] = []
+def _timetable(
+    path: BaseMotion, wanted: list[float], h: float, graded: dict[float, float]
+) -> Timetable:
+    """Return steps of at most h, or of the graded lengths, that end on the wanted instants."""
+    asked, end = set(wanted), max(wanted)
+    times, lengths, after, about = [0.0], list[float](), list[int](), list[Any]()
     start, step = 0.0, graded.get(0.0, h)
-    for stop in sorted({*stops, *graded}):
-        # An even number of steps of at most h, so that half as many fit too.
-        count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
-        count = count if stop - start > TOGETHER * step else 0
-        legs.append((start, stop, count))
-        if count or stop in breaks:
+    for stop in sorted({0.0, *asked, *graded, *(t for t in path.changes if t < end)}):
+        if stop - start > TOGETHER * step:
+            # An even number of steps, so that half as many fit too.
+            count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
+            lengths += [(stop - start) / count] * count
+            times += [start + (stop - start) * k / count for k in range(1, count)] + [stop]
             start = stop
+        elif stop in path.changes:
+            times[-1] = start = stop
+        if stop in asked:
+            before, Y = path.velocity(times[-1], before=True), path.displacement(times[-1])
+            about.append((stop, path.velocity(stop), before, path.forward(stop), Y))
+            after.append(len(lengths))
         step = graded.get(stop, step)
-    return legs
-
-
-def _with_room(
-    model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
-    progress: Progress | None,
-) -> tuple[Rows, ElementRow]:  # fmt: skip
-    """Run; if the indenter sinks too deep, run again with more elements stored."""
-    kept, deepest = KEPT_DEPTH, min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
-    while True:
-        try:
-            row = ElementRow(model, path, kept)
-            return _run(row, scheme, legs, wanted, progress), row
-        except OutgrownError as outgrown:
-            kept *= MORE_ROOM
-            if kept > deepest:
-                h = max((stop - start) / max(count, 1) for start, stop, count in legs)
-                error = DivergenceError(
-                    f"the run diverged: the indenter sank to {deepest:g} times its static depth; "
-                    f"{stability.describe(scheme, model, path, h)}"
-                )
-                error.rows = outgrown.rows
-                raise error from None
+    return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
 
 
 @np.errstate(all="ignore")  # the kernels check the results
 def _run(
-    row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
-) -> Rows:
-    """Take all steps, and return what is reported at the wanted instants."""
-    row.use(scheme)
-    path, asked = row.path, set(wanted)
-    times, steps, after, about = [0.0], list[float](), list[int](), list[tuple[float, ...]]()
-    for start, stop, count in legs:
-        steps += [(stop - start) / max(count, 1)] * count
-        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (
-            count > 0
-        )
-        if not count and stop in path.changes:
-            times[-1] = stop
-        if stop in asked:
-            at, before = times[-1], path.velocity(times[-1], before=True)
-            about.append(
-                (stop, path.velocity(stop), before, path.forward(stop), path.displacement(at))
-            )
-            after.append(len(steps))
-    course = course_of(path, row.stored.law, np.array(times), np.array(steps), after, about,
-                       stability.limits(row.model, path))  # fmt: skip
-    balances, found = np.zeros((2, kernels.WINDOW)), np.full((len(after), len(COLUMNS)), math.nan)
-    row.compiled = row.model.profile is None and _worthwhile(row, len(steps))
-    pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
-    status, done, reported, until = kernels.DONE, 0, 0, -1
-    while status == kernels.DONE and until < len(steps):
-        until = min(done + pause, len(steps))
-        status, done, reported = row.run(course, found, balances, (done, reported), until)
-        if progress is not None and done:
-            progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
-    if status != kernels.DONE:
-        error: OutgrownError | DivergenceError = OutgrownError()
-        if status != kernels.OUTGROWN:
-            h = max(steps)
+    model: Model, path: BaseMotion, scheme: Scheme, table: Timetable, wanted: list[float],
+    progress: Progress,
+) -> tuple[Rows, ElementRow]:  # fmt: skip
+    """Take all steps and report at the wanted instants; if the indenter sinks deep, store more elements."""
+    times, steps, _, about = table
+    kept, deepest = KEPT_DEPTH, BALL_DEEPEST if model.across else DEEPEST
+    while True:
+        row = ElementRow(model, path, scheme, kept)
+        course = course_of(path, row.stored.law, *table, stability.limits(model, path))
+        balances = np.zeros((2, kernels.WINDOW))
+        found = np.full((len(about), len(COLUMNS)), math.nan)
+        row.compile(len(steps))
+        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
+        status, done, reported, until = kernels.DONE, 0, 0, -1
+        while status == kernels.DONE and until < len(steps):
+            until = min(done + pause, len(steps))
+            status, done, reported = row.run(course, found, balances, (done, reported), until)
+            if done:
+                progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
+        if status == kernels.DONE:
+            asked = found[np.searchsorted(about[:, 0], wanted)]
+            return dict(zip(COLUMNS, asked.T, strict=True)), row
+        kept *= MORE_ROOM
+        if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, row.model, path, h, times[done], row.state, balances
-            )
-        error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
-        raise error
-    order = {time: k for k, (time, *_) in enumerate(about)}
-    return dict(zip(COLUMNS, found[[order[time] for time in wanted]].T, strict=True))
+                status, scheme, model, path, float(steps.max()), times[done], row.state, balances, deepest
+            )  # fmt: skip
+            error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
+            raise error
 
 
-def _worthwhile(row: ElementRow, steps: int) -> bool:
-    """Whether to compile: once so much was interpreted in this process, or will be in this run."""
-    work = steps * row.stored.u.shape[0]
-    if Tally.steps + work > WORTHWHILE and compilation.available():
-        Tally.steps = max(Tally.steps, WORTHWHILE)
-        return True
-    Tally.steps += work
-    return False
+def _estimate(
+    model: Model, path: BaseMotion, h: float, rows: Rows, others: list[Rows]
+) -> Certificate:
+    """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
+
+    An edge that exists in one of two runs only is not compared.
+
+    Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
+    sum of both differences, |e - 4 c| + |e - c|, is at least 3/4 |e|. For the best scheme it is 3 |e|.
+    """
+    if not others:
+        return UNKNOWN
+    scale, differences = scales(model.at_rest), {}
+    for name in scale:
+        apart = [float(np.nanmax(abs(rows[name] - other[name]), initial=0.0)) for other in others]
+        differences[name] = max(apart[: len(SHIFTS)]) + sum(apart[len(SHIFTS) :])
+    changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
+    known = KNOWN if (model.law.damping > 0.0 or (model.law.arm_time < h).any()) else 0.0
+    jump = known if changes else 0.0
+    # On a spring, edges stop and turn without a jump of the pressure.
+    edge = (known if changes or model.sprung else 0.0) + (KINKED if model.indenter.kinks else 0.0)
+    width = 1.0 if model.indenter.per_width else 2.0 * model.half_width(model.depth)
+    force = jump * model.spacing * width * float(rows["peak_pressure"].max())
+    doubt = float(rows["peak_doubt"].max() + jump * rows["edge_doubt"].max())
+    for name, more in {
+        "leading_edge": edge * model.spacing, "trailing_edge": edge * model.spacing, "normal_force": force,
+        "friction_force": force * model.steepest, "peak_pressure": doubt,
+    }.items():  # fmt: skip
+        differences[name] += more
+    runs = "half as many elements and steps" + ", and as many" * (len(others) > len(SHIFTS))
+    return Certificate(
+        "estimated",
+        f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, {RELATIVE_TO}'
+        + ON_SPRING * model.sprung,
+        {name: max(SAFETY * d / scale[name], ROUNDING) for name, d in differences.items()},
+        AT_REST,
+    )

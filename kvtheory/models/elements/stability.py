@@ -6,7 +6,6 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,12 +25,9 @@ RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
-
-GROWS = 1e-10
-"""Growth per step above which it is not rounding."""
-SHORTEST, LIMIT_RTOL = 1e-6, 1e-9
-"""Search for the largest stable step: least step times the fastest rate, and relative tolerance."""
-
+GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
+"""Search for the largest stable step: growth per step above rounding, least step times the fastest rate, and
+relative tolerance."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
@@ -39,16 +35,11 @@ ELEMENTS = 4.0
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
-    What stands here for the length of a line contact is the area (m^2) of a ball.
-    Each is the longest over the velocities of the drive; between those the velocity is linear, and
-    the length falls with |V|. A drive that passes through rest has the contact at rest among them, and
-    so has an indenter on a spring, which may stick. A step that is too long for the latter only, at a
-    start, is unstable at first and may recover.
+    Of a ball, they are areas (m^2). Each is the longest over the velocities of the drive, at the slowest
+    motion in each direction; an indenter on a spring may stick, which is a contact at rest. A step that is
+    too long at the static depth only is unstable at first and may recover.
     """
-    velocities = path.velocities
-    if model.sprung:
-        velocities = [0.0, *velocities]
-    # The slowest motion in each direction has the longest contact.
+    velocities = [0.0, *path.velocities] if model.sprung else path.velocities
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
               max((V for V in velocities if V <= 0.0), default=velocities[0])}  # fmt: skip
     held = math.isinf(model.mass)
@@ -92,33 +83,18 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 
     For Kelvin-Voigt its eigenvalues are R(σ h), R(z) = 1 + z + z^2/2 + ... of the tableau (F15).
     """
-    *stages, weights = scheme.tableau
-    law, M, k_s = model.law, model.mass, model.spring
-    start = np.eye(2 + law.arm_stiffness.size)
-    u, held = start[:1], np.delete(start, 1, axis=0)
-    rates, pulls = list[Array](), list[Array]()
-
-    def along(a: Sequence[float]) -> tuple[Array, Array]:
-        return tuple(
-            start[k] + h * sum((x * y for x, y in zip(a, slopes, strict=True)), 0.0 * start[k])
-            for k, slopes in enumerate((rates, pulls))
-        )
-
-    def moved(c: float, depth: Array) -> Array:
-        step = law.step(c * h)
-        kept, ramp = np.append(1.0, step.held), np.append(1.0, step.ramp)
-        return kept[:, None] * held + ramp[:, None] * (depth - u)
-
-    for c, *a in stages:
-        depth, rate = along(a)
-        p = law.pressure(depth, rate) + moved(c, depth)[1:].sum(axis=0)
-        rates.append(rate)
-        pulls.append(-(length * p + k_s * depth) / M)
-    depth, rate = along(weights)
-    return np.vstack([depth, rate, moved(1.0, depth)[1:]])
+    start, rates = np.eye(2 + model.law.arm_stiffness.size), list[Array]()
+    for c, *a in scheme.table:
+        moved = (x * rate for x, rate in zip(a, rates, strict=False))
+        at = start[:2] + h * sum(moved, 0.0 * start[:2])
+        step = model.law.step(c * h)
+        arms = step.held[:, None] * start[2:] + step.ramp[:, None] * (at[0] - start[0])
+        force = length * (model.law.pressure(*at) + arms.sum(axis=0)) + model.spring * at[0]
+        rates.append(np.array([at[1], -force / model.mass]))
+    return np.vstack([at, arms])
 
 
-def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+def step_warning(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return a warning about a time step before the run begins, or an empty text."""
     if h > limit_at(scheme, model, max(lengths(model, path))):
         return f"the run may diverge: {describe(scheme, model, path, h)}"
@@ -141,17 +117,16 @@ def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
     of = f"{length * 1e3:.4g} mm" if model.indenter.per_width else f"{length * 1e6:.4g} mm^2"
     return (
-        f"its time step, {h * 1e3:.4g} ms, {has} for a contact "
-        f'of L = {of}, where the scheme "{scheme.row.name}" is stable up to '
-        f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
-        f'"{DEFAULT}", which is stable at any step'
+        f"its time step, {h * 1e3:.4g} ms, {has} for a contact of L = {of}, where the scheme "
+        f'"{scheme.row.name}" is stable up to dt = {limit * 1e3:.4g} ms; a time step of '
+        f'{ADVISED * limit * 1e3:.3g} ms would do, or the scheme "{DEFAULT}", which is stable at any step'
     )
 
 
 def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
-    """Return the speeds, upward and along, that no stable run reaches, and the imbalance that it stays below.
+    """Return the speeds, upward and along, and the imbalance that no stable run reaches.
 
-    They are for `kernels.advance`; a run with a mistake in the rule of contact has none.
+    A run with a mistake in the rule of contact has no limits.
     """
     if model.rule != RIGHT:
         return -math.inf, math.inf, math.inf
@@ -168,15 +143,17 @@ def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
 
 def divergence(
     status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, state: Array,
-    balances: Array,
+    balances: Array, deepest: float,
 ) -> DivergenceError:  # fmt: skip
-    """Return the error about a run that `kernels.advance` found to be unstable."""
-    sign = f"where the indenter is thrown upward with {-state[kernels.RATE]:.3g} m/s"
-    if status == kernels.THROWN_ALONG:
-        sign = f"where the indenter is thrown along x with {abs(state[kernels.ALONG_RATE]):.3g} m/s"
-    elif status == kernels.UNBALANCED:
-        share = balances[0].sum() / balances[1].sum()
-        sign = f"where the forces fail to balance the motion by {share:.0%}"
+    """Return the error about a run that was found to be unstable, or sank to `deepest` static depths."""
+    up, along = -state[kernels.RATE], abs(state[kernels.ALONG_RATE])
+    sign = {
+        kernels.OUTGROWN: f"the indenter sank to {deepest:g} times its static depth",
+        kernels.THROWN_UP: f"the indenter is thrown upward with {up:.3g} m/s",
+        kernels.THROWN_ALONG: f"the indenter is thrown along x with {along:.3g} m/s",
+        kernels.UNBALANCED: "the forces fail to balance the motion by "
+        f"{balances[0].sum() / balances[1].sum():.0%}",
+    }[status]
     return DivergenceError(
-        f"the run diverged at t = {time:.6g} s, {sign}: {describe(scheme, model, path, h)}"
+        f"the run diverged at t = {time:.6g} s, where {sign}: {describe(scheme, model, path, h)}"
     )
