@@ -144,6 +144,16 @@ def test_the_matrix_of_a_step_has_the_stability_polynomial_of_kelvin_voigt():
         assert np.sort(found) == pytest.approx(np.sort(R), rel=1e-10)
 
 
+def test_the_order_is_two():
+    """The force of a fixed indenter, spacing and step halved together, against exact."""
+    scene = replace(kv.Scene.table1("fixed"), foundation=RUBBER, run=kv.Run(0.1))
+    truth, errors = kv.steady(scene).load, []
+    for density in (2e4, 4e4, 8e4):
+        end = kv.elements(scene, per_length=density, at=[0.1], certify=False)
+        errors.append(abs(end.normal_force[0] / truth - 1.0))
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2.0, 2.0], abs=0.25)
+
+
 # Against brute force, in time
 
 

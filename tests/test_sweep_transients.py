@@ -11,7 +11,7 @@ import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps import blocks, simulated
+from kvtheory.sweeps import measures, simulated
 from kvtheory.sweeps.plan import Plan, columns_of
 
 V, TAU, DURATION = "drive.velocity", "foundation.retardation_time", "run.duration"
@@ -134,14 +134,14 @@ def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched
 
 
 def test_the_error_of_a_scene_that_failed_does_not_count(monkeypatch):
-    transients = blocks._transients
+    measure = measures.measure
 
     def failing(*given):
-        found = transients(*given)
+        found = measure(*given)
         found.errors["depth"][1], found.reasons[1] = math.inf, ArithmeticError("no")
         return found
 
-    monkeypatch.setattr(blocks, "_transients", failing)
+    monkeypatch.setattr(measures, "measure", failing)
     found = kv.sweep(over={V: [0.05, 0.1]}, quantities="depth.end")
     assert 0.0 < found.certificate.relative_error["depth"] < 1e-3
     assert np.isnan(found["depth.end"]).tolist() == [False, True]
