@@ -182,8 +182,12 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
         if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
             shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
     resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
-    stable = stability.limit_at(scheme, model, max(stability.lengths(model, path)))
-    return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
+    step = min(passing, max(resolved, path.end / MOST_STEPS))
+    if not scheme.tableau:
+        return step
+    return min(
+        step, STABLE_SHARE * stability.limit_at(scheme, model, max(stability.lengths(model, path)))
+    )
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:

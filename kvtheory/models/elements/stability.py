@@ -96,7 +96,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 
 def step_warning(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return a warning about a time step before the run begins, or an empty text."""
-    if h > limit_at(scheme, model, max(lengths(model, path))):
+    if scheme.tableau and h > limit_at(scheme, model, max(lengths(model, path))):
         return f"the run may diverge: {describe(scheme, model, path, h)}"
     passed = h * model.fastest(path) / model.half_length
     if passed > LONGEST_PASS:
