@@ -158,15 +158,41 @@ def _inside(low: sp.Expr, high: sp.Expr) -> sp.Expr:
     return high - 1 if high.is_finite else sp.S.Zero
 
 
-def leading_term(
-    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int
-) -> tuple[sp.Expr, sp.Expr, sp.Symbol]:
-    """Return (c, k, h) with expr = c h**k + higher order, h > 0 the distance from the point.
+def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[int]:
+    """Return from which sides the variable can tend to the point: +1 from above, -1 from below.
 
-    h is ``variable`` at 0, ``1/variable`` at infinity and ``point - variable`` elsewhere.
+    A side counts unless a condition, or what is assumed of the variable, excludes it. Where one of
+    them decides neither, or no side is left, nothing can be said of the limit.
+    """
+    if not variable.is_extended_real or (variable.is_integer and point != sp.oo):
+        raise UndecidedError(f"{variable} does not run through real values")
+    sign = variable if variable.is_nonnegative else -variable if variable.is_nonpositive else None
+    ends = [(variable - low, high - variable) for name, low, high in known.intervals if name == variable]
+    demanded = [gap for pair in ends for gap in pair if not gap.has(sp.oo, -sp.oo)]
+    demanded += [gap for gap in (sign, *known.positive) if gap is not None and gap.has(variable)]
+    h, open_ones = sp.Symbol("h", positive=True), []
+    for side in (-1,) if point == sp.oo else (1, -1) if point == 0 else (-1, 1):
+        place = 1 / h if point == sp.oo else point + side * h
+        local = (_reduced(gap.subs(variable, place)) for gap in demanded)
+        found = [_leading(_without_faded(each, h)[1], h)[0] for each in local]
+        if all(proves_positive(each, known) for each in found):
+            open_ones.append(side)
+        elif not any(proves_positive(-each, known) for each in found):
+            raise UndecidedError(f"{variable} is not known to reach {point} where {demanded} are positive")
+    if not open_ones:
+        raise UndecidedError(f"{variable} cannot tend to {point} under the conditions")
+    return open_ones
+
+
+def leading_term(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int = -1
+) -> tuple[sp.Expr, sp.Expr]:
+    """Return (c, k) with expr = c h**k + higher order, h > 0 the distance from the point.
+
+    h is ``1/variable`` at infinity.
     """
     h = sp.Symbol("h", positive=True)
-    return *_leading(near(expr, variable, point, h), h), h
+    return _leading(near(expr, variable, point, h, side), h)
 
 
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
@@ -196,12 +222,46 @@ def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | No
     return sp.cancel(top / bottom), sp.Integer(one - other)
 
 
-def near(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol) -> sp.Expr:
-    """Write the expression in the distance h > 0 from the point."""
+def near(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol, side: int
+) -> sp.Expr:
+    """Write the expression in the distance h > 0 from the point, on one side of it."""
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
-    place = {sp.S.Zero: h, sp.oo: 1 / h}.get(sp.sympify(point), point - h)
-    return _reduced(expr.subs(variable, place))
+    place = 1 / h if point == sp.oo else point + side * h
+    local = _reduced(expr.subs(variable, place))
+    if not local.has(sp.exp):
+        return local
+    power, shown = _without_faded(local, h)
+    if power:
+        raise UndecidedError(f"{local} is smaller or larger than any power of {h}")
+    return shown
+
+
+def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
+    """Return n, f with local = T**n (f + what is smaller than any power of h), T = exp(-c/h**k).
+
+    All exponentials with an exponent without bound must be whole powers of one, T. A quotient of
+    polynomials in T has the series of the quotient of their lowest coefficients.
+    """
+    exponents = {node.exp: _leading(sp.cancel(node.exp), h) for node in local.atoms(sp.exp)}
+    fading = {each: c for each, (c, k) in exponents.items() if each.has(h) and k.is_negative}
+    if not fading:
+        return 0, local
+    least, faded = min(fading, key=sp.count_ops), sp.Dummy("faded")
+    if not (fading[least].is_negative or fading[least].is_positive):
+        raise UndecidedError(f"{sp.exp(least)} has no known limit")
+    least = least if fading[least].is_negative else -least
+    powers = {each: sp.cancel(each / least) for each in fading}
+    if not all(power.is_Integer for power in powers.values()):
+        raise UndecidedError(f"{local} has exponentials that are no powers of one another")
+    shown = sp.together(local.xreplace({sp.exp(each): faded**powers[each] for each in fading}))
+    (top, one), (bottom, other) = (
+        (polynomial.coeff_monomial(faded**power), power)
+        for polynomial in (sp.Poly(part, faded) for part in sp.fraction(shown))
+        for (power,) in [min(polynomial.monoms())]
+    )
+    return one - other, sp.cancel(top / bottom)
 
 
 def _reduced(expr: sp.Expr) -> sp.Expr:
@@ -225,35 +285,47 @@ def _is_rational(expr: sp.Expr) -> bool:
 
 
 def next_order(
-    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int
+    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Return (c, k, r) with ratio = 1 + c eps**k + O(eps**r) as variable -> point.
+    """Return (c, k, r) with ratio = 1 + c eps**k + O(eps**r) as variable -> point, from all its sides.
 
-    The small quantity must be positive near the point and vanish there. The ratio must have a series
-    in whole powers of the distance: then the power after the last one that is written bounds the rest.
+    The small quantity must vanish there, and be positive on one side; on the other a whole k makes
+    up for its sign. The ratio must have a series in whole powers of the distance: then the power after
+    the last one that is written bounds the rest.
     """
+    found = [_next_on(ratio, eps, variable, point, side) for side in sides(variable, point, known)]
+    c, k, rest, _ = found[0]
+    if not any(positive for *_, positive in found):
+        raise UndecidedError(f"{eps} is not a small positive quantity")
+    for other in found[1:]:
+        if difference(c, other[0]) != 0 or other[1] != k or not (k.is_Integer or other[3]):
+            raise UndecidedError(f"{ratio} has another series on the other side of {point}")
+    return c, k, rest
+
+
+def _next_on(
+    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int
+) -> tuple[sp.Expr, sp.Expr, sp.Expr, bool]:
+    """Return (c, k, r) on one side of the point, and whether eps is positive there."""
     h = sp.Symbol("h", positive=True)
-    local = near(ratio, variable, point, h)
+    local = near(ratio, variable, point, h, side)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
-    # An absolute value has two series, one for each side of the point.
-    if not variable.is_positive and ratio.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
-        raise UndecidedError(f"{ratio} may have another series on the other side")
     regular = _is_rational(local) or local.is_meromorphic(h, 0)
-    if not regular or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
+    if not regular or local.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
     top, bottom = sp.fraction(local)
     rest = sp.expand(top - bottom) / bottom if _is_rational(local) else _reduced(local - 1)
     next_c, next_k = _leading(rest, h)
-    eps_c, eps_k, _ = leading_term(eps, variable, point)
-    if not (eps_c.is_positive and eps_k.is_positive):
+    eps_c, eps_k = leading_term(eps, variable, point, side)
+    if not (eps_c.is_nonzero and eps_c.is_real and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
     c = sp.radsimp(next_c / eps_c**k)
     if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
-    return c, k, (next_k + 1) / eps_k
+    return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)
 
 
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:

@@ -342,7 +342,9 @@ class Proof(Guarded):
                 f"{self.label}: {claim}: a remainder of its own needs eps = {variable} -> 0"
             )
         try:
-            c, k, rest = next_order(parts[0] / parts[1], parts[2], variable, point)
+            c, k, rest = next_order(
+                parts[0] / parts[1], parts[2], variable, point, self._conditions
+            )
         except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
         # Of a sum the next term must be finite; of a product, its share of the leading one.
@@ -354,7 +356,7 @@ class Proof(Guarded):
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         if short:
-            _, order, _ = leading_term(parts[1], variable, point)
+            _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             shown["right"] = f"{factor} {_series(c, eps, k, rest)}"

@@ -218,8 +218,6 @@ def _soon_and_late() -> Derivation:
     proof = _theorem("F10-instant-limits", title="Ground left at one instant: early and late", text=_LIMITS,
                      uses=("F10-instant", "F10-peel", "F10-touch"))  # fmt: skip
     proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
-    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
-    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
     proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
     proof.equal(
@@ -227,6 +225,8 @@ def _soon_and_late() -> Derivation:
     )
     proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
     proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
+    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
+    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
     means = E, lift, drift
     for ends, edge, shown, words in (
         ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
