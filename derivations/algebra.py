@@ -167,7 +167,9 @@ def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[
     if not variable.is_extended_real or (variable.is_integer and point != sp.oo):
         raise UndecidedError(f"{variable} does not run through real values")
     sign = variable if variable.is_nonnegative else -variable if variable.is_nonpositive else None
-    ends = [(variable - low, high - variable) for name, low, high in known.intervals if name == variable]
+    ends = [
+        (variable - low, high - variable) for name, low, high in known.intervals if name == variable
+    ]
     demanded = [gap for pair in ends for gap in pair if not gap.has(sp.oo, -sp.oo)]
     demanded += [gap for gap in (sign, *known.positive) if gap is not None and gap.has(variable)]
     h, open_ones = sp.Symbol("h", positive=True), []
@@ -178,7 +180,9 @@ def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[
         if all(proves_positive(each, known) for each in found):
             open_ones.append(side)
         elif not any(proves_positive(-each, known) for each in found):
-            raise UndecidedError(f"{variable} is not known to reach {point} where {demanded} are positive")
+            raise UndecidedError(
+                f"{variable} is not known to reach {point} where {demanded} are positive"
+            )
     if not open_ones:
         raise UndecidedError(f"{variable} cannot tend to {point} under the conditions")
     return open_ones
@@ -255,7 +259,7 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     powers = {each: sp.cancel(each / least) for each in fading}
     if not all(power.is_Integer for power in powers.values()):
         raise UndecidedError(f"{local} has exponentials that are no powers of one another")
-    shown = sp.together(local.xreplace({sp.exp(each): faded**powers[each] for each in fading}))
+    shown = sp.together(local.xreplace({sp.exp(each): faded ** powers[each] for each in fading}))
     (top, one), (bottom, other) = (
         (polynomial.coeff_monomial(faded**power), power)
         for polynomial in (sp.Poly(part, faded) for part in sp.fraction(shown))

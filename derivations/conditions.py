@@ -54,9 +54,17 @@ def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
         if all(proves_nonnegative(part, known) for part in expr.args):
             return True
     elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
-        _, low, high = expr.limits[0]
-        return proves_nonnegative(expr.function, known) and proves_nonnegative(high - low, known)
+        return _is_nonnegative_integral(expr, known)
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
+
+
+def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
+    """Decide by the integrand, whose variable has the conditions of its range and no others."""
+    variable, low, high = expr.limits[0]
+    bound = sp.Dummy(variable.name, real=True)
+    inside = known.with_interval((bound, low, high))
+    integrand = expr.function.subs(variable, bound)
+    return proves_nonnegative(high - low, known) and proves_nonnegative(integrand, inside)
 
 
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:

@@ -96,7 +96,7 @@ def _without_roots(
     )
     if order == 1 or not domain.low.is_zero or domain.high != sp.oo:
         return expr, x, value, domain
-    y = sp.Dummy("y", positive=True)
+    y = sp.Dummy("y", nonnegative=True, positive=None if domain.low_included else True)
     return sp.powdenest(expr.subs(x, y**order)), y, value ** sp.Rational(1, order), domain
 
 
@@ -113,6 +113,7 @@ def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: C
     if quotient.degree() == 0:
         return proves_nonzero(quotient.as_expr(), known)
     half_line = domain.low.is_zero and domain.high == sp.oo
+    half_line = half_line and (not domain.low_included or proves_nonzero(poly.eval(0), known))
     return bool(half_line and _one_change_of_sign(poly, known)) or all(
         _elsewhere(sp.Poly(factor, x), x, value, domain, known)
         for factor, _ in sp.factor_list(quotient.as_expr())[1]
