@@ -22,7 +22,9 @@ class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute the statement."""
 
 
-_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh, sp.Abs)
+_SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that have all derivatives wherever their argument is real."""
+_CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
 
 
@@ -69,7 +71,19 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    return sp.S.Zero if vanishes(rest) else sp.simplify(rest / denominator)
+    if vanishes(rest):
+        return sp.S.Zero
+    rest = (rest / denominator).doit(integrals=False, sums=False)
+    if rest.has(sp.Integral):
+        rest = rest.replace(sp.Integral, _constants_out)
+    return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
+
+
+def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:
+    """Write the factors that do not depend on its variables before an integral."""
+    variables = [limit[0] for limit in limits]
+    factor, rest = sp.factor(integrand).as_independent(*variables, as_Add=False)
+    return factor * sp.Integral(rest, *limits)
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -342,42 +356,135 @@ def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
         raise UndecidedError(f"{expr} has no known limit: {error}") from error
 
 
-def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
+def is_continuous(
+    expr: sp.Expr, over: Interval, known: Conditions, *, smooth: bool = False
+) -> bool:
     """Tell whether the expression is real, without a jump or a pole, from end to end of the interval.
 
-    An undefined function stands for any that is as smooth as its derivatives ask.
+    If `smooth`, all its derivatives are so too. An undefined function stands for any that is smooth.
     """
     variable = over[0]
     if variable not in expr.free_symbols or expr == variable:
         return True
+    inside = known.with_interval(over)
     if expr.is_Pow:
-        return _is_continuous_power(expr, over, known)
+        return _is_continuous_power(expr, over, known, smooth)
     if isinstance(expr, (sp.log, sp.asin, sp.acos)):
         (argument,) = expr.args
-        inside = known.with_interval(over)
         if isinstance(expr, sp.log):
             real = _nowhere_zero(argument, over, inside, positive=True)
+        elif smooth:
+            real = _nowhere_zero(1 - argument**2, over, inside, positive=True)
         else:
             real = _never_negative(1 - argument**2, over, inside)
-        return real and is_continuous(argument, over, known)
+        return real and is_continuous(argument, over, known, smooth=smooth)
+    if isinstance(expr, (sp.Abs, sp.sign)) and _nowhere_zero(expr.args[0], over, inside):
+        return is_continuous(expr.args[0], over, known, smooth=smooth)
     if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
         return is_continuous(expr.expr, over, known)
+    if isinstance(expr, sp.Integral):
+        return _is_continuous_integral(expr, over, known, smooth)
     allowed = expr.is_Add or expr.is_Mul
-    allowed = allowed or isinstance(expr, (*_CONTINUOUS, AppliedUndef))
-    return bool(allowed and all(is_continuous(arg, over, known) for arg in expr.args))
+    allowed = allowed or isinstance(
+        expr, (*_SMOOTH, *(() if smooth else _CONTINUOUS), AppliedUndef)
+    )
+    return bool(
+        allowed and all(is_continuous(arg, over, known, smooth=smooth) for arg in expr.args)
+    )
 
 
-def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions) -> bool:
+def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions, smooth: bool) -> bool:
     base, exponent = expr.as_base_exp()
-    if base == sp.E:
-        return is_continuous(exponent, over, known)
-    if exponent.has(over[0]) or not is_continuous(base, over, known):
-        return False
     inside = known.with_interval(over)
+    if base == sp.E or (exponent.has(over[0]) and _nowhere_zero(base, over, inside, positive=True)):
+        parts = (exponent,) if base == sp.E else (base, exponent)
+        return all(is_continuous(part, over, known, smooth=smooth) for part in parts)
+    if exponent.has(over[0]) or not is_continuous(base, over, known, smooth=smooth):
+        return False
     if exponent.is_integer:
-        return bool(exponent.is_positive or _nowhere_zero(base, over, inside))
+        return bool(exponent.is_nonnegative or _nowhere_zero(base, over, inside))
     real = _nowhere_zero(base, over, inside, positive=True)
-    return bool(real or (exponent.is_positive and _never_negative(base, over, inside)))
+    return bool(
+        real or (not smooth and exponent.is_positive and _never_negative(base, over, inside))
+    )
+
+
+def _is_continuous_integral(
+    expr: sp.Integral, over: Interval, known: Conditions, smooth: bool
+) -> bool:
+    """Decide by the integrand between finite ends, where it is continuous in both variables."""
+    (bound, *ends), *others = expr.limits
+    if others or len(ends) != 2 or any(end.is_infinite for end in ends):
+        return False
+    inside, within = known.with_interval((bound, *ends)), known.with_interval(over)
+    jointly = is_continuous(expr.function, over, inside, smooth=smooth)
+    along = is_continuous(expr.function, (bound, *ends), within, smooth=smooth)
+    return jointly and along and all(is_continuous(end, over, known, smooth=smooth) for end in ends)
+
+
+def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
+    """Tell whether a derivative exists and is the one that the rules of differentiation give.
+
+    It is, of what is made of smooth functions, wherever the result is defined. Under an integral the
+    integrand and its derivative must be continuous in both variables, and the ends finite. What has
+    kinks must be continuous, and its derivative beside them have a continuous extension.
+    """
+    inner, variables = derivative.expr, set(derivative.variables)
+    for node in inner.atoms(sp.Integral, sp.Sum, sp.Product):
+        if not node.free_symbols & variables:
+            continue
+        infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
+        if infinite or not all(_under_integral(node, variable, known) for variable in variables):
+            return False
+    kinks = (
+        sp.Abs,
+        sp.sign,
+        sp.Piecewise,
+        sp.Min,
+        sp.Max,
+        sp.Heaviside,
+        sp.floor,
+        sp.ceiling,
+        sp.Mod,
+    )
+    for variable in variables:
+        if any(node.has(variable) for node in inner.atoms(*kinks)):
+            everywhere = variable, -sp.oo, sp.oo
+            slope = sp.expand(inner.diff(variable)).replace(_is_distance, lambda e: _distance(e))
+            if len(derivative.variables) > 1 or not all(
+                is_continuous(each, everywhere, known) for each in (inner, slope)
+            ):
+                return False
+    return True
+
+
+def _under_integral(node: sp.Expr, variable: sp.Symbol, known: Conditions) -> bool:
+    if isinstance(node, sp.Sum | sp.Product) or not node.has(variable):
+        return True
+    (bound, *ends), *others = node.limits
+    if others or len(ends) != 2:
+        return not node.function.has(variable)
+    inside = known.with_interval((bound, *ends))
+    return all(
+        is_continuous(each, (bound, *ends), known)
+        and is_continuous(each, (variable, -sp.oo, sp.oo), inside)
+        for each in (node.function, node.function.diff(variable).doit())
+    )
+
+
+def _is_distance(expr: sp.Expr) -> bool:
+    return bool(
+        expr.is_Mul
+        and any(isinstance(arg, sp.sign) and arg.args[0] in expr.args for arg in expr.args)
+    )
+
+
+def _distance(expr: sp.Expr) -> sp.Expr:
+    """Write |u| for u sign(u)."""
+    for arg in expr.args:
+        if isinstance(arg, sp.sign) and arg.args[0] in expr.args:
+            return expr / arg / arg.args[0] * sp.Abs(arg.args[0])
+    return expr
 
 
 def _nowhere_zero(

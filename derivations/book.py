@@ -13,7 +13,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
-from .algebra import difference
+from .algebra import difference, is_continuous, is_differentiable
 from .conditions import (
     Conditions,
     Interval,
@@ -458,10 +458,30 @@ class Book:
         value = self._resolve(rhs)
         if value.has(lhs):
             raise StepError(f"{self.label}: the definition {lhs} = {rhs} is circular")
+        if isinstance(lhs, AppliedUndef):
+            self._smooth(lhs, value)
         was = self._resolve(lhs)
         if violates(was, value):
             raise StepError(f"{self.label}: {lhs} = {rhs} contradicts the assumptions on {lhs}")
         self._rules[lhs] = rhs
+
+    def _smooth(self, call: AppliedUndef, value: sp.Expr) -> None:
+        """Refuse a value with a singularity for a function of which something was proved as if smooth."""
+        facts = [fact for fact in self._known.values()] + list(self._origins.values())
+        claims = [fact.step.claim for fact in facts if fact.step.claim]
+        asked = (side for claim in claims for side in (claim.lhs, claim.rhs))
+        if not any(side.has(call.func) for side in asked):
+            return
+        for letter in (arg for arg in call.args if arg.is_Symbol and value.has(arg)):
+            over = (
+                letter,
+                0 if letter.is_nonnegative else -sp.oo,
+                0 if letter.is_nonpositive else sp.oo,
+            )
+            if not is_continuous(value, over, self._conditions, smooth=True):
+                raise StepError(
+                    f"{self.label}: {call} = {value} may be singular, though it was taken as smooth"
+                )
 
     @contextmanager
     def _case(self, case: Relational | sp.logic.boolalg.BooleanTrue) -> Iterator[None]:
@@ -580,9 +600,12 @@ class Book:
     def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
         """Replace all that was defined or recalled, and carry out the derivatives."""
         try:
-            found, used = resolve(expr, self._rules, self._hidden())
+            found, used, derived = resolve(expr, self._rules, self._hidden())
         except HiddenError as error:
             raise StepError(f"{self.label}: {error}") from error
+        for each in derived:
+            if not is_differentiable(each, self._conditions):
+                raise StepError(f"{self.label}: {each} is not known to exist everywhere")
         self._used |= used
         return found
 
@@ -593,6 +616,11 @@ class Book:
             for premise in fact.premises:
                 if premise.lhs not in self._rules and premise.lhs.is_Symbol:
                     direct.setdefault(premise.lhs, set()).update(premise.rhs.free_symbols)
+                opaque = (AppliedUndef, sp.Derivative, sp.Integral)
+                if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):
+                    related = premise.lhs.free_symbols | premise.rhs.free_symbols
+                    for each in related - self._rules.keys():
+                        direct.setdefault(each, set()).update(related - {each})
         for _ in direct:
             for reach in direct.values():
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))

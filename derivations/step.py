@@ -133,9 +133,12 @@ class Proof(Guarded):
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        given: Shown = {**shown}
+        if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
+            self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
         self._imply(lhs)
-        self._displayed(lhs, sp.sympify(wanted), shown, whole, variable)
+        self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
             *(lhs, "=", wanted, reason, "proved", shown), premise=premise, trusted=True
