@@ -378,12 +378,10 @@ def is_continuous(
         else:
             real = _never_negative(1 - argument**2, over, inside)
         return real and is_continuous(argument, over, known, smooth=smooth)
-    if isinstance(expr, (sp.Abs, sp.sign)) and _nowhere_zero(expr.args[0], over, inside):
-        return is_continuous(expr.args[0], over, known, smooth=smooth)
-    if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
-        return is_continuous(expr.expr, over, known)
     if isinstance(expr, sp.Integral):
         return _is_continuous_integral(expr, over, known, smooth)
+    if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
+        expr = expr.expr
     allowed = expr.is_Add or expr.is_Mul
     allowed = allowed or isinstance(
         expr, (*_SMOOTH, *(() if smooth else _CONTINUOUS), AppliedUndef)
@@ -450,7 +448,7 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
     for variable in variables:
         if any(node.has(variable) for node in inner.atoms(*kinks)):
             everywhere = variable, -sp.oo, sp.oo
-            slope = sp.expand(inner.diff(variable)).replace(_is_distance, lambda e: _distance(e))
+            slope = sp.expand(inner.diff(variable)).replace(_is_distance, _distance)
             if len(derivative.variables) > 1 or not all(
                 is_continuous(each, everywhere, known) for each in (inner, slope)
             ):

@@ -1,5 +1,6 @@
 """The book of a proof: its definitions, recalled and established relations, and its result."""
 
+import re
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -41,6 +42,10 @@ _finished: dict[str, "Book"] = {}
 
 NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
 """Names that every display may use."""
+
+
+_CONSTANTS = {r"\pi", "e", r"\infty"}
+"""What no notation may give another meaning."""
 
 
 class StepError(ValueError):
@@ -234,6 +239,8 @@ class Book:
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._steps: list[Step] = []
         self._result: Derivation | None = None
+        self._letters: dict[str, Any] = {}
+        """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
@@ -467,7 +474,7 @@ class Book:
 
     def _smooth(self, call: AppliedUndef, value: sp.Expr) -> None:
         """Refuse a value with a singularity for a function of which something was proved as if smooth."""
-        facts = [fact for fact in self._known.values()] + list(self._origins.values())
+        facts = [*self._known.values(), *self._origins.values()]
         claims = [fact.step.claim for fact in facts if fact.step.claim]
         asked = (side for claim in claims for side in (claim.lhs, claim.rhs))
         if not any(side.has(call.func) for side in asked):
@@ -626,15 +633,50 @@ class Book:
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
+    def _unambiguous(self, *expressions: sp.Expr) -> None:
+        """Refuse two symbols or two functions of one proof that are printed alike."""
+        for expr in expressions:
+            for symbol in expr.atoms(sp.Symbol) - expr.atoms(sp.Dummy):
+                shape = re.sub(r"\\mathrm\{([^{}]*)\}", r"\1", tex(symbol))
+                if self._letters.setdefault(shape, symbol) != symbol:
+                    raise StepError(f"{self.label}: two letters are printed {tex(symbol)}")
+            for call in expr.atoms(AppliedUndef):
+                name = f"{call.func.__name__}()"
+                if self._letters.setdefault(name, call.func) != call.func:
+                    raise StepError(f"{self.label}: two functions are printed {name}")
+
+    def _means(self, known: Meaning, meaning: Meaning) -> bool:
+        """Tell whether a name of the notation is what the symbol or function of that name is here."""
+        if known is meaning or getattr(known, "func", None) is meaning:
+            return True
+        if isinstance(meaning, sp.Lambda):
+            given = known.args if isinstance(known, AppliedUndef) else meaning.variables
+            meaning = meaning(*given) if len(given) == len(meaning.variables) else sp.nan
+        if not isinstance(known, sp.Expr) or not isinstance(meaning, sp.Expr):
+            return False
+        return difference(self._resolve(known), self._resolve(meaning)) == 0
+
     def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
         """Refuse LaTeX that does not say what was checked: it may only rearrange."""
         used = set(self._used)
+        self._unambiguous(lhs, rhs, *known)
         for side, expr in (("left", lhs), ("right", rhs)):
             if side not in shown:
                 continue
             latex = str(dict(shown)[side])
             rules = [*self._rules, *self._rules.values()]
-            names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
+            names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
+            for name, meaning in self.notation.items():
+                here = names.get(name, meaning) if name in latex else meaning
+                agrees = self._means(here, meaning)
+                agrees = agrees or (
+                    isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)
+                )
+                if name in _CONSTANTS or not agrees:
+                    raise StepError(
+                        f"{self.label}: the notation {name} = {meaning} has another meaning here"
+                    )
+            names |= {**NOTATION, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:

@@ -63,13 +63,10 @@ def derive() -> tuple[Derivation, ...]:
 
 def _peeling() -> Derivation:
     proof = _theorem("F10-peel", title="Edges that peel", text=_PEEL, uses=("eq33",))
-    proof.recall("scaled-pressure", P, PRESSURE)
-    proof.define(rho, sp.sqrt(RADICAND))
-    proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
     pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
     radius = sp.sqrt(RADICAND).subs(_MOVING)
     proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
-    for sign, name, edge in ((-1, "left", r"\ell"), (1, "right", "r")):
+    for sign, edge in ((-1, r"\ell"), (1, "r")):
         position = sign * radius - sp.Derivative(travel, time) - travel
         loss = sp.diff(pressure, time).subs(material, position)
         moving = sign * radius - sp.Derivative(travel, time)
@@ -80,14 +77,18 @@ def _peeling() -> Derivation:
             "X": material,
         }
         proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
-        side = (xi, -sp.oo, -lam) if sign < 0 else (xi, -lam, sp.oo)
-        called = left if sign < 0 else right
-        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
         proof.equal(
             *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
             left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
             right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
         )
+    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.define(rho, sp.sqrt(RADICAND))
+    proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
+    for side, sign, name, called in (
+        ((xi, -sp.oo, -lam), -1, "left", left), ((xi, -lam, sp.oo), 1, "right", right)
+    ):  # fmt: skip
+        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
     return proof.done(right, rho - lam)
 
 

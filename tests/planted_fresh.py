@@ -257,64 +257,64 @@ FALSE = {
     "letters that hide a dependence": {
         "exponential that grows":
             (define(exp(z), b * z), order(1 / z + b / z**2, 1 / z, z, oo, 1 / z),
-             "b = e^z/z is without bound", OPEN),
+             "b = e^z/z is without bound"),
         "law for a square": (define(b**2, y), equal(Derivative(b * y, y), b), "b = sqrt y: 3/2 sqrt y"),
-        "law for an exponential": (define(exp(b), y), equal(Derivative(b, y), 0), "1/y", OPEN),
+        "law for an exponential": (define(exp(b), y), equal(Derivative(b, y), 0), "1/y"),
         "trailing edge of the retardation length":
             (define(q, 1 / (l + sqrt(1 + l**2))), equal(Derivative(q * l, l), q), "q depends on l"),
     },
     "differentiation": {
         "under an integral that then diverges":
             (equal(Derivative(Integral(KERNEL, (y, 0, oo)), x), Integral(cos(x * y), (y, 0, oo))),
-             "0 is not a divergent integral; at x = 0 there is no derivative", OPEN),
+             "0 is not a divergent integral; at x = 0 there is no derivative"),
         "under an integral at one place":
             (equal(Derivative(Integral(FADING, (y, 0, 1)), x), Integral(sp.diff(FADING, x), (y, 0, 1))),
-             "x = 0: 1 is not 0", OPEN),
+             "x = 0: 1 is not 0"),
         "term by term":
             (equal(Derivative(Sum(sin(k * x) / k, (k, 1, oo)), x), Sum(cos(k * x), (k, 1, oo))),
              "x = 1: -1/2 is not a divergent sum"),
-        "absolute value": (equal(Derivative(Abs(x), x), sp.sign(x)), "none at x = 0", OPEN),
+        "absolute value": (equal(Derivative(Abs(x), x), sp.sign(x)), "none at x = 0"),
         "kink of the pressure":
             (equal(Derivative(sp.Piecewise((a - x, x < a), (0, True)), x),
              sp.Piecewise((-1, x < a), (0, True))),
-             "none at x = a", OPEN),
+             "none at x = a"),
         "logarithm under an integral":
             (equal(Derivative(Integral(log(x**2 + y**2), (y, 0, 1)), x),
              Integral(2 * x / (x**2 + y**2), (y, 0, 1))),
-             "x = 0: pi on one side, -pi on the other, not 0", OPEN),
+             "x = 0: pi on one side, -pi on the other, not 0"),
         "transform with a kink":
             (equal(Derivative(Integral(cos(x * y) / (1 + y**2), (y, 0, oo)), x),
              Integral(-y * sin(x * y) / (1 + y**2), (y, 0, oo))),
-             "pi/2 e^(-|x|) has none at x = 0", OPEN),
+             "pi/2 e^(-|x|) has none at x = 0"),
         "twice under a kernel":
-            (equal(Derivative(Integral(Abs(x - y), (y, 0, 1)), (x, 2)), 0), "x = 1/2: 2", OPEN),
+            (equal(Derivative(Integral(Abs(x - y), (y, 0, 1)), (x, 2)), 0), "x = 1/2: 2"),
         "step under an integral":
             (equal(Derivative(Integral(sp.Piecewise((1, x < y), (0, True)), (x, 0, 1)), y), 0),
-             "y = 1/2: 1", OPEN),
+             "y = 1/2: 1"),
     },
     "function given a value with a singularity": {
         "relaxation that is singular inside":
             (_for_every_function(v, f(1) - f(-1), integral(Derivative(f(x), x), (x, -1, 1), f(x)), 1 / x**2,
              x),
-             "a divergent integral is not 0", OPEN),
+             "a divergent integral is not 0"),
         "logarithm between the ends":
             (_for_every_function(v, f(2) - f(-1), integral(Derivative(f(x), x), (x, -1, 2), f(x)),
              log(Abs(x)), x),
-             "the integral of 1/x diverges", OPEN),
+             "the integral of 1/x diverges"),
         "jump between the ends":
             (_for_every_function(v, f(1) - f(-1), integral(Derivative(f(x), x), (x, -1, 1), f(x)),
              atan(1 / x), x),
-             "-pi/2 is not pi/2", OPEN),
+             "-pi/2 is not pi/2"),
         "product rule at a kink":
             (_for_every_function(Derivative(f(x) ** 2, x), 2 * f(x) * Derivative(f(x), x), None, Abs(x), x),
-             "x = 0: 0 is not undefined", OPEN),
+             "x = 0: 0 is not undefined"),
         "pole at an end":
             (_for_every_function(v, f(1) - f(0), integral(Derivative(f(x), x), (x, 0, 1), f(x)), 1 / x, x),
-             "1/0", OPEN),
+             "1/0"),
         "by parts across a pole":
             (_for_every_function(v, f(1) + f(-1),
              integral(f(x) + x * Derivative(f(x), x), (x, -1, 1), x * f(x)), 1 / x**2, x),
-             "x f = 1/x jumps: -1/x^2 is negative, its integral not 2", OPEN),
+             "x f = 1/x jumps: -1/x^2 is negative, its integral not 2"),
     },
     "roots with a letter that may vanish": {
         "quadratic": (root(m * y**2 - b * y, y, b / m), "m = 0: none"),
@@ -357,35 +357,35 @@ FALSE = {
     },
     "display": {
         "notation that reads itself":
-            (notation(x=1 - x), equal(1 - x, 1 - x, left="x"), "prints x = 1 - x", OPEN),
+            (notation(x=1 - x), equal(1 - x, 1 - x, left="x"), "prints x = 1 - x"),
         "sine of a product":
-            (equal(delta * sin(3), delta * sin(3), left=r"\sin 3 \delta"), "reads sin(3 delta)", OPEN),
+            (equal(delta * sin(3), delta * sin(3), left=r"\sin 3 \delta"), "reads sin(3 delta)"),
         "power of the argument": (equal(cos(x) ** 2, cos(x) ** 2, left=r"\cos x^2"), "reads cos(x^2)"),
         "derivative of a sum without brackets":
             (equal(Derivative(x**2 + x, x), 2 * x + 1, left=r"\frac{d}{dx} x^2 + x"), "reads 3 x"),
-        "exponent of two digits": (equal(q**23, q**23, left="q^23"), "prints q^2 3", OPEN),
-        "root with the same letter": (root(x - other_x**2, x, other_x**2), "prints x = x^2", OPEN),
+        "exponent of two digits": (equal(q**23, q**23, left="q^23"), "prints q^2 3"),
+        "root with the same letter": (root(x - other_x**2, x, other_x**2), "prints x = x^2"),
         "name of a definition": (define(z, y**2, left="y"), "prints y = y^2"),
         "root of two digits":
-            (equal(sqrt(23), sqrt(23), left=r"\sqrt 23"), "prints a root of 2, times 3", OPEN),
-        "exponential of a product": (equal(x * exp(2), x * exp(2), left=r"\exp 2 x"), "reads e^(2 x)", OPEN),
+            (equal(sqrt(23), sqrt(23), left=r"\sqrt 23"), "prints a root of 2, times 3"),
+        "exponential of a product": (equal(x * exp(2), x * exp(2), left=r"\exp 2 x"), "reads e^(2 x)"),
         "end of two digits":
             (equal(Integral(x, (x, 0, 12)), 72, left=r"\int_0^12 x \, dx"),
-             "prints the integral of 2 x to 1", OPEN),
+             "prints the integral of 2 x to 1"),
         "two numbers side by side":
-            (equal(6 * l_r, 2 * l_r + 4 * l_r, left=r"2 3 l_{\mathrm{r}}"), "prints 23 l_r", OPEN),
+            (equal(6 * l_r, 2 * l_r + 4 * l_r, left=r"2 3 l_{\mathrm{r}}"), "prints 23 l_r"),
         "mixed number":
-            (equal(delta / 2, delta - delta / 2, left=r"1 \frac{1}{2} \delta"), "reads 3 delta/2", OPEN),
+            (equal(delta / 2, delta - delta / 2, left=r"1 \frac{1}{2} \delta"), "reads 3 delta/2"),
         "notation of a letter that has a value":
             (define(y, z + 1), notation(y=z), equal(z**2 + z, z * (z + 1), left="y^2 + y"),
-             "prints y^2 + y, though y = z + 1", OPEN),
+             "prints y^2 + y, though y = z + 1"),
         "notation of a number":
             (lambda p: p.notation.update({r"\pi": sp.S(3)}), equal(3 * a, 3 * a, left=r"\pi a"),
-             "prints pi a = 3 a", OPEN),
+             "prints pi a = 3 a"),
         "functions of one letter":
-            (define(sp.Function("f", positive=True)(x), f(x) + 1), "prints f(x) = f(x) + 1", OPEN),
+            (define(sp.Function("f", positive=True)(x), f(x) + 1), "prints f(x) = f(x) + 1"),
         "names that print alike":
-            (define(sp.Symbol("l_{r}", positive=True), l_r + 1), "prints l_r = l_r + 1", OPEN),
+            (define(sp.Symbol("l_{r}", positive=True), l_r + 1), "prints l_r = l_r + 1"),
     },
     "book-keeping": {
         "uses itself": (_uses_itself, "a circle"),
@@ -417,7 +417,7 @@ FALSE = {
         "mean of an oscillation": (equal(Integral(sin(x), (x, 0, oo)), 1), "diverges"),
         "order of integration":
             (equal(Integral(FUBINI, (x, 0, 1), (u, 0, 1)), Integral(FUBINI, (u, 0, 1), (x, 0, 1))),
-             "-pi/4 is not pi/4", SLOW),
+             "-pi/4 is not pi/4"),
         "tail not integrable": (integral(y ** (-b), (y, 1, oo), y ** (1 - b) / (1 - b)), "b < 1"),
         "oscillation with a primitive": (integral(cos(x), (x, 0, oo), sin(x)), "sin has no limit"),
         "faster oscillation":
