@@ -420,6 +420,30 @@ def _is_continuous_integral(
     return jointly and along and all(is_continuous(end, over, known, smooth=smooth) for end in ends)
 
 
+def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
+    """Tell whether a function vanishes: its slope does, and its value at one place.
+
+    For inverse functions of one real letter, smooth wherever the letter can be: on one interval.
+    """
+    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.acos, sp.asinh, sp.log):
+        return False
+    (letter,) = expr.free_symbols
+    connected = letter.is_real and not (
+        letter.is_integer or (letter.is_nonzero and not letter.is_positive)
+    )
+    everywhere = letter, -sp.oo, sp.oo
+    if (
+        not connected
+        or known != Conditions()
+        or not is_continuous(expr, everywhere, known, smooth=True)
+    ):
+        return False
+    return (
+        difference(expr.diff(letter), sp.S.Zero) == 0
+        and difference(expr.subs(letter, 1), sp.S.Zero) == 0
+    )
+
+
 def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
     """Tell whether a derivative exists and is the one that the rules of differentiation give.
 

@@ -14,7 +14,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
-from .algebra import difference, is_continuous, is_differentiable
+from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
 from .conditions import (
     Conditions,
     Interval,
@@ -691,8 +691,17 @@ class Book:
 
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
         rest = difference(lhs, rhs)
-        if rest != 0:
+        if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
+            rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
+        if rest != 0 and not is_constant_zero(rest, self._conditions):
             raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _signed(self, inner: sp.Expr) -> sp.Expr:
+        """Write an absolute value without its bars, where the conditions say the sign."""
+        for form in (inner, -inner):
+            if proves_nonnegative(form, self._conditions):
+                return form
+        return sp.Abs(inner)
 
     def _record(
         self,

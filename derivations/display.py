@@ -176,13 +176,10 @@ class _Reader:
             if self._take("/"):
                 product /= self._factor()
                 continue
-            if (
-                not self._take(r"\cdot")
-                and self.place
-                and self.tokens[self.place - 1][:1].isdigit()
-            ):
-                if token[:1].isdigit() or (token == r"\frac" and self._at_number()):
-                    raise UnreadableError(f"two numbers side by side in {self.latex}")
+            number = self.tokens[self.place - 1][:1].isdigit() and not self._take(r"\cdot")
+            if number and (token[:1].isdigit() or (token == r"\frac" and self._at_number())):
+                raise UnreadableError(f"two numbers side by side in {self.latex}")
+            self._take(r"\cdot")
             product *= self._factor()
 
     def _at_number(self) -> bool:

@@ -366,7 +366,7 @@ class Proof(Guarded):
         """Prove that `nonnegative` >= 0 says the same as lhs >= rhs: their ratio is positive."""
         top, gap = self._resolve(nonnegative), self._resolve(lhs - rhs)
         ratio = sp.cancel(top / gap)
-        if not ratio.is_positive or difference(top, ratio * gap) != 0:
+        if not proves_positive(ratio, self._conditions) or difference(top, ratio * gap) != 0:
             raise StepError(
                 f"{self.label}: {lhs} >= {rhs} is not the same as {nonnegative} >= 0: ratio {ratio}"
             )

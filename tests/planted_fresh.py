@@ -477,10 +477,10 @@ FALSE = {
 
 TRUE = {
     "bounds and angles": {
-        "arc tangents of inverses": (equal(atan(1 / q) + atan(q), pi / 2), "angle of a strip", OPEN),
-        "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges", OPEN),
-        "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm", OPEN),
-        "two less a sine": (holds(2 - sin(x)), "a denominator", OPEN),
+        "arc tangents of inverses": (equal(atan(1 / q) + atan(q), pi / 2), "angle of a strip"),
+        "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges"),
+        "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm"),
+        "two less a sine": (holds(2 - sin(x)), "a denominator"),
     },
     "steady sliding": {
         "trailing edge":
@@ -504,7 +504,7 @@ TRUE = {
         "peak at a letter": (greatest(a**2, 2 * a * x - x**2, x, a, (x - a) ** 2), "a constant place"),
         "larger of two, in order": (where(a < b), equal(sp.Max(a, b), b), "as the condition says", OPEN),
         "factor that the condition makes positive":
-            (where(x > 0), equivalent(x * (u - v), u, v), "x > 0", OPEN),
+            (where(x > 0), equivalent(x * (u - v), u, v), "x > 0"),
     },
     "relaxation": {
         "moment of an arm":
@@ -524,17 +524,17 @@ TRUE = {
         "three arms": (equal(Sum(G(k), (k, 1, 3)), G(1) + G(2) + G(3)), "a finite sum"),
         "springpot and spring":
             (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "its dashpot is small", OPEN),
-        "half an arm": (root(exp(-x / y) - half, x, y * log(2)), "half-life", OPEN),
-        "time of an e-fold": (root(log(y / z) - 1, y, sp.E * z), "by the logarithm", OPEN),
-        "exponential above its tangent": (holds(exp(a) - 1 - a), "a > 0", OPEN),
+        "half an arm": (root(exp(-x / y) - half, x, y * log(2)), "half-life"),
+        "time of an e-fold": (root(log(y / z) - 1, y, sp.E * z), "by the logarithm"),
+        "exponential above its tangent": (holds(exp(a) - 1 - a), "a > 0"),
     },
     "calculus and algebra": {
-        "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2", OPEN),
-        "sine below its argument": (holds(y - sin(y)), "y > 0", OPEN),
+        "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2"),
+        "sine below its argument": (holds(y - sin(y)), "y > 0"),
         "hyperbolic cosine from 1": (holds(sp.cosh(x) - 1, ">="), "not strict", OPEN),
-        "sine to 1": (holds(1 - sin(x), ">="), "not strict", OPEN),
+        "sine to 1": (holds(1 - sin(x), ">="), "not strict"),
         "root of a sum": (holds(sqrt(a) + sqrt(b) - sqrt(a + b)), "concave"),
-        "quadratic form": (holds(x**2 + x * u + u**2, ">="), "definite", OPEN),
+        "quadratic form": (holds(x**2 + x * u + u**2, ">="), "definite"),
         "cosine below 2, integrated":
             (integral(1 / (2 + cos(x)), (x, 0, pi / 2), 2 / sqrt(3) * atan(sp.tan(x / 2) / sqrt(3))),
              "no jump up to pi/2", OPEN),
@@ -549,7 +549,7 @@ TRUE = {
         "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
         "order at infinity": (order(sp.coth(z), 1, z, oo, exp(-2 * z)), "exponentially small", OPEN),
         "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval", OPEN),
-        "root of a logarithm": (root(y * log(y), y, 1), "y > 0", OPEN),
+        "root of a logarithm": (root(y * log(y), y, 1), "y > 0"),
         "between ends in order":
             (where(a < b), root(x - (a + b) / 2, x, (a + b) / 2, over=(x, a, b)), "midpoint"),
         "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded", OPEN),
