@@ -107,6 +107,10 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
     if sign or not expr.free_symbols:
         return sign
+    factored = sp.factor(expr) if expr.is_Add and known.positive else expr
+    several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
+    if factored != expr and several and (sign := _sign(factored, known)):
+        return sign
     for side in (1, -1):
         one = side * expr
         if (
@@ -221,6 +225,8 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
         if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
         if power.base.is_positive
     }
+    if expr.has(sp.cosh):
+        yield expr.replace(sp.cosh, lambda angle: 1 + 2 * sp.sinh(angle / 2) ** 2)
     if squares and not known.intervals and not known.positive:
         yield expr.subs(squares)  # roots of letters are letters too
     for place, (variable, *ends) in enumerate(known.intervals):

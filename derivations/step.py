@@ -87,7 +87,7 @@ class Proof(Guarded):
         left, right = self._resolve(lhs), self._resolve(rhs)
         self._vanish(left, right, claim)
         self._equally_defined((lhs, left), (rhs, right), claim)
-        found = refutation(left, right)
+        found = refutation(left, right, self._conditions.positive)
         if found:
             raise StepError(f"{self.label}: {claim} fails {found}")
 

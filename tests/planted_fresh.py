@@ -490,9 +490,9 @@ TRUE = {
             (define(l, (1 - q**2) / (2 * q)), equal(sqrt(1 + l**2), (1 + q**2) / (2 * q)), "rational"),
         "half length from the trailing edge":
             (define(l_r, a * (1 - q) / q), equal(l_r / (a + l_r), 1 - q), "a share between 0 and 1"),
-        "root of a square": (where(q < 1), equal(sqrt(1 - 2 * q + q**2), 1 - q), "q < 1", OPEN),
+        "root of a square": (where(q < 1), equal(sqrt(1 - 2 * q + q**2), 1 - q), "q < 1"),
         "quotient of roots":
-            (where(q < 1), equal(sqrt((1 - q) / (1 + q)), (1 - q) / sqrt(1 - q**2)), "q < 1", OPEN),
+            (where(q < 1), equal(sqrt((1 - q) / (1 + q)), (1 - q) / sqrt(1 - q**2)), "q < 1"),
         "logarithm of a ratio": (where(q < 1), equal(log((1 + q) / (1 - q)), 2 * sp.atanh(q)), "q < 1", OPEN),
         "factor of the friction force": (sign((1 - q) * (q**2 - q + 4), ">", UNIT), "friction is positive"),
         "edge from inside":
@@ -502,7 +502,7 @@ TRUE = {
         "peak inside the contact":
             (greatest(1 + l**2, PROFILE, x, -l, (x + l) ** 2, given=(x > -1, l < 1)), "-1 < -l"),
         "peak at a letter": (greatest(a**2, 2 * a * x - x**2, x, a, (x - a) ** 2), "a constant place"),
-        "larger of two, in order": (where(a < b), equal(sp.Max(a, b), b), "as the condition says", OPEN),
+        "larger of two, in order": (where(a < b), equal(sp.Max(a, b), b), "as the condition says"),
         "factor that the condition makes positive":
             (where(x > 0), equivalent(x * (u - v), u, v), "x > 0"),
     },
@@ -531,7 +531,7 @@ TRUE = {
     "calculus and algebra": {
         "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2"),
         "sine below its argument": (holds(y - sin(y)), "y > 0"),
-        "hyperbolic cosine from 1": (holds(sp.cosh(x) - 1, ">="), "not strict", OPEN),
+        "hyperbolic cosine from 1": (holds(sp.cosh(x) - 1, ">="), "not strict"),
         "sine to 1": (holds(1 - sin(x), ">="), "not strict"),
         "root of a sum": (holds(sqrt(a) + sqrt(b) - sqrt(a + b)), "concave"),
         "quadratic form": (holds(x**2 + x * u + u**2, ">="), "definite"),
