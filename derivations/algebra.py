@@ -71,12 +71,20 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    if vanishes(rest):
+    if vanishes(rest) or _is_no_angle(rest):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
     if rest.has(sp.Integral):
         rest = rest.replace(sp.Integral, _constants_out)
     return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
+
+
+def _is_no_angle(number: sp.Expr) -> bool:
+    """Tell whether a sum of arc tangents is zero: its tangent is, and it is no other multiple of pi."""
+    if number.free_symbols or not number.has(sp.atan) or not number.is_Add:
+        return False
+    tangent = sp.expand_trig(sp.tan(number))
+    return bool(tangent == 0 and abs(number.n(30)) < 1)
 
 
 def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:

@@ -182,10 +182,20 @@ def _meets(point: _Point, gaps: list[sp.Expr], signed: list[sp.Expr]) -> bool:
 
 
 def _value(expr: sp.Expr, point: _Point) -> mpmath.mpf:
-    letters = tuple(sorted(expr.free_symbols, key=str))
-    return mpmath.mpmathify(_compiled(expr, letters)(*(point[letter] for letter in letters)))
-
-
-@lru_cache(maxsize=1024)
-def _compiled(expr: sp.Expr, letters: tuple[sp.Symbol, ...]) -> Callable[..., mpmath.mpf]:
-    return sp.lambdify(letters, expr, "mpmath")
+    """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
+    if expr.is_Symbol:
+        return point[expr]
+    if expr.is_Number or expr.is_NumberSymbol:
+        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+    parts = [_value(part, point) for part in expr.args]
+    if expr.is_Add:
+        return mpmath.fsum(parts)
+    if expr.is_Mul:
+        return mpmath.fprod(parts)
+    if expr.is_Pow:
+        return parts[0] ** parts[1]
+    kinds: dict[type, Callable[..., mpmath.mpf]] = {sp.Abs: abs, sp.Max: max, sp.Min: min}
+    kind = kinds.get(expr.func, getattr(mpmath, expr.func.__name__, None))
+    if kind is None:
+        raise ValueError(f"{expr} has no value here")
+    return mpmath.mpmathify(kind(*parts))
