@@ -561,7 +561,9 @@ class Book:
         mine = [each for each in premises if each.lhs == new]
         others += [*self._conditions.positive, *(each.rhs for each in mine)]
         fresh = new.is_Symbol and len(mine) == 1 and not any(each.has(new) for each in others)
-        if fresh and not (new.is_integer or new.is_nonnegative or new.is_nonpositive):
+        signed = new.is_nonnegative or new.is_nonpositive
+        value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
+        if fresh and not new.is_integer and (not signed or value.is_positive):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
         return has_witness(pairs, self._conditions.positive)

@@ -29,8 +29,8 @@ G = sp.Function("G", positive=True)
 other_x = sp.Symbol("x", positive=True)
 half, third = sp.Rational(1, 2), sp.Rational(1, 3)
 UNIT = (q, 0, 1)
-OPEN, SLOW = "open", "slow"
-"""The engine gets it wrong today; or takes longer than anybody waits."""
+OPEN = "open"
+"""The engine gets it wrong today."""
 _labels = itertools.count()
 
 
@@ -545,7 +545,7 @@ TRUE = {
         "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi", OPEN),
         "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch", OPEN),
         "larger less smaller": (equal(sp.Max(x, u) - sp.Min(x, u), Abs(x - u)), "distance"),
-        "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers", OPEN),
+        "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers"),
         "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
         "order at infinity": (order(sp.coth(z), 1, z, oo, exp(-2 * z)), "exponentially small", OPEN),
         "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval", OPEN),
