@@ -560,7 +560,10 @@ class Book:
         others = [side for each in premises if each.lhs != new for side in (each.lhs, each.rhs)]
         mine = [each for each in premises if each.lhs == new]
         others += [*self._conditions.positive, *(each.rhs for each in mine)]
-        fresh = new.is_Symbol and len(mine) == 1 and not any(each.has(new) for each in others)
+        alone = len(self._origins[new].premises) == 1
+        fresh = (
+            new.is_Symbol and alone and len(mine) == 1 and not any(each.has(new) for each in others)
+        )
         signed = new.is_nonnegative or new.is_nonpositive
         value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
         if fresh and not new.is_integer and (not signed or value.is_positive):
