@@ -22,7 +22,9 @@ class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute the statement."""
 
 
-_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh, sp.Abs)
+_SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that have all derivatives wherever their argument is real."""
+_CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
 
 
@@ -69,7 +71,27 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    return sp.S.Zero if vanishes(rest) else sp.simplify(rest / denominator)
+    if vanishes(rest) or _is_no_angle(rest):
+        return sp.S.Zero
+    rest = (rest / denominator).doit(integrals=False, sums=False)
+    if rest.has(sp.Integral):
+        rest = rest.replace(sp.Integral, _constants_out)
+    return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
+
+
+def _is_no_angle(number: sp.Expr) -> bool:
+    """Tell whether a sum of arc tangents is zero: its tangent is, and it is no other multiple of pi."""
+    if number.free_symbols or not number.has(sp.atan) or not number.is_Add:
+        return False
+    tangent = sp.expand_trig(sp.tan(number))
+    return bool(tangent == 0 and abs(number.n(30)) < 1)
+
+
+def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:
+    """Write the factors that do not depend on its variables before an integral."""
+    variables = [limit[0] for limit in limits]
+    factor, rest = sp.factor(integrand).as_independent(*variables, as_Add=False)
+    return factor * sp.Integral(rest, *limits)
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -158,15 +180,45 @@ def _inside(low: sp.Expr, high: sp.Expr) -> sp.Expr:
     return high - 1 if high.is_finite else sp.S.Zero
 
 
-def leading_term(
-    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int
-) -> tuple[sp.Expr, sp.Expr, sp.Symbol]:
-    """Return (c, k, h) with expr = c h**k + higher order, h > 0 the distance from the point.
+def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[int]:
+    """Return from which sides the variable can tend to the point: +1 from above, -1 from below.
 
-    h is ``variable`` at 0, ``1/variable`` at infinity and ``point - variable`` elsewhere.
+    A side counts unless a condition, or what is assumed of the variable, excludes it. Where one of
+    them decides neither, or no side is left, nothing can be said of the limit.
+    """
+    if not variable.is_extended_real or (variable.is_integer and point != sp.oo):
+        raise UndecidedError(f"{variable} does not run through real values")
+    sign = variable if variable.is_nonnegative else -variable if variable.is_nonpositive else None
+    ends = [
+        (variable - low, high - variable) for name, low, high in known.intervals if name == variable
+    ]
+    demanded = [gap for pair in ends for gap in pair if not gap.has(sp.oo, -sp.oo)]
+    demanded += [gap for gap in (sign, *known.positive) if gap is not None and gap.has(variable)]
+    h, open_ones = sp.Symbol("h", positive=True), []
+    for side in (-1,) if point == sp.oo else (1, -1) if point == 0 else (-1, 1):
+        place = 1 / h if point == sp.oo else point + side * h
+        local = (_reduced(gap.subs(variable, place)) for gap in demanded)
+        found = [_leading(_without_faded(each, h)[1], h)[0] for each in local]
+        if all(proves_positive(each, known) for each in found):
+            open_ones.append(side)
+        elif not any(proves_positive(-each, known) for each in found):
+            raise UndecidedError(
+                f"{variable} is not known to reach {point} where {demanded} are positive"
+            )
+    if not open_ones:
+        raise UndecidedError(f"{variable} cannot tend to {point} under the conditions")
+    return open_ones
+
+
+def leading_term(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int = -1
+) -> tuple[sp.Expr, sp.Expr]:
+    """Return (c, k) with expr = c h**k + higher order, h > 0 the distance from the point.
+
+    h is ``1/variable`` at infinity.
     """
     h = sp.Symbol("h", positive=True)
-    return *_leading(near(expr, variable, point, h), h), h
+    return _leading(near(expr, variable, point, h, side), h)
 
 
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
@@ -196,12 +248,46 @@ def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | No
     return sp.cancel(top / bottom), sp.Integer(one - other)
 
 
-def near(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol) -> sp.Expr:
-    """Write the expression in the distance h > 0 from the point."""
+def near(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol, side: int
+) -> sp.Expr:
+    """Write the expression in the distance h > 0 from the point, on one side of it."""
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
-    place = {sp.S.Zero: h, sp.oo: 1 / h}.get(sp.sympify(point), point - h)
-    return _reduced(expr.subs(variable, place))
+    place = 1 / h if point == sp.oo else point + side * h
+    local = _reduced(expr.subs(variable, place))
+    if not local.has(sp.exp):
+        return local
+    power, shown = _without_faded(local, h)
+    if power:
+        raise UndecidedError(f"{local} is smaller or larger than any power of {h}")
+    return shown
+
+
+def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
+    """Return n, f with local = T**n (f + what is smaller than any power of h), T = exp(-c/h**k).
+
+    All exponentials with an exponent without bound must be whole powers of one, T. A quotient of
+    polynomials in T has the series of the quotient of their lowest coefficients.
+    """
+    exponents = {node.exp: _leading(sp.cancel(node.exp), h) for node in local.atoms(sp.exp)}
+    fading = {each: c for each, (c, k) in exponents.items() if each.has(h) and k.is_negative}
+    if not fading:
+        return 0, local
+    least, faded = min(fading, key=sp.count_ops), sp.Dummy("faded")
+    if not (fading[least].is_negative or fading[least].is_positive):
+        raise UndecidedError(f"{sp.exp(least)} has no known limit")
+    least = least if fading[least].is_negative else -least
+    powers = {each: sp.cancel(each / least) for each in fading}
+    if not all(power.is_Integer for power in powers.values()):
+        raise UndecidedError(f"{local} has exponentials that are no powers of one another")
+    shown = sp.together(local.xreplace({sp.exp(each): faded ** powers[each] for each in fading}))
+    (top, one), (bottom, other) = (
+        (polynomial.coeff_monomial(faded**power), power)
+        for polynomial in (sp.Poly(part, faded) for part in sp.fraction(shown))
+        for (power,) in [min(polynomial.monoms())]
+    )
+    return one - other, sp.cancel(top / bottom)
 
 
 def _reduced(expr: sp.Expr) -> sp.Expr:
@@ -225,35 +311,47 @@ def _is_rational(expr: sp.Expr) -> bool:
 
 
 def next_order(
-    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int
+    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Return (c, k, r) with ratio = 1 + c eps**k + O(eps**r) as variable -> point.
+    """Return (c, k, r) with ratio = 1 + c eps**k + O(eps**r) as variable -> point, from all its sides.
 
-    The small quantity must be positive near the point and vanish there. The ratio must have a series
-    in whole powers of the distance: then the power after the last one that is written bounds the rest.
+    The small quantity must vanish there, and be positive on one side; on the other a whole k makes
+    up for its sign. The ratio must have a series in whole powers of the distance: then the power after
+    the last one that is written bounds the rest.
     """
+    found = [_next_on(ratio, eps, variable, point, side) for side in sides(variable, point, known)]
+    c, k, rest, _ = found[0]
+    if not any(positive for *_, positive in found):
+        raise UndecidedError(f"{eps} is not a small positive quantity")
+    for other in found[1:]:
+        if difference(c, other[0]) != 0 or other[1] != k or not (k.is_Integer or other[3]):
+            raise UndecidedError(f"{ratio} has another series on the other side of {point}")
+    return c, k, rest
+
+
+def _next_on(
+    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int
+) -> tuple[sp.Expr, sp.Expr, sp.Expr, bool]:
+    """Return (c, k, r) on one side of the point, and whether eps is positive there."""
     h = sp.Symbol("h", positive=True)
-    local = near(ratio, variable, point, h)
+    local = near(ratio, variable, point, h, side)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
-    # An absolute value has two series, one for each side of the point.
-    if not variable.is_positive and ratio.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
-        raise UndecidedError(f"{ratio} may have another series on the other side")
     regular = _is_rational(local) or local.is_meromorphic(h, 0)
-    if not regular or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
+    if not regular or local.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
     top, bottom = sp.fraction(local)
     rest = sp.expand(top - bottom) / bottom if _is_rational(local) else _reduced(local - 1)
     next_c, next_k = _leading(rest, h)
-    eps_c, eps_k, _ = leading_term(eps, variable, point)
-    if not (eps_c.is_positive and eps_k.is_positive):
+    eps_c, eps_k = leading_term(eps, variable, point, side)
+    if not (eps_c.is_nonzero and eps_c.is_real and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
     c = sp.radsimp(next_c / eps_c**k)
     if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
-    return c, k, (next_k + 1) / eps_k
+    return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)
 
 
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
@@ -266,42 +364,157 @@ def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
         raise UndecidedError(f"{expr} has no known limit: {error}") from error
 
 
-def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
+def is_continuous(
+    expr: sp.Expr, over: Interval, known: Conditions, *, smooth: bool = False
+) -> bool:
     """Tell whether the expression is real, without a jump or a pole, from end to end of the interval.
 
-    An undefined function stands for any that is as smooth as its derivatives ask.
+    If `smooth`, all its derivatives are so too. An undefined function stands for any that is smooth.
     """
     variable = over[0]
     if variable not in expr.free_symbols or expr == variable:
         return True
+    inside = known.with_interval(over)
     if expr.is_Pow:
-        return _is_continuous_power(expr, over, known)
+        return _is_continuous_power(expr, over, known, smooth)
     if isinstance(expr, (sp.log, sp.asin, sp.acos)):
         (argument,) = expr.args
-        inside = known.with_interval(over)
         if isinstance(expr, sp.log):
             real = _nowhere_zero(argument, over, inside, positive=True)
+        elif smooth:
+            real = _nowhere_zero(1 - argument**2, over, inside, positive=True)
         else:
             real = _never_negative(1 - argument**2, over, inside)
-        return real and is_continuous(argument, over, known)
+        return real and is_continuous(argument, over, known, smooth=smooth)
+    if isinstance(expr, sp.Integral):
+        return _is_continuous_integral(expr, over, known, smooth)
     if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
-        return is_continuous(expr.expr, over, known)
+        expr = expr.expr
     allowed = expr.is_Add or expr.is_Mul
-    allowed = allowed or isinstance(expr, (*_CONTINUOUS, AppliedUndef))
-    return bool(allowed and all(is_continuous(arg, over, known) for arg in expr.args))
+    allowed = allowed or isinstance(
+        expr, (*_SMOOTH, *(() if smooth else _CONTINUOUS), AppliedUndef)
+    )
+    return bool(
+        allowed and all(is_continuous(arg, over, known, smooth=smooth) for arg in expr.args)
+    )
 
 
-def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions) -> bool:
+def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions, smooth: bool) -> bool:
     base, exponent = expr.as_base_exp()
-    if base == sp.E:
-        return is_continuous(exponent, over, known)
-    if exponent.has(over[0]) or not is_continuous(base, over, known):
-        return False
     inside = known.with_interval(over)
+    if base == sp.E or (exponent.has(over[0]) and _nowhere_zero(base, over, inside, positive=True)):
+        parts = (exponent,) if base == sp.E else (base, exponent)
+        return all(is_continuous(part, over, known, smooth=smooth) for part in parts)
+    if exponent.has(over[0]) or not is_continuous(base, over, known, smooth=smooth):
+        return False
     if exponent.is_integer:
-        return bool(exponent.is_positive or _nowhere_zero(base, over, inside))
+        return bool(exponent.is_nonnegative or _nowhere_zero(base, over, inside))
     real = _nowhere_zero(base, over, inside, positive=True)
-    return bool(real or (exponent.is_positive and _never_negative(base, over, inside)))
+    return bool(
+        real or (not smooth and exponent.is_positive and _never_negative(base, over, inside))
+    )
+
+
+def _is_continuous_integral(
+    expr: sp.Integral, over: Interval, known: Conditions, smooth: bool
+) -> bool:
+    """Decide by the integrand between finite ends, where it is continuous in both variables."""
+    (bound, *ends), *others = expr.limits
+    if others or len(ends) != 2 or any(end.is_infinite for end in ends):
+        return False
+    inside, within = known.with_interval((bound, *ends)), known.with_interval(over)
+    jointly = is_continuous(expr.function, over, inside, smooth=smooth)
+    along = is_continuous(expr.function, (bound, *ends), within, smooth=smooth)
+    return jointly and along and all(is_continuous(end, over, known, smooth=smooth) for end in ends)
+
+
+def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
+    """Tell whether a function vanishes: its slope does, and its value at one place.
+
+    For inverse functions of one real letter, smooth wherever the letter can be: on one interval.
+    """
+    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.acos, sp.asinh, sp.log):
+        return False
+    (letter,) = expr.free_symbols
+    connected = letter.is_real and not (
+        letter.is_integer or (letter.is_nonzero and not letter.is_positive)
+    )
+    everywhere = letter, -sp.oo, sp.oo
+    if (
+        not connected
+        or known != Conditions()
+        or not is_continuous(expr, everywhere, known, smooth=True)
+    ):
+        return False
+    return (
+        difference(expr.diff(letter), sp.S.Zero) == 0
+        and difference(expr.subs(letter, 1), sp.S.Zero) == 0
+    )
+
+
+def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
+    """Tell whether a derivative exists and is the one that the rules of differentiation give.
+
+    It is, of what is made of smooth functions, wherever the result is defined. Under an integral the
+    integrand and its derivative must be continuous in both variables, and the ends finite. What has
+    kinks must be continuous, and its derivative beside them have a continuous extension.
+    """
+    inner, variables = derivative.expr, set(derivative.variables)
+    for node in inner.atoms(sp.Integral, sp.Sum, sp.Product):
+        if not node.free_symbols & variables:
+            continue
+        infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
+        if infinite or not all(_under_integral(node, variable, known) for variable in variables):
+            return False
+    kinks = (
+        sp.Abs,
+        sp.sign,
+        sp.Piecewise,
+        sp.Min,
+        sp.Max,
+        sp.Heaviside,
+        sp.floor,
+        sp.ceiling,
+        sp.Mod,
+    )
+    for variable in variables:
+        if any(node.has(variable) for node in inner.atoms(*kinks)):
+            everywhere = variable, -sp.oo, sp.oo
+            slope = sp.expand(inner.diff(variable)).replace(_is_distance, _distance)
+            if len(derivative.variables) > 1 or not all(
+                is_continuous(each, everywhere, known) for each in (inner, slope)
+            ):
+                return False
+    return True
+
+
+def _under_integral(node: sp.Expr, variable: sp.Symbol, known: Conditions) -> bool:
+    if isinstance(node, sp.Sum | sp.Product) or not node.has(variable):
+        return True
+    (bound, *ends), *others = node.limits
+    if others or len(ends) != 2:
+        return not node.function.has(variable)
+    inside = known.with_interval((bound, *ends))
+    return all(
+        is_continuous(each, (bound, *ends), known)
+        and is_continuous(each, (variable, -sp.oo, sp.oo), inside)
+        for each in (node.function, node.function.diff(variable).doit())
+    )
+
+
+def _is_distance(expr: sp.Expr) -> bool:
+    return bool(
+        expr.is_Mul
+        and any(isinstance(arg, sp.sign) and arg.args[0] in expr.args for arg in expr.args)
+    )
+
+
+def _distance(expr: sp.Expr) -> sp.Expr:
+    """Write |u| for u sign(u)."""
+    for arg in expr.args:
+        if isinstance(arg, sp.sign) and arg.args[0] in expr.args:
+            return expr / arg / arg.args[0] * sp.Abs(arg.args[0])
+    return expr
 
 
 def _nowhere_zero(

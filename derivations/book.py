@@ -1,5 +1,8 @@
 """The book of a proof: its definitions, recalled and established relations, and its result."""
 
+import re
+import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,14 +14,16 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
-from .algebra import difference
+from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
 from .conditions import (
     Conditions,
     Interval,
     demands,
     open_factors,
     proves_nonnegative,
+    proves_nonzero,
     proves_positive,
+    proves_real,
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
@@ -26,6 +31,7 @@ from .premises import Fact, Premise, contradiction, merged, violates, weakest
 from .record import Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
 from .symbols import TEX, alpha
+from .witness import has_witness
 
 _P = ParamSpec("_P")
 _Value = TypeVar("_Value")
@@ -36,6 +42,10 @@ _finished: dict[str, "Book"] = {}
 
 NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
 """Names that every display may use."""
+
+
+_CONSTANTS = {r"\pi", "e", r"\infty"}
+"""What no notation may give another meaning."""
 
 
 class StepError(ValueError):
@@ -49,8 +59,36 @@ class Shown(TypedDict, total=False):
     right: str
 
 
+class _OverTimeError(BaseException):
+    """No `Exception`, so that nothing on the way swallows it."""
+
+
+SECONDS = 10
+"""Processor time after which a step is given up; the slowest of the chapters takes two."""
+
+
+@contextmanager
+def _limited() -> Iterator[None]:
+    """Interrupt what takes too long, where the system can: the main thread of Unix."""
+    main = threading.current_thread() is threading.main_thread()
+    if not (main and hasattr(signal, "SIGVTALRM")):
+        yield
+        return
+
+    def expire(*_: object) -> None:
+        raise _OverTimeError
+
+    before = signal.signal(signal.SIGVTALRM, expire)
+    signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
 def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
-    """Let a check store its input with the step that it records."""
+    """Let a check store its input with the step that it records, and fail with a `StepError` alone."""
     form = signature(check)
 
     @wraps(check)
@@ -60,9 +98,27 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         words = {"reason", "shown"}
         arguments = {name: value for name, value in given.items() if name not in words}
         book._asked = check.__name__, arguments, dict(book._rules)
-        return check(*args, **kwargs)
+        try:
+            with _limited():
+                for argument in arguments.values():
+                    book._meant(argument, complex_too=check.__name__ in _ALGEBRAIC)
+                return check(*args, **kwargs)
+        except StepError:
+            raise
+        except _OverTimeError:
+            raise StepError(
+                f"{book.label}: not decided within {SECONDS} s of processor time"
+            ) from None
+        except Exception as error:
+            raise StepError(
+                f"{book.label}: {check.__name__} cannot be decided: {type(error).__name__}: {error}"
+            ) from error
 
     return run
+
+
+_ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
+"""The checks that complex letters may enter."""
 
 
 def tex(expr: sp.Expr) -> str:
@@ -162,6 +218,10 @@ class Book:
         uses: tuple[str, ...] = (),
         notation: Mapping[str, Meaning] | None = None,
     ) -> None:
+        for each in uses:
+            if each == label:
+                raise StepError(f"{label} cannot rest on itself")
+            _source(each)
         self.label, self.equation = label, equation
         self._section, self._title, self._text = section, title, text
         self._uses, self._declared = list(uses), uses
@@ -178,6 +238,9 @@ class Book:
         """The rules that any step has used."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._steps: list[Step] = []
+        self._result: Derivation | None = None
+        self._letters: dict[str, Any] = {}
+        """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
@@ -185,6 +248,8 @@ class Book:
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Define the left side by the right side: a name, or a law of the model."""
         self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
+        if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
+            raise StepError(f"{self.label}: {lhs} has a value already")
         self._rule(lhs, rhs)
         self._imply(sp.sympify(lhs))
         fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
@@ -203,6 +268,13 @@ class Book:
         latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
         for form in (gap, raw):
             self._demand(form, latex)
+        premises = merged(fact.premises for fact in self._origins.values())
+        if not has_witness(
+            tuple((each.lhs, each.rhs) for each in premises), self._conditions.positive
+        ):
+            raise StepError(
+                f"{self.label}: no point was found where {condition} and all else holds"
+            )
         claim = self._claim(condition.lhs, condition.rhs)
         sides = tex(condition.lhs), sign, tex(condition.rhs)
         self._steps.append(Step(*sides, reason, "definition", claim=claim))
@@ -243,11 +315,10 @@ class Book:
         result = self._known.get((sp.sympify(lhs), sp.sympify(rhs)))
         if result is None:
             raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
-        _finished[self.label] = self
         steps = self._stated()
         new = letters(self.label, self._section)
         cited = {step.source for step in steps} | set(self._declared)
-        return Derivation(
+        found = Derivation(
             label=self.label,
             equation=self.equation,
             section=self._section,
@@ -261,6 +332,12 @@ class Book:
             domain=tuple(printed(each, new) for each in result.domain),
             premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
         )
+        before = _finished.get(self.label)
+        if before is self or (before is not None and before._result != found):
+            raise StepError(f"{self.label} names another result already")
+        self._result = found
+        _finished[self.label] = self
+        return found
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
@@ -328,6 +405,59 @@ class Book:
         sampled = ["sampled" for status in used if status == "sampled"]
         return weakest([*(step.status for step in self._steps), *sampled])
 
+    def _meant(self, argument: object, *, complex_too: bool = False) -> None:
+        """Refuse what is no exact real value, and letters bound to places where they cannot be."""
+        if isinstance(argument, tuple | list):
+            for part in argument:
+                self._meant(part, complex_too=complex_too)
+        if not isinstance(argument, sp.Basic) or not argument.args:
+            return
+        for node in sp.preorder_traversal(argument):
+            if isinstance(node, sp.Float | sp.Limit | sp.Order | sp.AccumBounds) or node in (
+                sp.zoo,
+                sp.nan,
+            ):
+                raise StepError(f"{self.label}: {node} is no exact value")
+            if (
+                isinstance(node, sp.Symbol)
+                and node.is_extended_real is not True
+                and not complex_too
+            ):
+                raise StepError(f"{self.label}: {node} is not known to be real")
+            if isinstance(node, sp.Integral | sp.Sum | sp.Product):
+                places = [(limit[0], end) for limit in node.limits for end in limit[1:]]
+            elif isinstance(node, sp.Subs):
+                places = list(zip(node.variables, node.point, strict=True))
+            else:
+                continue
+            for variable, place in places:
+                if gaps := self._open_admissions(variable, place, closed=True):
+                    raise StepError(f"{self.label}: in {node}, {gaps[0]} > 0 is not known")
+
+    def _open_admissions(
+        self, symbol: sp.Expr, value: sp.Expr, *, closed: bool = False
+    ) -> list[sp.Expr]:
+        """Return what must be positive for a symbol to take a value, as far as it is not proved.
+
+        An interval may end, and a value be taken, at the end of what the symbol can be: `closed`.
+        """
+        value = sp.sympify(value)
+        found, known = self._resolve(value), self._conditions
+        if closed and found in (sp.oo, -sp.oo):
+            found = value = sp.sign(found)
+        real = symbol.is_extended_real is not True or any(
+            proves_real(form, known) for form in (value, found)
+        )
+        if not real or (symbol.is_integer and not found.is_integer):
+            raise StepError(f"{self.label}: {symbol} cannot be {value}")
+        if not (symbol.is_nonnegative or symbol.is_nonpositive):
+            if symbol.is_nonzero and not proves_nonzero(found, known):
+                raise StepError(f"{self.label}: {symbol} is not zero, but {value} may be")
+            return []
+        forms = [form if symbol.is_nonnegative else -form for form in (value, found)]
+        proves = proves_positive if symbol.is_nonzero and not closed else proves_nonnegative
+        return [] if any(proves(form, known) for form in forms) else [forms[0]]
+
     def _rule(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
         lhs, rhs = sp.sympify(lhs), sp.sympify(rhs)
         if lhs in self._rules:
@@ -335,10 +465,30 @@ class Book:
         value = self._resolve(rhs)
         if value.has(lhs):
             raise StepError(f"{self.label}: the definition {lhs} = {rhs} is circular")
+        if isinstance(lhs, AppliedUndef):
+            self._smooth(lhs, value)
         was = self._resolve(lhs)
         if violates(was, value):
             raise StepError(f"{self.label}: {lhs} = {rhs} contradicts the assumptions on {lhs}")
         self._rules[lhs] = rhs
+
+    def _smooth(self, call: AppliedUndef, value: sp.Expr) -> None:
+        """Refuse a value with a singularity for a function of which something was proved as if smooth."""
+        facts = [*self._known.values(), *self._origins.values()]
+        claims = [fact.step.claim for fact in facts if fact.step.claim]
+        asked = (side for claim in claims for side in (claim.lhs, claim.rhs))
+        if not any(side.has(call.func) for side in asked):
+            return
+        for letter in (arg for arg in call.args if arg.is_Symbol and value.has(arg)):
+            over = (
+                letter,
+                0 if letter.is_nonnegative else -sp.oo,
+                0 if letter.is_nonpositive else sp.oo,
+            )
+            if not is_continuous(value, over, self._conditions, smooth=True):
+                raise StepError(
+                    f"{self.label}: {call} = {value} may be singular, though it was taken as smooth"
+                )
 
     @contextmanager
     def _case(self, case: Relational | sp.logic.boolalg.BooleanTrue) -> Iterator[None]:
@@ -397,29 +547,41 @@ class Book:
 
     def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
         """Refuse premises that cannot hold together."""
-        everything = merged(fact.premises for fact in self._origins.values())
-        found = contradiction(everything, self._origins[lhs].premises)
-        for condition in self._conditions.positive:
-            gap = self._resolve(condition)
-            if not gap.is_positive and proves_nonnegative(-gap):
-                found = f"{condition} is not positive, as the domain demands"
+        premises = merged(fact.premises for fact in self._origins.values())
+        found = contradiction(premises)
+        if not found and not self._possible_with(premises, lhs):
+            found = "no point was found at which all premises and conditions hold"
         if found:
             origin = f" of {label}" if label else ""
             raise StepError(f"{self.label}: with {lhs} = {rhs}{origin}: {found}")
+
+    def _possible_with(self, premises: tuple[Premise, ...], new: sp.Expr) -> bool:
+        """Tell whether premises and conditions have a witness; a new name alone needs none."""
+        others = [side for each in premises if each.lhs != new for side in (each.lhs, each.rhs)]
+        mine = [each for each in premises if each.lhs == new]
+        others += [*self._conditions.positive, *(each.rhs for each in mine)]
+        alone = len(self._origins[new].premises) == 1
+        fresh = (
+            new.is_Symbol and alone and len(mine) == 1 and not any(each.has(new) for each in others)
+        )
+        signed = new.is_nonnegative or new.is_nonpositive
+        value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
+        if fresh and not new.is_integer and (not signed or value.is_positive):
+            return True
+        pairs = tuple((each.lhs, each.rhs) for each in premises)
+        return has_witness(pairs, self._conditions.positive)
 
     def _placed(
         self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
     ) -> tuple[sp.Expr, sp.Expr, Fact]:
         """Return the fact at one place."""
-        for variable, value in at.items():
+        for variable in at:
             # A law of functions holds at every place; any other equation fixes what is in it.
             laws = (each.lhs for each in fact.premises if not is_name(each.lhs))
             fixed = [each for each in laws if not each.has(AppliedUndef)]
             laid_down = {variable} & {lhs, *(each.lhs for each in fact.premises)}
             if laid_down or any(each.has(variable) for each in fixed):
                 raise StepError(f"{self.label}: {variable} is not free in {lhs} = {rhs}")
-            if violates(variable, sp.sympify(value)):
-                raise StepError(f"{self.label}: {variable} cannot be {value}")
         lhs, rhs = (sp.sympify(side).subs(at).doit() for side in (lhs, rhs))
         premises = tuple(
             Premise(one, other, f"{tex(one)} = {tex(other)}")
@@ -427,10 +589,15 @@ class Book:
             for each in fact.premises
             for one, other in [(each.lhs.subs(at).doit(), each.rhs.subs(at).doit())]
         )  # fmt: skip
-        conditions = Conditions(
-            fact.conditions.intervals, tuple(each.subs(at) for each in fact.conditions.positive)
-        )
-        return lhs, rhs, Fact(fact.step, premises, conditions, fact.domain)
+        intervals = fact.conditions.intervals
+        ends = [gap for name, low, high in intervals for gap in (name - low, high - name)]
+        gaps = [
+            gap for variable, value in at.items() for gap in self._open_admissions(variable, value)
+        ]
+        for gap in (*gaps, *(each.subs(at) for each in (*ends, *fact.conditions.positive))):
+            if gap != sp.oo and not proves_positive(gap, self._conditions):
+                self._demand(gap, tex_condition(gap))
+        return lhs, rhs, Fact(fact.step, premises, self._conditions, self._domain)
 
     def _carry(self, fact: Fact) -> None:
         """Take over the domain of a recalled fact."""
@@ -445,9 +612,12 @@ class Book:
     def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
         """Replace all that was defined or recalled, and carry out the derivatives."""
         try:
-            found, used = resolve(expr, self._rules, self._hidden())
+            found, used, derived = resolve(expr, self._rules, self._hidden())
         except HiddenError as error:
             raise StepError(f"{self.label}: {error}") from error
+        for each in derived:
+            if not is_differentiable(each, self._conditions):
+                raise StepError(f"{self.label}: {each} is not known to exist everywhere")
         self._used |= used
         return found
 
@@ -458,20 +628,60 @@ class Book:
             for premise in fact.premises:
                 if premise.lhs not in self._rules and premise.lhs.is_Symbol:
                     direct.setdefault(premise.lhs, set()).update(premise.rhs.free_symbols)
+                opaque = (AppliedUndef, sp.Derivative, sp.Integral)
+                if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):
+                    related = premise.lhs.free_symbols | premise.rhs.free_symbols
+                    for each in related - self._rules.keys():
+                        direct.setdefault(each, set()).update(related - {each})
         for _ in direct:
             for reach in direct.values():
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
+    def _unambiguous(self, *expressions: sp.Expr) -> None:
+        """Refuse two symbols or two functions of one proof that are printed alike."""
+        for expr in expressions:
+            for symbol in expr.atoms(sp.Symbol) - expr.atoms(sp.Dummy):
+                shape = re.sub(r"\\mathrm\{([^{}]*)\}", r"\1", tex(symbol))
+                if self._letters.setdefault(shape, symbol) != symbol:
+                    raise StepError(f"{self.label}: two letters are printed {tex(symbol)}")
+            for call in expr.atoms(AppliedUndef):
+                name = f"{call.func.__name__}()"
+                if self._letters.setdefault(name, call.func) != call.func:
+                    raise StepError(f"{self.label}: two functions are printed {name}")
+
+    def _means(self, known: Meaning, meaning: Meaning) -> bool:
+        """Tell whether a name of the notation is what the symbol or function of that name is here."""
+        if known is meaning or getattr(known, "func", None) is meaning:
+            return True
+        if isinstance(meaning, sp.Lambda):
+            given = known.args if isinstance(known, AppliedUndef) else meaning.variables
+            meaning = meaning(*given) if len(given) == len(meaning.variables) else sp.nan
+        if not isinstance(known, sp.Expr) or not isinstance(meaning, sp.Expr):
+            return False
+        return difference(self._resolve(known), self._resolve(meaning)) == 0
+
     def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
         """Refuse LaTeX that does not say what was checked: it may only rearrange."""
         used = set(self._used)
+        self._unambiguous(lhs, rhs, *known)
         for side, expr in (("left", lhs), ("right", rhs)):
             if side not in shown:
                 continue
             latex = str(dict(shown)[side])
             rules = [*self._rules, *self._rules.values()]
-            names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
+            names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
+            for name, meaning in self.notation.items():
+                here = names.get(name, meaning) if name in latex else meaning
+                agrees = self._means(here, meaning)
+                agrees = agrees or (
+                    isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)
+                )
+                if name in _CONSTANTS or not agrees:
+                    raise StepError(
+                        f"{self.label}: the notation {name} = {meaning} has another meaning here"
+                    )
+            names |= {**NOTATION, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:
@@ -486,8 +696,17 @@ class Book:
 
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
         rest = difference(lhs, rhs)
-        if rest != 0:
+        if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
+            rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
+        if rest != 0 and not is_constant_zero(rest, self._conditions):
             raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _signed(self, inner: sp.Expr) -> sp.Expr:
+        """Write an absolute value without its bars, where the conditions say the sign."""
+        for form in (inner, -inner):
+            if proves_nonnegative(form, self._conditions):
+                return form
+        return sp.Abs(inner)
 
     def _record(
         self,

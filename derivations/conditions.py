@@ -10,7 +10,7 @@ True
 False
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -54,9 +54,19 @@ def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
         if all(proves_nonnegative(part, known) for part in expr.args):
             return True
     elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
-        _, low, high = expr.limits[0]
-        return proves_nonnegative(expr.function, known) and proves_nonnegative(high - low, known)
+        return _is_nonnegative_integral(expr, known)
+    if _by_ends(expr, known, proves_nonnegative) or _is_definite(expr, known, strict=False):
+        return True
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
+
+
+def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
+    """Decide by the integrand, whose variable has the conditions of its range and no others."""
+    variable, low, high = expr.limits[0]
+    bound = sp.Dummy(variable.name, real=True)
+    inside = known.with_interval((bound, low, high))
+    integrand = expr.function.subs(variable, bound)
+    return proves_nonnegative(high - low, known) and proves_nonnegative(integrand, inside)
 
 
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -94,7 +104,88 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     if sign:
         return sign
     found = (_known_sign(one) or _product_sign(one, strict=True) for one in _swept(expr, known))
-    return next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
+    sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
+    if sign or not expr.free_symbols:
+        return sign
+    factored = sp.factor(expr) if expr.is_Add and known.positive else expr
+    several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
+    if factored != expr and several and (sign := _sign(factored, known)):
+        return sign
+    for side in (1, -1):
+        one = side * expr
+        if (
+            _by_ends(one, known, proves_positive)
+            or _is_definite(one, known, strict=True)
+            or _by_slope(one)
+        ):
+            return side
+    return 0
+
+
+def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> bool:
+    """Decide what is affine in a sine or cosine by its values at -1 and 1, between which it lies."""
+    for wave in sorted(expr.atoms(sp.sin, sp.cos), key=str):
+        name = sp.Dummy(real=True)
+        named = expr.xreplace({wave: name})
+        slope = sp.diff(named, name)
+        if wave.is_real and not slope.has(name) and not named.atoms(sp.sin, sp.cos):
+            return all(proves(named.subs(name, end), known) for end in (-1, 1))
+    return False
+
+
+def _is_definite(expr: sp.Expr, known: Conditions, *, strict: bool) -> bool:
+    """Decide a quadratic polynomial by its leading coefficient and its discriminant."""
+    proves = proves_positive if strict else proves_nonnegative
+    for letter in sorted(expr.free_symbols, key=str):
+        if not letter.is_real or not expr.is_polynomial(*expr.free_symbols):
+            return False
+        coefficients = sp.Poly(expr, letter).all_coeffs()
+        if len(coefficients) == 3:
+            lead, middle, rest = coefficients
+            return proves_positive(lead, known) and proves(4 * lead * rest - middle**2, known)
+    return False
+
+
+_DERIVATIVES, _LONGEST = 6, 60
+"""How often an inequality is put down to that of a derivative, and the operations that it may have."""
+
+
+@lru_cache(maxsize=4096)
+def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
+    """Tell whether a smooth function of one positive letter is positive by its slope and a value.
+
+    It rises from a value at 0 that is not negative, or falls to such a limit at infinity; an analytic
+    function whose slope never changes its sign does so strictly, if it is not constant.
+    """
+    from .algebra import is_continuous
+
+    if len(expr.free_symbols) != 1 or not left or expr.count_ops() > _LONGEST:
+        return False
+    (letter,) = expr.free_symbols
+    kinds = (sp.exp, sp.log, sp.sin, sp.cos, sp.atan)
+    if not (letter.is_positive and expr.has(*kinds)) or letter.is_integer:
+        return False
+    slope = sp.expand(sp.diff(expr, letter))
+    if slope == 0 or not is_continuous(expr, (letter, 0, sp.oo), NONE, smooth=True):
+        return False
+    start = expr.subs(letter, 0)
+    if start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1)):
+        return True
+    if not expr.has(sp.atan) or not (slope.is_nonpositive or _never_below(-slope, left - 1)):
+        return False
+    return bool(sp.limit(expr, letter, sp.oo).is_nonnegative)
+
+
+def _never_below(slope: sp.Expr, left: int) -> bool:
+    """Tell whether a slope is never negative, after positive factors have been left out."""
+    forms = [slope, sp.factor(slope)]
+    forms.append(sp.Mul(*(part for part in sp.Mul.make_args(forms[1]) if not part.is_positive)))
+    return any(
+        _product_sign(form, strict=False) == 1
+        or _by_ends(form, NONE, proves_nonnegative)
+        or _by_slope(sp.expand(form), left)
+        for form in forms
+    )
 
 
 def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
@@ -128,6 +219,16 @@ def _name(place: int) -> sp.Dummy:
 
 def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     yield expr
+    squares = {
+        power.base: sp.Dummy(positive=True) ** power.exp.q
+        for power in sorted(expr.atoms(sp.Pow), key=str)
+        if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
+        if power.base.is_positive
+    }
+    if expr.has(sp.cosh):
+        yield expr.replace(sp.cosh, lambda angle: 1 + 2 * sp.sinh(angle / 2) ** 2)
+    if squares and not known.intervals and not known.positive:
+        yield expr.subs(squares)  # roots of letters are letters too
     for place, (variable, *ends) in enumerate(known.intervals):
         low, high = map(sp.sympify, ends)
         step = _name(place)

@@ -95,6 +95,10 @@ def _tokens(latex: str) -> list[str]:
     for index, token in enumerate(raw):
         opened = index and raw[index - 1] in "_^"
         if (waiting or opened) and token not in ("{", "["):
+            if token[:1].isdigit() and len(token) > 1:
+                raise UnreadableError(
+                    f"{token} needs braces in {latex}: LaTeX takes its first digit alone"
+                )
             found += ["{", token, "}"]
             waiting -= bool(waiting)
             continue
@@ -171,10 +175,19 @@ class _Reader:
                 return product
             if self._take("/"):
                 product /= self._factor()
-            elif self._take(r"\cdot"):
-                product *= self._factor()
-            else:
-                product *= self._factor()
+                continue
+            number = self.tokens[self.place - 1][:1].isdigit() and not self._take(r"\cdot")
+            if number and (token[:1].isdigit() or (token == r"\frac" and self._at_number())):
+                raise UnreadableError(f"two numbers side by side in {self.latex}")
+            self._take(r"\cdot")
+            product *= self._factor()
+
+    def _at_number(self) -> bool:
+        """Tell whether a fraction of two numbers stands here."""
+        start = self.place
+        fraction = self._fraction()
+        self.place = start
+        return bool(fraction.is_number)
 
     def _factor(self) -> sp.Expr:
         base = self._base()
@@ -226,7 +239,12 @@ class _Reader:
         if not self._take("("):
             if braced:
                 raise self._unknown()
-            return [self._factor()]
+            found = [self._factor()]
+            if found[0].is_number and self._at_factor():
+                raise UnreadableError(
+                    f"what the function in {self.latex} applies to needs parentheses"
+                )
+            return found
         found = [self._sum()]
         while self._take(","):
             found.append(self._sum())
@@ -234,6 +252,12 @@ class _Reader:
         if braced:
             self._expect("}")
         return found
+
+    def _at_factor(self) -> bool:
+        """Tell whether a further factor stands here."""
+        token = self._next()
+        plain = token in ("", "+", "-", "=", ",", "|", "/", r"\cdot", *_CLOSE)
+        return not (plain or token in _FUNCTIONS or self._at_differential())
 
     def _named(self) -> tuple[int, Meaning] | None:
         """Return the longest name that stands here, and how many tokens it has."""

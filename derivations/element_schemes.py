@@ -15,7 +15,7 @@ from .symbols import b, compression, eps, eta, kappa, sigma, time, zeta
 
 SECTION = "Discrete elements"
 
-_h, _z, _y = sp.symbols("h z y", positive=True)
+_h, _z, _y = sp.symbols("h z E", positive=True)
 _theta = sp.Symbol("theta", positive=True)
 _excess = sp.Symbol("theta_+", nonnegative=True)
 _beyond = sp.Symbol("eta_+", positive=True)
@@ -195,7 +195,7 @@ def _unconditional() -> Derivation:
         right=r"\frac{c_2 w^2 + c_1 w + c_0}{(1 - w)^2}",
     )  # fmt: skip
     half = sp.Rational(1, 2)
-    proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $y = e^{-h}$")
+    proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $E = e^{-h}$")
     proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$ by the exponential fit")
     proof.define(eta, half + _beyond, r"and $\eta_{+} > 0$")
     proof.holds(lead, ">", 0, "the coefficient $c_2$")

@@ -71,7 +71,7 @@ def _master_curve() -> Derivation:
     proof.equal(X, DRIVE_CUBED, "scaled velocity")
     proof.sign(sp.Derivative(DRIVE_CUBED, q), "<", 0, UNIT, "strictly decreasing")
     proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
-    proof.root(DRIVE_CUBED, q, sp.S.One, "rest")
+    proof.leading_order(X, sp.Rational(3, 2) * (1 - q) ** 3, q, 1, "it comes to rest", eps=1 - q)
     proof.equal(quartic, sp.S.Zero, "the quartic")
     proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
     proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")

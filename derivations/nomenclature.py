@@ -867,12 +867,6 @@ SYMBOLS = tuple(
             "1",
             "F20-error-friction-high",
         ),
-        (
-            r"\breve \phi",
-            r"$e^{-\breve z}$ times a power of $\breve z$, which is bounded",
-            "1",
-            "F18-low",
-        ),
         (r"\breve X", r"distance from the leading edge", "m", "F17-any"),
         (r"\breve y", r"distance back from there, or behind the trailing edge", "m", "F17-any"),
         (r"\breve G_4", r"integral of $\breve G_3$ over the contact", "N m", "F17-any"),

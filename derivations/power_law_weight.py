@@ -193,6 +193,7 @@ def _at_load() -> Derivation:
     friction = sp.Symbol("varphi_n", positive=True)
     load = AT_REST / s ** (n + 1)
     scaled, power = s ** (n - 1) * friction / load, friction / load ** (2 * n / (n + 1))
+    proof.define(n, 1 + excess, "the exponent of the shape")
     proof.define(w_n, load, r"$s^{n + 1} w_n = \frac{2 n}{n + 1}$")
     proof.define(
         m_n,
@@ -201,7 +202,7 @@ def _at_load() -> Derivation:
     )
     proof.notation |= {
         r"\ln (s^{n - 1} m_n)": _logarithm(scaled), r"\ln \varphi_n": sp.log(friction),
-        r"\ln w_n": _logarithm(load), r"\ln w_{n,0}": _logarithm(AT_REST), "n": 1 + excess,
+        r"\ln w_n": _logarithm(load), r"\ln w_{n,0}": _logarithm(AT_REST),
     }  # fmt: skip
     proof.equal(
         *(

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
+from .algebra import difference
 from .conditions import NONE, Conditions
 from .record import STATUSES, Step
 from .rules import is_name
@@ -49,73 +51,63 @@ def merged(groups: Iterable[Iterable[Premise]]) -> tuple[Premise, ...]:
 
 
 @lru_cache(maxsize=4096)
-def contradiction(premises: tuple[Premise, ...], new: tuple[Premise, ...]) -> str:
-    """Describe a premise that cannot hold together with new ones; empty if none is found.
+def contradiction(premises: tuple[Premise, ...]) -> str:
+    """Describe laws of one function that differ; empty if there are none.
 
-    Each premise is checked with the others substituted. Laws that are not mere names are solved
-    together as polynomials.
+    That the others hold together is shown by a point at which they do: see `witness`.
     """
-    for premise in premises:
-        said = premise.lhs.free_symbols | premise.rhs.free_symbols
-        if premise not in new and not any(
-            each.lhs in said or each.lhs == premise.lhs for each in new
-        ):
-            continue
-        if not _touches(premise, premises):
-            continue
-        others: dict[sp.Expr, sp.Expr] = {}
-        for other in premises:
-            if other != premise and is_name(other.lhs):
-                others.setdefault(other.lhs, other.rhs)
-        rest = premise.lhs - premise.rhs
-        for _ in range(_DEPTH):
-            if never_zero(rest):
-                return f"{premise.lhs} = {premise.rhs} contradicts what else is given"
-            bound = (node.variables for node in rest.atoms(sp.Integral, sp.Sum, sp.Derivative))
-            if others.keys() & {variable for each in bound for variable in each}:
-                break
-            rest, before = rest.xreplace(others), rest
-            if rest == before or rest.count_ops() > _TOO_LONG:
-                break
-    return _as_polynomials([each for each in premises if not is_name(each.lhs)])
+    laws = [each for each in premises if isinstance(each.lhs, AppliedUndef | sp.Derivative)]
+    by_function: dict[sp.Expr, list[Premise]] = {}
+    for law in laws:
+        call = law.lhs.expr if isinstance(law.lhs, sp.Derivative) else law.lhs
+        if isinstance(call, AppliedUndef):
+            by_function.setdefault(call.func, []).append(law)
+    for function, group in by_function.items():
+        whole = [law for law in group if law.lhs.func == function and _is_general(law)]
+        slopes = [law for law in group if isinstance(law.lhs, sp.Derivative)]
+        values = [law for law in group if law.lhs.func == function and not law.lhs.free_symbols]
+        pairs = [(one, other) for one in whole for other in group if one is not other]
+        found = [(one, other) for one, other in pairs if not _follows(one, other)]
+        found += [
+            (one, other)
+            for one in slopes
+            for other in slopes
+            if one.lhs.expr == other.lhs.expr and not _follows_slope(one, other)
+        ]
+        order = min((law.lhs.derivative_count for law in slopes), default=len(values))
+        if len(values) > order:
+            found.append((slopes[0], values[-1]))
+        for one, other in found:
+            return f"{one.lhs} = {one.rhs} and {other.lhs} = {other.rhs} are not known to agree"
+    return ""
 
 
-_DEPTH, _TOO_LONG = 3, 40
-"""How often premises are put into each other, and the operations beyond which this is given up:
-definitions that name each other in turn make expressions grow."""
-
-
-def _touches(premise: Premise, premises: Iterable[Premise]) -> bool:
-    """Tell whether a premise says more than the definition of a new name."""
-    return not premise.lhs.is_Symbol or any(
-        other != premise and (premise.lhs in other.lhs.free_symbols | other.rhs.free_symbols)
-        for other in premises
+def _is_general(law: Premise) -> bool:
+    """Tell whether a function is given as an expression in its argument; else it is related at a place."""
+    return all(arg.is_Symbol and law.rhs.has(arg) for arg in law.lhs.args) and not law.rhs.atoms(
+        AppliedUndef
     )
 
 
-@lru_cache(maxsize=8192)
-def never_zero(expr: sp.Expr) -> bool:
-    """Tell whether the assumptions on the symbols exclude that the expression vanishes."""
-    if expr.is_zero is False:
+def _follows(law: Premise, other: Premise) -> bool:
+    """Tell whether another premise about a function is what its law says; or is about a place."""
+    value = sp.Lambda(law.lhs.args, law.rhs)
+    place = other.lhs if other.lhs.func == law.lhs.func else None
+    if place is not None and place.free_symbols and not _is_general(other):
         return True
-    if expr.has(sp.Derivative, sp.Integral, sp.Sum) or expr.count_ops() > _TOO_LONG:
-        return False
-    numerator = sp.expand(sp.fraction(sp.together(expr))[0])
-    return numerator.is_zero is False
+    sides = (side.replace(law.lhs.func, value).doit() for side in (other.lhs, other.rhs))
+    return difference(*sides) == 0
 
 
-def _as_polynomials(laws: list[Premise]) -> str:
-    """Solve laws together, where each is a polynomial, for a contradiction."""
-    sides = [sp.fraction(sp.together(law.lhs - law.rhs))[0] for law in laws]
-    if len(sides) < 2 or any(not side.is_polynomial() for side in sides):
-        return ""
-    symbols = sorted(set().union(*(side.free_symbols for side in sides)), key=str)
-    if len(set.intersection(*(side.free_symbols for side in sides))) == 0:
-        return ""
-    for element in sp.groebner(sides, *symbols).exprs:
-        if never_zero(element):
-            return f"{', '.join(f'{law.lhs} = {law.rhs}' for law in laws)} have no common solution"
-    return ""
+def _follows_slope(one: Premise, other: Premise) -> bool:
+    """Tell whether a higher derivative agrees with a lower one of the same function."""
+    more = [variable for variable, count in other.lhs.variable_count for _ in range(count)]
+    for variable, count in one.lhs.variable_count:
+        for _ in range(count):
+            if variable not in more:
+                return True
+            more.remove(variable)
+    return not more or difference(sp.diff(one.rhs, *more).subs(one.lhs, one.rhs), other.rhs) == 0
 
 
 _KINDS = ("positive", "negative", "nonnegative", "nonzero", "real", "integer", "finite")

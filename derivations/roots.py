@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from .algebra import UndecidedError, difference, normalise, roots_between
+from .algebra import UndecidedError, difference, is_continuous, normalise, roots_between
 from .conditions import (
     Conditions,
     Interval,
@@ -81,10 +81,35 @@ def only_root(
     if not proves_nonzero(bottom, known) and difference(bottom, sp.S.Zero) == 0:
         raise UndecidedError(f"{expr} is not defined there")
     numerator, x, value, domain = _without_roots(sp.expand(numerator), x, value, domain)
+    if not numerator.is_polynomial(x) and _by_monotony(numerator, x, value, domain, known):
+        return
     if not numerator.is_polynomial(x):
         raise UndecidedError(f"{expr} is no polynomial in {variable}: other roots are not excluded")
     if not _alone(sp.Poly(numerator, x), x, value, domain, known):
         raise UndecidedError("other roots are not excluded")
+
+
+def _by_monotony(
+    expr: sp.Expr, x: sp.Symbol, value: sp.Expr, domain: Domain, known: Conditions
+) -> bool:
+    """Tell whether each factor has no zero, or rises or falls throughout and vanishes at the value."""
+    sign = {"nonnegative": domain.low.is_nonnegative, "nonpositive": domain.high.is_nonpositive}
+    strict = sign["nonnegative"] and not domain.low_included
+    kinds = {"positive": True} if strict else {kind: True for kind, is_so in sign.items() if is_so}
+    there = sp.Dummy("x", real=True, **kinds)
+    over = (
+        (there, -sp.oo, sp.oo)
+        if domain.low.is_zero and strict
+        else (there, domain.low, domain.high)
+    )
+    for factor in sp.Mul.make_args(sp.factor(expr).subs(x, there)):
+        if not factor.has(there) or proves_nonzero(factor, known):
+            continue
+        rising = proves_nonzero(sp.diff(factor, there), known.with_interval(over))
+        at_root = difference(factor.subs(there, value), sp.S.Zero) == 0
+        if not (rising and at_root and is_continuous(factor, over, known)):
+            return False
+    return True
 
 
 def _without_roots(
@@ -96,7 +121,7 @@ def _without_roots(
     )
     if order == 1 or not domain.low.is_zero or domain.high != sp.oo:
         return expr, x, value, domain
-    y = sp.Dummy("y", positive=True)
+    y = sp.Dummy("y", nonnegative=True, positive=None if domain.low_included else True)
     return sp.powdenest(expr.subs(x, y**order)), y, value ** sp.Rational(1, order), domain
 
 
@@ -113,6 +138,7 @@ def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: C
     if quotient.degree() == 0:
         return proves_nonzero(quotient.as_expr(), known)
     half_line = domain.low.is_zero and domain.high == sp.oo
+    half_line = half_line and (not domain.low_included or proves_nonzero(poly.eval(0), known))
     return bool(half_line and _one_change_of_sign(poly, known)) or all(
         _elsewhere(sp.Poly(factor, x), x, value, domain, known)
         for factor, _ in sp.factor_list(quotient.as_expr())[1]

@@ -27,7 +27,6 @@ from .symbols import (
     excess_share,
     fading_depth,
     fading_drag,
-    forgotten,
     gas_constant,
     half_share,
     k_x,
@@ -241,9 +240,6 @@ def _kelvin_voigt() -> Derivation:
     _recalled(proof)
     for name, form in FORCES.items():
         proof.recall("F24-forces", name, form)
-    proof.define(
-        sp.exp(-z), forgotten / z**6, r"its memory decays faster than any power of $\breve z$"
-    )
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
     limits = {
         normal_per_depth: 1 + sigma,

@@ -25,8 +25,10 @@ class HiddenError(ValueError):
 
 def resolve(
     expr: sp.Expr | int, rules: Rules, hidden: Dependences
-) -> tuple[sp.Expr, frozenset[sp.Expr]]:
+) -> tuple[sp.Expr, frozenset[sp.Expr], frozenset[sp.Derivative]]:
     """Replace until no left side is left, carry out the derivatives, and say which rules were used.
+
+    The derivatives that were carried out are returned too: whether they exist is for the caller to say.
 
     Raises
     ------
@@ -41,7 +43,7 @@ def _resolved(
     expr: sp.Expr,
     rules: tuple[tuple[sp.Expr, sp.Expr], ...],
     hidden: tuple[tuple[sp.Expr, frozenset[sp.Expr]], ...],
-) -> tuple[sp.Expr, frozenset[sp.Expr]]:
+) -> tuple[sp.Expr, frozenset[sp.Expr], frozenset[sp.Derivative]]:
     """Resolve once: a step asks for the same expression when it checks, records and displays it."""
     rewriter = _Rewriter(dict(rules), dict(hidden))
     before, after = None, expr
@@ -49,7 +51,7 @@ def _resolved(
         before, after = after, rewriter.rewrite(after)
         if after.has(sp.Derivative, sp.Subs, Computed):
             after = after.doit(integrals=False, sums=False)
-    return after, frozenset(rewriter.used)
+    return after, frozenset(rewriter.used), frozenset(rewriter.derived)
 
 
 def is_name(lhs: sp.Expr) -> bool:
@@ -63,6 +65,7 @@ class _Rewriter:
     def __init__(self, rules: Rules, hidden: Dependences) -> None:
         self.rules, self.hidden = rules, hidden
         self.used: set[sp.Expr] = set()
+        self.derived: set[sp.Derivative] = set()
         self._compound = {lhs: rhs for lhs, rhs in rules.items() if not is_name(lhs)}
         self._done: dict[sp.Expr, sp.Expr] = {}
 
@@ -101,6 +104,7 @@ class _Rewriter:
         fixed = [variable for variable in variables if variable in self.rules]
         inner = self._without(fixed).rewrite(expr.expr)
         self._refuse_hidden(inner, variables)
+        self.derived.add(sp.Derivative(inner, *expr.variable_count))
         if not fixed:
             return sp.Derivative(inner, *expr.variable_count)
         for variable in fixed:
@@ -123,7 +127,7 @@ class _Rewriter:
         if len(kept) == len(self.rules):
             return self
         inner = _Rewriter(kept, self.hidden)
-        inner.used = self.used
+        inner.used, inner.derived = self.used, self.derived
         return inner
 
     def _refuse_hidden(self, expr: sp.Expr, variables: Iterable[sp.Expr]) -> None:

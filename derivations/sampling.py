@@ -17,8 +17,8 @@ POINTS, PLACES, TRUSTED = 8, 30, sp.Rational(1, 10**18)
 """Number of points, digits and allowed relative difference of the check of proved steps."""
 
 
-def refutation(lhs: sp.Expr, rhs: sp.Expr) -> str:
-    """Describe a point that the assumptions allow and at which the sides differ; empty if none is found.
+def refutation(lhs: sp.Expr, rhs: sp.Expr, positive: tuple[sp.Expr, ...] = ()) -> str:
+    """Describe a point that the assumptions and conditions allow and at which the sides differ, if any.
 
     For expressions that are not rational, where simplification has been wrong before: branches of
     roots and inverse functions, absolute values, cases.
@@ -32,6 +32,9 @@ def refutation(lhs: sp.Expr, rhs: sp.Expr) -> str:
     with mpmath.workdps(PLACES):
         for _ in range(POINTS):
             point = [_value(symbol, draw) for symbol in symbols]
+            chosen = dict(zip(symbols, point, strict=True))
+            if any(gap.subs(chosen).is_positive is False for gap in positive):
+                continue
             try:
                 left, right = both(*map(mpmath.mpmathify, point))
             except (ZeroDivisionError, ValueError, OverflowError, TypeError):

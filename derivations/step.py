@@ -43,6 +43,8 @@ from .roots import domain_of, only_root
 from .sampling import disagreement, refutation
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
+_STRICT = (sp.StrictGreaterThan, sp.StrictLessThan)
+_STRICTLY = {sp.GreaterThan: sp.StrictGreaterThan, sp.LessThan: sp.StrictLessThan}
 _RELATIONS = {">": ">", ">=": r"\ge", "<": "<", "<=": r"\le"}
 
 
@@ -85,7 +87,7 @@ class Proof(Guarded):
         left, right = self._resolve(lhs), self._resolve(rhs)
         self._vanish(left, right, claim)
         self._equally_defined((lhs, left), (rhs, right), claim)
-        found = refutation(left, right)
+        found = refutation(left, right, self._conditions.positive)
         if found:
             raise StepError(f"{self.label}: {claim} fails {found}")
 
@@ -124,16 +126,19 @@ class Proof(Guarded):
         except UndecidedError as error:
             raise StepError(f"{self.label}: {whole}: {error}") from error
         found = self._resolve(found)  # a rule may be about a function at the very end
-        if found.has(sp.oo, sp.zoo, sp.nan) or found.is_real is False:
+        if found.has(sp.oo, sp.zoo, sp.nan, sp.AccumBounds) or found.is_real is False:
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:
             self._same_integral(self._rules.pop(lhs), whole)
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        given: Shown = {**shown}
+        if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
+            self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
         self._imply(lhs)
-        self._displayed(lhs, sp.sympify(wanted), shown, whole, variable)
+        self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
             *(lhs, "=", wanted, reason, "proved", shown), premise=premise, trusted=True
@@ -158,6 +163,8 @@ class Proof(Guarded):
         variable allow. `name` is what the root is called, if not by the variable itself.
         """
         found = self._resolve(value)
+        if found.has(variable):
+            raise StepError(f"{self.label}: {value} depends on {variable} itself")
         whole = self._resolve_free(expr, variable)
         claim = f"root {variable} = {value} of {expr}"
         if over is not None:
@@ -172,6 +179,13 @@ class Proof(Guarded):
             only_root(whole, variable, found, domain_of(variable, over), self._conditions)
         except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
+        for gap in (
+            each.subs(variable, found) for each in self._conditions.positive if each.has(variable)
+        ):
+            if not proves_positive(self._resolve(gap), self._conditions):
+                raise StepError(
+                    f"{self.label}: {claim}: {gap} > 0 is a condition, but is not known"
+                )
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
         # The variable of a root with a name of its own is bound: its interval restricts nothing else.
@@ -284,15 +298,31 @@ class Proof(Guarded):
         """Prove that `value` is the greatest value of `expr`, and where it is reached.
 
         `place` is the variable with its value there; `surplus` a form of the difference that is never
-        negative, under the strict inequalities that are given.
+        negative, under the inequalities that are given; the place must obey them, and all conditions.
         """
         variable, at = place
         claim = f"{value} is the greatest {expr}"
+        if not variable.is_Symbol or any(
+            side.has(variable)
+            for each in (value, at)
+            for side in (sp.sympify(each), self._resolve(each))
+        ):
+            raise StepError(
+                f"{self.label}: {claim}: the value and its place must not vary with {variable}"
+            )
+        self._free(variable)
+        strict = [each if each.is_Relational and each.func in _STRICT else _STRICTLY[each.func](*each.args)
+                  for each in given]  # fmt: skip
         with ExitStack() as stack:
-            for condition in given:
+            for condition in strict:
                 stack.enter_context(self._case(condition))
             self._identical(value - expr, surplus)
             self._holds(sp.sympify(surplus), ">=", claim)
+        self._reaches_place(variable, sp.sympify(at), given, claim)
+        if strict != list(given):  # the inequality extends to the ends by continuity
+            over = (variable, -sp.oo, sp.oo)
+            if not is_continuous(self._resolve(surplus), over, self._conditions):
+                raise StepError(f"{self.label}: {claim}: {surplus} may not be continuous")
         reached = sp.sympify(surplus).subs(variable, at)
         self._vanish(self._resolve(reached), sp.S.Zero, f"{claim}, reached at {variable} = {at}")
         conditions = (sp.And(*given, evaluate=False),) if given else ()
@@ -302,6 +332,33 @@ class Proof(Guarded):
             cases=conditions,
         )
 
+    def _reaches_place(
+        self, variable: sp.Symbol, at: sp.Expr, given: tuple[Relational, ...], claim: str
+    ) -> None:
+        """Refuse a place where the variable cannot be, by its assumptions or by any condition."""
+        mine = [each for each in given if each.has(variable)]
+        with ExitStack() as stack:
+            for condition in given:
+                if condition not in mine:
+                    stack.enter_context(self._case(condition))
+            gaps = [*self._open_admissions(variable, at)]
+            gaps += [
+                gap.subs(variable, at) for gap in self._conditions.positive if gap.has(variable)
+            ]
+            gaps += [
+                (each.gts - each.lts).subs(variable, at) for each in mine if each.func in _STRICT
+            ]
+            rest = [
+                (each.gts - each.lts).subs(variable, at)
+                for each in mine
+                if each.func not in _STRICT
+            ]
+            fine = all(proves_positive(self._resolve(gap), self._conditions) for gap in gaps)
+            if not fine or not all(
+                proves_nonnegative(self._resolve(gap), self._conditions) for gap in rest
+            ):
+                raise StepError(f"{self.label}: {claim}: {variable} is not known to reach {at}")
+
     @asked
     def equivalent(
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
@@ -309,7 +366,7 @@ class Proof(Guarded):
         """Prove that `nonnegative` >= 0 says the same as lhs >= rhs: their ratio is positive."""
         top, gap = self._resolve(nonnegative), self._resolve(lhs - rhs)
         ratio = sp.cancel(top / gap)
-        if not ratio.is_positive or difference(top, ratio * gap) != 0:
+        if not proves_positive(ratio, self._conditions) or difference(top, ratio * gap) != 0:
             raise StepError(
                 f"{self.label}: {lhs} >= {rhs} is not the same as {nonnegative} >= 0: ratio {ratio}"
             )
@@ -342,7 +399,9 @@ class Proof(Guarded):
                 f"{self.label}: {claim}: a remainder of its own needs eps = {variable} -> 0"
             )
         try:
-            c, k, rest = next_order(parts[0] / parts[1], parts[2], variable, point)
+            c, k, rest = next_order(
+                parts[0] / parts[1], parts[2], variable, point, self._conditions
+            )
         except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
         # Of a sum the next term must be finite; of a product, its share of the leading one.
@@ -354,7 +413,7 @@ class Proof(Guarded):
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         if short:
-            _, order, _ = leading_term(parts[1], variable, point)
+            _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             shown["right"] = f"{factor} {_series(c, eps, k, rest)}"

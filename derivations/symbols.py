@@ -137,7 +137,7 @@ moment_ahead, moment_behind, moment_mean, moment_slant, moment_bulge, moment_twi
     "P_v Q_v A_v B_v D_v E_v"
 )
 arm_pressure, arm_load, arm_work, arm_lost = _positive("p_v W_v F_v L_v")
-spring_share, springpot, forgotten = _positive("nu_v zeta_v phi_v")
+spring_share, springpot = _positive("nu_v zeta_v")
 ratio_first, ratio_second = _positive("t_v0 t_v1")
 primitive_1, primitive_2, primitive_3 = (
     sp.Function(f"G_v{n}", positive=True)(contact_length) for n in (1, 2, 3)
@@ -326,7 +326,6 @@ TEX = {
     arm_work: r"\breve F",
     arm_lost: r"\breve L",
     spring_share: r"\breve \nu",
-    forgotten: r"\breve \phi",
     springpot: r"\breve \zeta",
     ratio_first: r"\breve t_0",
     ratio_second: r"\breve t_1",

@@ -150,7 +150,7 @@ def _peak_pressure() -> Derivation:
     )  # fmt: skip
     proof.greatest(
         *(2 * l, profile, (xi, -1), "at the leading edge, else"),
-        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi > -1, l > 1), left=r"\hat p(-1)",
+        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1), left=r"\hat p(-1)",
     )  # fmt: skip
     proof.define(
         n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"

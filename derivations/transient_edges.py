@@ -63,13 +63,10 @@ def derive() -> tuple[Derivation, ...]:
 
 def _peeling() -> Derivation:
     proof = _theorem("F10-peel", title="Edges that peel", text=_PEEL, uses=("eq33",))
-    proof.recall("scaled-pressure", P, PRESSURE)
-    proof.define(rho, sp.sqrt(RADICAND))
-    proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
     pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
     radius = sp.sqrt(RADICAND).subs(_MOVING)
     proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
-    for sign, name, edge in ((-1, "left", r"\ell"), (1, "right", "r")):
+    for sign, edge in ((-1, r"\ell"), (1, "r")):
         position = sign * radius - sp.Derivative(travel, time) - travel
         loss = sp.diff(pressure, time).subs(material, position)
         moving = sign * radius - sp.Derivative(travel, time)
@@ -80,14 +77,18 @@ def _peeling() -> Derivation:
             "X": material,
         }
         proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
-        side = (xi, -sp.oo, -lam) if sign < 0 else (xi, -lam, sp.oo)
-        called = left if sign < 0 else right
-        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
         proof.equal(
             *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
             left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
             right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
         )
+    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.define(rho, sp.sqrt(RADICAND))
+    proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
+    for side, sign, name, called in (
+        ((xi, -sp.oo, -lam), -1, "left", left), ((xi, -lam, sp.oo), 1, "right", right)
+    ):  # fmt: skip
+        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
     return proof.done(right, rho - lam)
 
 
@@ -218,8 +219,6 @@ def _soon_and_late() -> Derivation:
     proof = _theorem("F10-instant-limits", title="Ground left at one instant: early and late", text=_LIMITS,
                      uses=("F10-instant", "F10-peel", "F10-touch"))  # fmt: skip
     proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
-    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
-    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
     proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
     proof.equal(
@@ -227,6 +226,8 @@ def _soon_and_late() -> Derivation:
     )
     proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
     proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
+    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
+    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
     means = E, lift, drift
     for ends, edge, shown, words in (
         ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),

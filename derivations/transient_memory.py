@@ -79,6 +79,7 @@ def _memory() -> Derivation:
                  left=r"\int_{\sigma}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta")  # fmt: skip
     proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
     proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(sp.Gt(time, sigma), "that contact is over")
     proof.greatest(
         *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
         surplus=pushed + sp.exp(earlier) * _clear(earlier), left="e^{s} u(s)",

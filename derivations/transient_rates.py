@@ -262,13 +262,7 @@ def _one_root() -> Derivation:
     proof = _theorem("F13-root", title="Slow manifold: one root", text=_ROOT, uses=("F13",))
     unit = sp.cbrt(2 * f)
     positive = (beta, 0, sp.oo)
-    proof.define(rho, b + lam - a)
-    proof.define(b, unit * beta)
-    proof.define(lam, a + unit * drive_excess)
     relation = beta**2 * (2 * beta + 3 * drive_excess) / 2
-    proof.notation["f_z"] = PEELING_NORMAL_FORCE
-    proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
-                left=r"\frac{f_z}{f}")  # fmt: skip
     proof.root(relation - 1, drive_excess, EXCESS, r"where $f_z = f$")
     proof.sign(
         sp.Derivative(EXCESS, beta), "<", 0, positive, r"each $n$ belongs to one $\beta$ at most"
@@ -277,6 +271,12 @@ def _one_root() -> Derivation:
     proof.leading_order(
         EXCESS, -2 * beta / 3, beta, sp.oo, r"$n \to -\infty$: to exactly one", eps=1 / beta
     )
+    proof.define(rho, b + lam - a)
+    proof.define(b, unit * beta)
+    proof.define(lam, a + unit * drive_excess)
+    proof.notation["f_z"] = PEELING_NORMAL_FORCE
+    proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
+                left=r"\frac{f_z}{f}")  # fmt: skip
     return proof.done(drive_excess, EXCESS)
 
 

@@ -23,7 +23,6 @@ from .symbols import (
     arm_work,
     contact_length,
     excess_share,
-    forgotten,
     from_trailing,
     half_share,
     l,
@@ -332,9 +331,9 @@ def _slow() -> Derivation:
     proof = _theorem("F18-low", title="Any relaxation function: low velocity", text=_SLOW,
                      uses=("F17", "F17-load"))  # fmt: skip
     _from_moments(proof)
-    proof.define(FALL, forgotten / z**2, "its memory decays faster than any power of $\\breve z$")
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
-    proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order", **far)
+    proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order, "
+                        r"and $e^{-\breve z}$ of none", **far)  # fmt: skip
     proof.leading_order(E, 1 / (12 * z), reason="friction force of the arm", **far)
     return proof.done(E, 1 / (12 * z))
 

@@ -6,7 +6,6 @@ from tests import planted_fresh as planted
 
 MARKS = {
     planted.OPEN: pytest.mark.xfail(strict=True, reason="the engine gets it wrong today"),
-    planted.SLOW: pytest.mark.xfail(run=False, reason="the engine takes too long"),
 }
 ROWS = [
     pytest.param(step, expected, why, id=f"{kind}: {name}", marks=[MARKS[state]] if state else [])

@@ -2,11 +2,18 @@
 
 import pytest
 import sympy as sp
+from kvtheory.derivations import book
 from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.step import Proof
 
 from tests import planted
 from tests.planted import x, y, z
+
+
+@pytest.fixture(autouse=True)
+def own_labels(monkeypatch):
+    """Let each test finish proofs under its own labels."""
+    monkeypatch.setattr(book, "_finished", dict(book._finished))
 
 
 @pytest.fixture

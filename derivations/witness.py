@@ -1,0 +1,201 @@
+"""A point at which premises and conditions hold together: without one they prove nothing.
+
+Letters are drawn, the equations solved one after the other with 50 digits, at changes of sign. Values,
+slopes and integrals of unknown functions are letters of their own.
+"""
+
+import random
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache
+
+import mpmath
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+_OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
+_TRIES, _DIGITS, _NONE = 200, 50, mpmath.mpf(10) ** -30
+_GRID = [mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)]
+
+
+Pairs = tuple[tuple[sp.Expr, sp.Expr], ...]
+_Point = dict[sp.Expr, mpmath.mpf]
+
+
+@lru_cache(maxsize=4096)
+def has_witness(premises: Pairs, positive: tuple[sp.Expr, ...]) -> bool:
+    """Tell whether a point was found where all premises hold and the other expressions are positive."""
+    laws, gaps, signed = _without_definitions(premises, positive)
+    if not laws and not gaps and not signed:
+        return True
+    slack = {gap: sp.Dummy("slack", positive=True) for gap in gaps}
+    letters = set().union(*(each.free_symbols for each in (*laws, *gaps, *signed)))
+    order = sorted(letters, key=str)
+    above = {*gaps, *signed}
+    draw = random.Random(2020)
+    with mpmath.workdps(_DIGITS):
+        for attempt in range(_TRIES):
+            # Some conditions are met by letting them be equal to something positive.
+            forced = draw.sample(gaps, draw.randrange(len(gaps) + 1)) if attempt % 2 else []
+            start = {slack[gap]: _drawn(slack[gap], draw, above) for gap in forced}
+            closed = [*laws, *(gap - slack[gap] for gap in forced)]
+            draw.shuffle(order)
+            order.sort(key=lambda letter: isinstance(letter, sp.Dummy))
+            try:
+                points = _extended(start, closed, order, draw, above)
+                if any(_meets(point, gaps, signed) for point in points):
+                    return True
+            except (ZeroDivisionError, ValueError, OverflowError, TypeError):
+                continue
+    return False
+
+
+def _without_definitions(
+    premises: Pairs, positive: tuple[sp.Expr, ...]
+) -> tuple[list[sp.Expr], list[sp.Expr], list[sp.Expr]]:
+    """Put in the values of names; return what must vanish, be positive, and not be negative."""
+    values: dict[sp.Expr, sp.Expr] = {}
+    laws: list[sp.Expr] = []
+    for lhs, rhs in premises:
+        name, value = _put(lhs, values), _put(rhs, values)
+        if name.is_Symbol and not value.has(name):
+            values = {each: _put(known, {name: value}) for each, known in values.items()}
+            values[name] = value
+        else:
+            laws.append(name - value)
+    whole = [sp.sin(sp.pi * value) for name, value in values.items() if name.is_integer]
+    sized = [(name, value) for name, value in values.items() if name.is_nonnegative]
+    sized += [(-name, -value) for name, value in values.items() if name.is_nonpositive]
+    names: dict[sp.Expr, sp.Dummy] = {}
+    groups = (
+        (*laws, *whole),
+        (*positive, *(value for name, value in sized if name.is_positive)),
+        [value for name, value in sized if not name.is_positive],
+    )
+    left = [
+        [_lettered(_put(each, values), names) for each in dict.fromkeys(group)] for group in groups
+    ]
+    laws, gaps, signed = left
+    return (
+        [law for law in laws if law != 0],
+        [gap for gap in gaps if not gap.is_positive],
+        [gap for gap in signed if not gap.is_nonnegative],
+    )
+
+
+def _put(expr: sp.Expr, values: dict[sp.Expr, sp.Expr]) -> sp.Expr:
+    if expr.has(sp.Integral, sp.Sum, sp.Derivative, sp.Subs):
+        return expr.subs(values)
+    return expr.xreplace(values)
+
+
+def _lettered(expr: sp.Expr, names: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
+    """Write letters for what depends on unknown functions, with their sign."""
+    if isinstance(expr, _OPAQUE):
+        known = {"positive": expr.is_positive, "nonnegative": expr.is_nonnegative}
+        return names.setdefault(expr, sp.Dummy(real=True, **{k: v for k, v in known.items() if v}))
+    return expr.func(*(_lettered(part, names) for part in expr.args)) if expr.args else expr
+
+
+def _drawn(letter: sp.Symbol, draw: random.Random, above: set[sp.Expr]) -> mpmath.mpf:
+    """Draw an admissible value, above zero where a condition says so."""
+    size = draw.randrange(1, 9) if letter.is_integer else mpmath.mpf(10) ** draw.uniform(-2, 1)
+    negative = letter.is_nonpositive or (
+        not letter.is_nonnegative and letter not in above and draw.random() < 0.5
+    )
+    return mpmath.mpf(-size if negative else size)
+
+
+def _extended(
+    point: _Point,
+    equations: list[sp.Expr],
+    order: list[sp.Symbol],
+    draw: random.Random,
+    above: set[sp.Expr],
+) -> Iterator[_Point]:
+    """Give values to the letters that are left: by an equation, else by chance."""
+    waiting = []
+    for each in equations:
+        left = each.free_symbols - point.keys()
+        if not left:
+            if abs(_value(each, point)) > _NONE:
+                return
+        else:
+            waiting.append((len(left), each, left))
+    if not waiting and all(letter in point for letter in order):
+        yield point
+        return
+    if waiting and (least := min(waiting, key=lambda row: row[0]))[0] == 1:
+        _, equation, (letter,) = least
+        rest = [each for _, each, _ in waiting if each is not equation]
+        for value in _roots(equation, letter, point):
+            yield from _extended({**point, letter: value}, rest, order, draw, above)
+        return
+    letter = next(each for each in order if each not in point)
+    rest = [each for _, each, _ in waiting]
+    yield from _extended({**point, letter: _drawn(letter, draw, above)}, rest, order, draw, above)
+
+
+def _roots(equation: sp.Expr, letter: sp.Symbol, point: _Point) -> Iterator[mpmath.mpf]:
+    """Yield admissible roots: of a linear equation, else between points with values of two signs."""
+
+    def height(value: mpmath.mpf) -> mpmath.mpf:
+        found = _value(equation, {**point, letter: value})
+        return found if isinstance(found, mpmath.mpf) else mpmath.nan
+
+    slope = sp.diff(equation, letter)
+    if slope != 0 and not slope.has(letter):
+        zero, slant = _value(equation.subs(letter, 0), point), _value(slope, point)
+        found: Iterable[mpmath.mpf] = [] if slant == 0 else [-zero / slant]
+    else:
+        grid = [] if letter.is_nonnegative else [-each for each in reversed(_GRID)]
+        grid += [mpmath.mpf(0)] if not letter.is_nonzero else []
+        grid += [] if letter.is_nonpositive else _GRID
+        heights = []
+        for place in grid:
+            try:
+                heights.append(height(place))
+            except (ZeroDivisionError, ValueError, OverflowError):
+                heights.append(mpmath.nan)
+        found = [place for place, value in zip(grid, heights, strict=True) if abs(value) < _NONE]
+        for low, high, one, other in zip(grid, grid[1:], heights, heights[1:], strict=False):
+            if one * other < 0:
+                root = mpmath.findroot(height, (low, high), solver="anderson", verify=False)
+                if abs(height(root)) < _NONE:
+                    found.append(root)
+    yield from (value for value in found if _admits(letter, value))
+
+
+def _admits(letter: sp.Symbol, value: mpmath.mpf) -> bool:
+    if not isinstance(value, mpmath.mpf) or not mpmath.isfinite(value):
+        return False
+    if letter.is_integer and abs(value - mpmath.nint(value)) > _NONE:
+        return False
+    if letter.is_nonzero and abs(value) < _NONE:
+        return False
+    return not (letter.is_nonnegative and value < 0) and not (letter.is_nonpositive and value > 0)
+
+
+def _meets(point: _Point, gaps: list[sp.Expr], signed: list[sp.Expr]) -> bool:
+    least = [(gap, _NONE) for gap in gaps] + [(gap, -_NONE) for gap in signed]
+    values = ((_value(gap, point), low) for gap, low in least)
+    return all(isinstance(value, mpmath.mpf) and value > low for value, low in values)
+
+
+def _value(expr: sp.Expr, point: _Point) -> mpmath.mpf:
+    """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
+    if expr.is_Symbol:
+        return point[expr]
+    if expr.is_Number or expr.is_NumberSymbol:
+        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+    parts = [_value(part, point) for part in expr.args]
+    if expr.is_Add:
+        return mpmath.fsum(parts)
+    if expr.is_Mul:
+        return mpmath.fprod(parts)
+    if expr.is_Pow:
+        return parts[0] ** parts[1]
+    kinds: dict[type, Callable[..., mpmath.mpf]] = {sp.Abs: abs, sp.Max: max, sp.Min: min}
+    kind = kinds.get(expr.func, getattr(mpmath, expr.func.__name__, None))
+    if kind is None:
+        raise ValueError(f"{expr} has no value here")
+    return mpmath.mpmathify(kind(*parts))
