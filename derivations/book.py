@@ -48,6 +48,12 @@ _CONSTANTS = {r"\pi", "e", r"\infty"}
 """What no notation may give another meaning."""
 
 
+def forget(prefix: str) -> None:
+    """Forget the results whose labels begin so: those of another document, which names its own alike."""
+    for label in [each for each in _finished if each.startswith(prefix)]:
+        del _finished[label]
+
+
 class StepError(ValueError):
     """A step that is wrong, or that the engine cannot prove."""
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from .book import tex
+from .book import forget, tex
 from .nomenclature import Symbol
 from .record import Derivation
 from .shape_text import Shape, read_shape
@@ -55,6 +55,7 @@ def derive_shape(text: str) -> tuple[Derivation, ...]:
     """
     shape = read_shape(text)
     premises = [each for each in steady_premises() if each.label in PREMISES]
+    forget("shape-")
     try:
         return (*premises, *_Chapter(shape).derive())
     except StepError as error:
