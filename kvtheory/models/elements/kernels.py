@@ -177,9 +177,6 @@ COMPILED = {
     "choose": lambda flag, yes, no: yes if flag else no,
 }
 """What stands for these functions where they are compiled."""
-INLINED = ("implicit_step", "_thresholds", "relax", "_judge_edges", "_solve_depth", "_solve_along",
-           "finish", "begin", "find_runs")  # fmt: skip
-"""Functions that are inlined: to pass all that `Elements` holds to one takes as long as its work."""
 
 
 # The indenter

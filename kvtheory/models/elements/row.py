@@ -55,7 +55,7 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    compilation.register(kernels, kernels.INLINED, compiled=kernels.COMPILED, _nrt=False)
+    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
     return compilation.cached(kernels.advance, _nrt=False)
 
 
