@@ -7,6 +7,8 @@ statement past the engine, and as an author would who has a right one.
 import sympy as sp
 from kvtheory.derivations.step import Proof
 
+from tests.planted_fresh import equal, root, sign, unique
+
 x, u = sp.symbols("x u", real=True)
 y, z, a, b = sp.symbols("y z a b", positive=True)
 n = sp.Symbol("n", integer=True)
@@ -79,22 +81,6 @@ def _integral(integrand, over, primitive, **more):
     return lambda p: p.integral(u, integrand, over, primitive, "integral", **more)
 
 
-def _equal(lhs, rhs, **shown):
-    return lambda p: p.equal(sp.sympify(lhs), sp.sympify(rhs), "identity", **shown)
-
-
-def _sign(expr, relation, over, bound=0):
-    return lambda p: p.sign(sp.sympify(expr), relation, bound, over, "sign")
-
-
-def _root(expr, variable, value, **more):
-    return lambda p: p.root(sp.sympify(expr), variable, sp.sympify(value), "root", **more)
-
-
-def _unique(expr, over):
-    return lambda p: p.unique_root(expr, over, "unique")
-
-
 def _where(conditions, step):
     def both(p):
         for condition in conditions:
@@ -152,28 +138,28 @@ FALSE = {
     "exact, so without a next term": _order(h, h),
     "oscillates": _order(1 + h * sp.sin(1 / h), 1),
     # roots
-    "one of two roots without an interval": _root(parabola, h, 2 - sp.sqrt(3)),
-    "negative root of a positive symbol": _root(a + 1, a, -1),
-    "zero for a positive symbol": _root(a**2 - a, a, 0),
-    "root of nothing": _root(0, x, 17),
-    "root of what does not contain it": _root(y - y * 1, x, 3),
-    "complex root": _root(x**2 + 1, x, sp.I),
-    "root of the wrong sign": _root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) + y, over=(x, 0, sp.oo)),
-    "outside of the interval": _root(x**2 - 4, x, 2, over=(x, 0, 1)),
-    "at the open end of the interval": _root(x**2 - x, x, 1, over=(x, 0, 1)),
-    "root at a pole": _root((x - 1) ** 2 / (x - 1) ** 3, x, 1),
-    "not known to be real": _root(x**2 - u, x, sp.sqrt(u), over=(x, 0, sp.oo)),
-    "second root between symbolic ends": _root((x - a) * (x - 2 * a), x, a, over=(x, 0, 3 * a)),
-    "fractional power with two roots": _root(h - 3 * sp.sqrt(h) + 2, h, 1),
-    "name that cannot have the value": _root(x**2 - a, x, -sp.sqrt(a), over=(x, -sp.oo, 0), name=b),
-    "bound whose finiteness is unknown": _unique(z - 5, (z, 0, b)),
-    "symbolic bound beyond which the root lies": _unique(x - 5, (x, 0, a)),
-    "double root as a change of sign": _unique((x - 1) ** 2, (x, 0, 2)),
-    "two roots": _unique(x**2 - 2, (x, -2, 2)),
-    "no root where one is claimed": _unique(x**2 + 2, (x, -2, 2)),
-    "irrational end at the root": _unique(x**2 - 2, (x, 0, sp.sqrt(2))),
-    "empty interval": _unique(x - half, (x, 1, 0)),
-    "interval beyond the assumptions": _unique(y + half, (y, -1, 1)),
+    "one of two roots without an interval": root(parabola, h, 2 - sp.sqrt(3)),
+    "negative root of a positive symbol": root(a + 1, a, -1),
+    "zero for a positive symbol": root(a**2 - a, a, 0),
+    "root of nothing": root(0, x, 17),
+    "root of what does not contain it": root(y - y * 1, x, 3),
+    "complex root": root(x**2 + 1, x, sp.I),
+    "root of the wrong sign": root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) + y, over=(x, 0, sp.oo)),
+    "outside of the interval": root(x**2 - 4, x, 2, over=(x, 0, 1)),
+    "at the open end of the interval": root(x**2 - x, x, 1, over=(x, 0, 1)),
+    "root at a pole": root((x - 1) ** 2 / (x - 1) ** 3, x, 1),
+    "not known to be real": root(x**2 - u, x, sp.sqrt(u), over=(x, 0, sp.oo)),
+    "second root between symbolic ends": root((x - a) * (x - 2 * a), x, a, over=(x, 0, 3 * a)),
+    "fractional power with two roots": root(h - 3 * sp.sqrt(h) + 2, h, 1),
+    "name that cannot have the value": root(x**2 - a, x, -sp.sqrt(a), over=(x, -sp.oo, 0), name=b),
+    "bound whose finiteness is unknown": unique(z - 5, (z, 0, b)),
+    "symbolic bound beyond which the root lies": unique(x - 5, (x, 0, a)),
+    "double root as a change of sign": unique((x - 1) ** 2, (x, 0, 2)),
+    "two roots": unique(x**2 - 2, (x, -2, 2)),
+    "no root where one is claimed": unique(x**2 + 2, (x, -2, 2)),
+    "irrational end at the root": unique(x**2 - 2, (x, 0, sp.sqrt(2))),
+    "empty interval": unique(x - half, (x, 1, 0)),
+    "interval beyond the assumptions": unique(y + half, (y, -1, 1)),
     # premises
     "a value for every velocity from a premise at one": _sweep_what_is_fixed,
     "premises of two results exclude each other": _two_values,
@@ -190,45 +176,45 @@ FALSE = {
         [(f(x), x**2)], lambda p: p.equal(sp.Derivative(f(x), x), sp.S.Zero, "though f = x²")
     ),
     "a condition against the assumptions": lambda p: p.where(sp.Lt(a, -1)),
-    "interval in which a name is negative": _after([(a, 1 - h)], _sign(2 - a, ">", (h, 0, 2))),
-    "sweeping a variable that has a value": _after([(h, half)], _sign(h, ">", (h, 0, 1))),
+    "interval in which a name is negative": _after([(a, 1 - h)], sign(2 - a, ">", (h, 0, 2))),
+    "sweeping a variable that has a value": _after([(h, half)], sign(h, ">", (h, 0, 1))),
     "hidden two names deep": _hidden_twice,
     "hidden in a recalled result": _hidden_in_recalled,
     # branches, signs, zero divisors
-    "root of a square": _equal(sp.sqrt(x**2), x),
-    "root of a product of reals": _equal(sp.sqrt(x * u), sp.sqrt(x) * sp.sqrt(u)),
-    "cube root of a cube": _equal(sp.cbrt(x**3), x),
-    "absolute value dropped": _equal(sp.Abs(x), x),
-    "larger of two is the first": _equal(sp.Max(x, u), x),
-    "logarithm of a square": _equal(sp.log(x**2), 2 * sp.log(x)),
-    "arc tangent of the inverse": _equal(sp.atan(1 / x), sp.pi / 2 - sp.atan(x)),
-    "sum of arc tangents": _equal(sp.atan(x) + sp.atan(u), sp.atan((x + u) / (1 - x * u))),
-    "arc sine of a sine": _equal(sp.asin(sp.sin(x)), x),
-    "true for integers only": _equal(sp.sin(sp.pi * x), 0),
-    "true for even integers only": _equal((-1) ** n, 1),
-    "true for reals only": _equal(sp.Abs(w) ** 2, w**2),
-    "removable singularity": _equal((x**2 - 1) / (x - 1), x + 1),
-    "removable singularity, hidden by a name": _after([(u, x - 1)], _equal((x**2 - 1) / u, x + 1)),
-    "tangent times cosine": _equal(sp.tan(x) * sp.cos(x), sp.sin(x)),
-    "inverse of an inverse": _equal(1 / (1 / (x - 1) + 1) * x / (x - 1), 1),
-    "nothing over nothing": _equal(sp.Mul(x - x, 1 / (x - 1), evaluate=False) / (x - 1) * (x - 1), 1),
-    "zero to the power of zero": _equal(sp.Pow(x, 0, evaluate=False) + 1 / x - 1 / x, 2),
-    "almost the same number": _equal(sp.sqrt(2), sp.Rational(141421356237309504880, 10**20)),
-    "almost the same by a factor": _equal(2 * y, (y + y) * (1 + y / 10**60)),
-    "signum squared": _equal(sp.sign(x) ** 2, 1),
+    "root of a square": equal(sp.sqrt(x**2), x),
+    "root of a product of reals": equal(sp.sqrt(x * u), sp.sqrt(x) * sp.sqrt(u)),
+    "cube root of a cube": equal(sp.cbrt(x**3), x),
+    "absolute value dropped": equal(sp.Abs(x), x),
+    "larger of two is the first": equal(sp.Max(x, u), x),
+    "logarithm of a square": equal(sp.log(x**2), 2 * sp.log(x)),
+    "arc tangent of the inverse": equal(sp.atan(1 / x), sp.pi / 2 - sp.atan(x)),
+    "sum of arc tangents": equal(sp.atan(x) + sp.atan(u), sp.atan((x + u) / (1 - x * u))),
+    "arc sine of a sine": equal(sp.asin(sp.sin(x)), x),
+    "true for integers only": equal(sp.sin(sp.pi * x), 0),
+    "true for even integers only": equal((-1) ** n, 1),
+    "true for reals only": equal(sp.Abs(w) ** 2, w**2),
+    "removable singularity": equal((x**2 - 1) / (x - 1), x + 1),
+    "removable singularity, hidden by a name": _after([(u, x - 1)], equal((x**2 - 1) / u, x + 1)),
+    "tangent times cosine": equal(sp.tan(x) * sp.cos(x), sp.sin(x)),
+    "inverse of an inverse": equal(1 / (1 / (x - 1) + 1) * x / (x - 1), 1),
+    "nothing over nothing": equal(sp.Mul(x - x, 1 / (x - 1), evaluate=False) / (x - 1) * (x - 1), 1),
+    "zero to the power of zero": equal(sp.Pow(x, 0, evaluate=False) + 1 / x - 1 / x, 2),
+    "almost the same number": equal(sp.sqrt(2), sp.Rational(141421356237309504880, 10**20)),
+    "almost the same by a factor": equal(2 * y, (y + y) * (1 + y / 10**60)),
+    "signum squared": equal(sp.sign(x) ** 2, 1),
     # signs
-    "zero at an end that is inside": _sign(x * (1 - x), ">", (x, -1, 1)),
-    "changes its sign next to the end": _sign((x - sp.Rational(1, 10**9)) * (x + 1), ">=", (x, 0, 1)),
-    "bound that is reached": _sign(x * (1 - x), "<", (x, 0, 1), sp.Rational(1, 4)),
-    "pole inside": _sign(1 / (2 * x - 1) ** 2, ">", (x, 0, 1)),
-    "undefined inside": _sign((x**2 - 1) / (x - 1), ">", (x, 0, 2)),
-    "factor of unknown sign": _sign(u * (x + 1), ">", (x, 0, 1)),
-    "interval of the wrong sign": _sign(a + 1, ">", (a, -5, 5)),
-    "symbolic end": _sign(1 - x, ">", (x, 0, a)),
-    "irrational end passed": _sign(2 - x**2, ">", (x, 0, sp.Rational(3, 2))),
-    "integers do not sweep": _sign(n**2 + n, ">", (n, -1, 1)),
-    "complex does not sweep": _sign(w**2 + 1, ">", (w, -1, 1)),
-    "empty interval of a sign": _sign(-sp.S.One - x**2, ">", (x, 1, 0)),
+    "zero at an end that is inside": sign(x * (1 - x), ">", (x, -1, 1)),
+    "changes its sign next to the end": sign((x - sp.Rational(1, 10**9)) * (x + 1), ">=", (x, 0, 1)),
+    "bound that is reached": sign(x * (1 - x), "<", (x, 0, 1), sp.Rational(1, 4)),
+    "pole inside": sign(1 / (2 * x - 1) ** 2, ">", (x, 0, 1)),
+    "undefined inside": sign((x**2 - 1) / (x - 1), ">", (x, 0, 2)),
+    "factor of unknown sign": sign(u * (x + 1), ">", (x, 0, 1)),
+    "interval of the wrong sign": sign(a + 1, ">", (a, -5, 5)),
+    "symbolic end": sign(1 - x, ">", (x, 0, a)),
+    "irrational end passed": sign(2 - x**2, ">", (x, 0, sp.Rational(3, 2))),
+    "integers do not sweep": sign(n**2 + n, ">", (n, -1, 1)),
+    "complex does not sweep": sign(w**2 + 1, ">", (w, -1, 1)),
+    "empty interval of a sign": sign(-sp.S.One - x**2, ">", (x, 1, 0)),
     "inequality without its condition": _holds(1 - y, ">"),
     "inequality that fails in a corner": _where([y < 1], _holds(half - y)),
     "product of unknown signs": _holds(x * u),
@@ -258,15 +244,15 @@ FALSE = {
     "primitive with an undefined end": _integral(sp.log(y), (y, 0, sp.oo), y * sp.log(y) - y),
     "variable that has a value": _after([(x, sp.Integer(3))], _integral(x, (x, 0, y), 3 * x)),
     # displays
-    "display of other numbers": _equal(x, x, left="0", right="1"),
-    "display of another right side": _equal((y + 1) ** 2, y**2 + 2 * y + 1, right="y^2 + 1"),
-    "display of another left side": _equal(2 * y, y + y, left="3 y"),
-    "display of another function": _equal(f(x) + 0 * y, f(x), left="f(y)"),
-    "display with a chain that breaks": _equal(2 * y, y + y, right="2 y = 3 y"),
-    "display that cannot be read": _equal(x, x, left=r"\ldots"),
-    "display that hides in words": _equal(x, x, left=r"\text{anything}"),
+    "display of other numbers": equal(x, x, left="0", right="1"),
+    "display of another right side": equal((y + 1) ** 2, y**2 + 2 * y + 1, right="y^2 + 1"),
+    "display of another left side": equal(2 * y, y + y, left="3 y"),
+    "display of another function": equal(f(x) + 0 * y, f(x), left="f(y)"),
+    "display with a chain that breaks": equal(2 * y, y + y, right="2 y = 3 y"),
+    "display that cannot be read": equal(x, x, left=r"\ldots"),
+    "display that hides in words": equal(x, x, left=r"\text{anything}"),
     "display of another definition": lambda p: p.define(z, y**2, right="y^3"),
-    "display of another derivative": _equal(
+    "display of another derivative": equal(
         sp.Derivative(x**2, x), 2 * x, left=r"\frac{d}{dx} x^3"
     ),
     "display of another integral": lambda p: p.integral(
@@ -275,7 +261,7 @@ FALSE = {
     "display of another asymptote": lambda p: p.leading_order(
         h + h**2, h, h, 0, "series", eps=h, right="2 h"
     ),
-    "display of another root": _root(x - 3, x, 3, right="4"),
+    "display of another root": root(x - 3, x, 3, right="4"),
 }  # fmt: skip
 
 TRUE = {
@@ -298,64 +284,64 @@ TRUE = {
     "logarithm of a series": _order(sp.log(1 + h), h),
     "with a parameter": _order(h / (a + h), h / a),
     # roots
-    "friction maximum": _root(parabola, h, 2 - sp.sqrt(3), over=(h, 0, 1)),
-    "quadratic with a symbol": _root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) - y, over=(x, 0, sp.oo)),
-    "positive root of a positive symbol": _root(a**2 - 4, a, 2),
-    "cubic with one positive root": _root(a**3 - b, a, sp.cbrt(b)),
-    "fractional powers with one root": _root(h ** sp.Rational(3, 2) - b, h, b ** sp.Rational(2, 3)),
-    "named": _root(x**2 - b, x, sp.sqrt(b), over=(x, 0, sp.oo), name=a),
-    "between symbolic ends": _root((x - a) * (x + a), x, a, over=(x, 0, 3 * a)),
-    "double root as a root": _root((x - 1) ** 2, x, 1),
-    "with a condition": _where([sp.Gt(u, 0)], _root(x**2 - u, x, sp.sqrt(u), over=(x, 0, sp.oo))),
-    "in an exponential": _root(x * sp.exp(y) - z, x, z * sp.exp(-y)),
-    "unique root": _unique(x**2 - 2, (x, 0, 2)),
-    "unique root to an irrational end": _unique(x**2 - 2, (x, 0, sp.sqrt(3))),
-    "unique root from an irrational end": _unique(x**2 - 4, (x, sp.sqrt(2), sp.oo)),
-    "unique root without ends": _unique(x**3 + x - 1, (x, -sp.oo, sp.oo)),
-    "ends do not count": _unique(x * (2 * x - 1) * (x - 1), (x, 0, 1)),
-    "triple root changes the sign": _unique((x - 1) ** 3, (x, 0, 2)),
+    "friction maximum": root(parabola, h, 2 - sp.sqrt(3), over=(h, 0, 1)),
+    "quadratic with a symbol": root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) - y, over=(x, 0, sp.oo)),
+    "positive root of a positive symbol": root(a**2 - 4, a, 2),
+    "cubic with one positive root": root(a**3 - b, a, sp.cbrt(b)),
+    "fractional powers with one root": root(h ** sp.Rational(3, 2) - b, h, b ** sp.Rational(2, 3)),
+    "named": root(x**2 - b, x, sp.sqrt(b), over=(x, 0, sp.oo), name=a),
+    "between symbolic ends": root((x - a) * (x + a), x, a, over=(x, 0, 3 * a)),
+    "double root as a root": root((x - 1) ** 2, x, 1),
+    "with a condition": _where([sp.Gt(u, 0)], root(x**2 - u, x, sp.sqrt(u), over=(x, 0, sp.oo))),
+    "in an exponential": root(x * sp.exp(y) - z, x, z * sp.exp(-y)),
+    "unique root": unique(x**2 - 2, (x, 0, 2)),
+    "unique root to an irrational end": unique(x**2 - 2, (x, 0, sp.sqrt(3))),
+    "unique root from an irrational end": unique(x**2 - 4, (x, sp.sqrt(2), sp.oo)),
+    "unique root without ends": unique(x**3 + x - 1, (x, -sp.oo, sp.oo)),
+    "ends do not count": unique(x * (2 * x - 1) * (x - 1), (x, 0, 1)),
+    "triple root changes the sign": unique((x - 1) ** 3, (x, 0, 2)),
     # premises
     "definitions in a row": _defined((z, y**2), (a, z + 1)),
     "two laws": _defined((x**2, sp.S.One), (x**3, sp.S.One)),
-    "square": _after([(z, y**2)], _equal(sp.sqrt(z), y)),
+    "square": _after([(z, y**2)], equal(sp.sqrt(z), y)),
     "derivative of what is named": _after(
-        [(r, sp.sqrt(s**2 + lam**2))], _equal(sp.Derivative(r * s, s), (2 * s**2 + lam**2) / r)
+        [(r, sp.sqrt(s**2 + lam**2))], equal(sp.Derivative(r * s, s), (2 * s**2 + lam**2) / r)
     ),
     "derivative of what is named, two deep": _after(
-        [(a, r * s), (r, s**2)], _equal(sp.Derivative(a, s), 3 * s**2)
+        [(a, r * s), (r, s**2)], equal(sp.Derivative(a, s), 3 * s**2)
     ),
-    "value of a function": _after([(f(x), x**2)], _equal(sp.Derivative(f(x), x), 2 * x)),
-    "domain of a name": _after([(a, 1 - h)], _sign(2 - a, ">", (h, 0, 1))),
+    "value of a function": _after([(f(x), x**2)], equal(sp.Derivative(f(x), x), 2 * x)),
+    "domain of a name": _after([(a, 1 - h)], sign(2 - a, ">", (h, 0, 1))),
     "condition": lambda p: p.where(a < b),
     "a value for the variable of an integral and of a derivative": _defined(
         (f(y), sp.Integral(x * sp.Derivative(f(u), u), (x, 0, z))), (x, z**2), (u, z + 1)
     ),
     # identities
-    "binomial": _equal((x + y) ** 2, x**2 + 2 * x * y + y**2),
-    "rationalised": _equal(1 / (sp.sqrt(1 + y) + sp.sqrt(y)), sp.sqrt(1 + y) - sp.sqrt(y)),
-    "root of a square, positive": _equal(sp.sqrt(y**2), y),
-    "root of a square, real": _equal(sp.sqrt(x**2), sp.Abs(x)),
-    "root of a quotient": _equal(sp.sqrt(1 + (1 - y**2) ** 2 / (4 * y**2)), (1 + y**2) / (2 * y)),
-    "root of a product": _equal(sp.sqrt(y * z), sp.sqrt(y) * sp.sqrt(z)),
-    "Pythagoras": _equal(sp.sin(x) ** 2 + sp.cos(x) ** 2, 1),
-    "larger and smaller": _equal(sp.Max(x, u) + sp.Min(x, u), x + u),
-    "logarithm of a product of positives": _equal(sp.log(y * z), sp.log(y) + sp.log(z)),
+    "binomial": equal((x + y) ** 2, x**2 + 2 * x * y + y**2),
+    "rationalised": equal(1 / (sp.sqrt(1 + y) + sp.sqrt(y)), sp.sqrt(1 + y) - sp.sqrt(y)),
+    "root of a square, positive": equal(sp.sqrt(y**2), y),
+    "root of a square, real": equal(sp.sqrt(x**2), sp.Abs(x)),
+    "root of a quotient": equal(sp.sqrt(1 + (1 - y**2) ** 2 / (4 * y**2)), (1 + y**2) / (2 * y)),
+    "root of a product": equal(sp.sqrt(y * z), sp.sqrt(y) * sp.sqrt(z)),
+    "Pythagoras": equal(sp.sin(x) ** 2 + sp.cos(x) ** 2, 1),
+    "larger and smaller": equal(sp.Max(x, u) + sp.Min(x, u), x + u),
+    "logarithm of a product of positives": equal(sp.log(y * z), sp.log(y) + sp.log(z)),
     "cancelled where it may be": _where(
-        [x > 1], _equal((x**2 - 1) / (x - 1), x + 1)
+        [x > 1], equal((x**2 - 1) / (x - 1), x + 1)
     ),
-    "tangent where it may be": _where([sp.cos(x) > 0], _equal(sp.tan(x) * sp.cos(x), sp.sin(x))),
-    "derivative": _equal(sp.Derivative(sp.exp(-x / y), x), -sp.exp(-x / y) / y),
-    "value at a place": _equal(sp.Subs(x**2 + x, x, y), y**2 + y),
+    "tangent where it may be": _where([sp.cos(x) > 0], equal(sp.tan(x) * sp.cos(x), sp.sin(x))),
+    "derivative": equal(sp.Derivative(sp.exp(-x / y), x), -sp.exp(-x / y) / y),
+    "value at a place": equal(sp.Subs(x**2 + x, x, y), y**2 + y),
     "in each of two cases": lambda p: p.equal(
         x * (x - 1), sp.S.Zero, "at both", cases=(sp.Eq(x, 0), sp.Eq(x, 1))
     ),
     # signs
-    "parabola": _sign(x * (1 - x), ">", (x, 0, 1)),
-    "square with a touch": _sign((2 * x - 1) ** 2, ">=", (x, 0, 1)),
-    "bound": _sign(x * (1 - x), "<=", (x, 0, 1), sp.Rational(1, 4)),
-    "to an irrational end": _sign(2 - x**2, ">", (x, 0, sp.sqrt(2))),
-    "with a positive factor": _sign(y * (x + 1), ">", (x, 0, 1)),
-    "derivative of known sign": _sign(sp.Derivative(x**3 + x, x), ">", (x, -sp.oo, sp.oo)),
+    "parabola": sign(x * (1 - x), ">", (x, 0, 1)),
+    "square with a touch": sign((2 * x - 1) ** 2, ">=", (x, 0, 1)),
+    "bound": sign(x * (1 - x), "<=", (x, 0, 1), sp.Rational(1, 4)),
+    "to an irrational end": sign(2 - x**2, ">", (x, 0, sp.sqrt(2))),
+    "with a positive factor": sign(y * (x + 1), ">", (x, 0, 1)),
+    "derivative of known sign": sign(sp.Derivative(x**3 + x, x), ">", (x, -sp.oo, sp.oo)),
     "inequality": _holds(y**2 + y * z, ">"),
     "inequality with a condition": _where([sp.Lt(y, z)], _holds(z**2 - y**2, ">")),
     "inequality of exponentials": _where([sp.Lt(x, u)], _holds(sp.exp(u) - sp.exp(x), ">")),
@@ -372,10 +358,10 @@ TRUE = {
     "root at its end": _integral(1 / (2 * sp.sqrt(x)), (x, 0, 1), sp.sqrt(x)),
     "function that is not known": _integral(sp.Derivative(f(x), x), (x, 0, y), f(x)),
     # displays
-    "rearranged": _equal((y + 1) ** 2, y**2 + 2 * y + 1, right="1 + 2 y + y^{2}"),
-    "chain": _equal(2 * y, y + y, right=r"2 y = \frac{4 y}{2}"),
-    "function and its argument": _equal(f(x) + y, y + f(x), left="f(x) + y"),
-    "derivative shown": _equal(sp.Derivative(x**2, x), 2 * x, left=r"\frac{d}{dx} x^2"),
+    "rearranged": equal((y + 1) ** 2, y**2 + 2 * y + 1, right="1 + 2 y + y^{2}"),
+    "chain": equal(2 * y, y + y, right=r"2 y = \frac{4 y}{2}"),
+    "function and its argument": equal(f(x) + y, y + f(x), left="f(x) + y"),
+    "derivative shown": equal(sp.Derivative(x**2, x), 2 * x, left=r"\frac{d}{dx} x^2"),
     "integral shown": lambda p: p.integral(
         z, 3 * x**2, (x, 0, y), x**3, "power rule", right=r"\int_{0}^{y} 3 x^2 \, dx"
     ),
