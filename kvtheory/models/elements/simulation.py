@@ -259,14 +259,13 @@ def _run(
     while True:
         row = ElementRow(model, path, scheme, kept)
         course = course_of(path, row.stored.law, *table, stability.limits(model, path))
-        balances = np.zeros((2, kernels.WINDOW))
         found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
-        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
+        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
         status, done, reported, until = kernels.DONE, 0, 0, -1
         while status == kernels.DONE and until < len(steps):
             until = min(done + pause, len(steps))
-            status, done, reported = row.run(course, found, balances, (done, reported), until)
+            status, done, reported = row.run(course, found, (done, reported), until)
             if done:
                 progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
         if status == kernels.DONE:
@@ -275,7 +274,7 @@ def _run(
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, float(steps.max()), times[done], row.state, balances, deepest
+                status, scheme, model, path, float(steps.max()), times[done], row.state, deepest
             )  # fmt: skip
             error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
             raise error
