@@ -59,7 +59,7 @@ class Question:
     rules: Rules = field(init=False)
 
     def __post_init__(self) -> None:
-        self.rules = Rules(self.values)
+        self.rules = Rules(self.values, (*self.conditions, *self.equations))
 
     def where(self, *conditions: Tree) -> "Question":
         """Return the question under more conditions; an equation gives a name its value."""

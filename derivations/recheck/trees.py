@@ -61,6 +61,10 @@ class Tree:
         """Tell whether one of the parts occurs in the tree as it is written."""
         return self in parts or any(child.has(*parts) for child in self.children())
 
+    def calls(self) -> bool:
+        """Tell whether a function of unknown form occurs in the tree."""
+        return self.op == "call" or any(child.calls() for child in self.children())
+
 
 def number(value: int | str | Fraction) -> Tree:
     """Return a rational number."""
@@ -135,12 +139,26 @@ FUNCTIONS = frozenset(_SLOPES)
 class Rules:
     """What names stand for: the premises of a claim that give a symbol, function or integral a value."""
 
-    def __init__(self, values: Mapping[Tree, Tree]) -> None:
+    def __init__(self, values: Mapping[Tree, Tree], fixed: Iterable[Tree] = ()) -> None:
         self.values = values
-        self.functions = {lhs.args[0] for lhs in values if lhs.op == "call"}
-        """The functions of which a premise says something."""
+        self.forms: dict[str, tuple[Tree, ...]] = {}
+        """The functions that a premise gives for all values of their letters; none of these is `fixed`."""
         self._slopes: dict[tuple[Tree, Tree], Tree] = {}
         self._reach: dict[Tree, frozenset[Tree]] = {}
+        restricted = {*values, *frozenset().union(*map(self.reach, fixed))}
+        for lhs, rhs in values.items():
+            name, orders, *letters = lhs.args if lhs.op == "call" else ("", ())
+            free = all(each.op == "symbol" and rhs.has(each) for each in letters)
+            if (
+                letters
+                and free
+                and not any(orders)
+                and not rhs.calls()
+                and restricted.isdisjoint(letters)
+            ):
+                self.forms[name] = (rhs, *letters)
+        self.related = {lhs.args[0] for lhs in values if lhs.op == "call"} - self.forms.keys()
+        """The functions of which a premise says something else."""
 
     def law(self, tree: Tree) -> Tree | None:
         """Return what a tree stands for; for a derivative, that of what its function stands for."""

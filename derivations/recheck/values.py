@@ -125,7 +125,7 @@ class Point:
     def _call(self, name: str, orders: tuple[int, ...], *args: Tree) -> Value:
         """Return the value of a function of unknown form, the same at the same place."""
         values, root = [self.value(arg) for arg in args], self._root
-        if name not in self.rules.functions:
+        if name not in self.rules.related:
             form, *letters = root._form(name, len(values))
             by = [one for one, n in zip(letters, orders, strict=True) for _ in range(n)]
             place = root.at(dict(zip(letters, values, strict=True)), analytic=self._analytic)
@@ -147,7 +147,9 @@ class Point:
         return self._places
 
     def _form(self, name: str, count: int) -> tuple[Tree, ...]:
-        """Return a form for a function of which nothing is known: a cubic, or the exponential of one."""
+        """Return the form of a function; where nothing is known a cubic, or the exponential of one."""
+        if name in self.rules.forms:
+            return self.rules.forms[name]
         if name not in self._forms:
             letters = [Tree("symbol", f"argument {i} of {name}") for i in range(count)]
             facts = set(self.facts.get(f"{name}()", ()))
@@ -170,7 +172,7 @@ class Point:
         if place in root.places():
             return root.value(root.places()[place])
         calls = [each for each in self.rules.reach(inner) if each.op == "call"]
-        if any(each.args[0] in self.rules.functions and not self.rules.law(each) for each in calls):
+        if any(each.args[0] in self.rules.related and not self.rules.law(each) for each in calls):
             root.linear = True
             weights = [(drawn((), self.draw), drawn((), self.draw)) for _ in range(NODES)]
             weights = root._opaque.setdefault(tuple(_rounded([low, high])), weights)
