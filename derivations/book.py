@@ -347,7 +347,16 @@ class Book:
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
-        return Claim(check, sp.sympify(lhs), sp.sympify(rhs), arguments, rules)
+        known = self._conditions
+        return Claim(
+            check,
+            sp.sympify(lhs),
+            sp.sympify(rhs),
+            arguments,
+            rules,
+            known.positive,
+            known.intervals,
+        )
 
     def _stated(self) -> tuple[Step, ...]:
         """Return the steps without the premises that no check has used."""

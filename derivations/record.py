@@ -29,6 +29,10 @@ class Claim:
     """The input of the check, by name, except words and LaTeX."""
     rules: Mapping[sp.Expr, sp.Expr]
     """The rules in force when the check was made."""
+    positive: tuple[sp.Expr, ...] = ()
+    """Expressions that are positive under the conditions then in force."""
+    intervals: tuple[tuple[sp.Symbol, sp.Expr, sp.Expr], ...] = ()
+    """Intervals of variables under the conditions then in force."""
 
 
 @dataclass(frozen=True)

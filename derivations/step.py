@@ -411,6 +411,7 @@ class Proof(Guarded):
                     f"{self.label}: {claim}: {base} may vanish, and with it the leading term"
                 )
         self._displayed(expr, leading, shown)
+        self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)

@@ -1,11 +1,13 @@
 """The derivations as pages: one for each section, linked with the functions that compute them."""
 
 import re
+from json import loads
 from pathlib import Path
 
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.emit import FORMS
-from kvtheory.derivations.render import edition, markdown
+from kvtheory.derivations.recheck.report import counts, having, recheck
+from kvtheory.derivations.render import edition, json, markdown
 from kvtheory.derivations.render.text import by_section
 
 from generators.equations import place_of, users
@@ -18,9 +20,12 @@ MOST = 6
 
 
 def write(directory: Path) -> None:
-    """Derive everything and write the pages."""
+    """Derive everything and write the pages, and a part of another page."""
     for path, text in pages().items():
         put(directory / path, text)
+    put(
+        directory / "theory/second-opinion.txt", second_opinion(json.document(edition(catalogue())))
+    )
 
 
 def pages() -> dict[str, str]:
@@ -41,6 +46,33 @@ def pages() -> dict[str, str]:
     tree = "\n".join(names)
     texts["theory/index.md"] = f"{head}\n```{{toctree}}\n:maxdepth: 2\n\n{tree}\n```\n"
     return texts
+
+
+def second_opinion(document: str) -> str:
+    """Return how many claims of `derivations.json` were confirmed, and how; part of a page."""
+    verdicts = recheck(loads(document))
+    found = [each for record in verdicts.values() for each in record.values()]
+    rows = [("kind", "confirmed", "supported", "unconfirmed", "how")]
+    kinds = dict.fromkeys(each.kind for each in found if each.kind != "recalled")
+    for kind in kinds:
+        mine = [each for each in found if each.kind == kind]
+        numbers = (str(sum(each.status == status for each in mine)) for status in rows[0][1:-1])
+        ways = dict.fromkeys(way for each in mine for way in each.how.split("; "))
+        rows.append((kind, *numbers, ", ".join(ways)))
+    count = counts(verdicts)
+    total = sum(count.values()) - count["recalled"]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    lines.insert(1, "|---" * len(rows[0]) + "|")
+    open_ones = ", ".join(
+        f"`{name}` ({each.how})" for name, each in having(verdicts, "unconfirmed").items()
+    )
+    told = [
+        f"Of {total} claims it confirms {count['confirmed']} and supports {count['supported']}.",
+        f"Unconfirmed: {open_ones or 'none'}.",
+        f"Refuted: {', '.join(having(verdicts, 'refuted')) or 'none'}.",
+        f"{count['recalled']} recalled relations stand in their sources under the same conditions.",
+    ]
+    return " ".join(told) + "\n\n" + "\n".join(lines) + "\n"
 
 
 def _same(section: str, title: str) -> bool:
