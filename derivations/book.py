@@ -3,9 +3,9 @@
 import re
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
@@ -36,8 +36,27 @@ from .witness import has_witness
 _P = ParamSpec("_P")
 _Value = TypeVar("_Value")
 
-_finished: dict[str, "Book"] = {}
+
+@dataclass(frozen=True)
+class Finished:
+    """A derivation, and the equalities that later proofs may recall from it."""
+
+    derivation: Derivation
+    exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+
+
+_finished: dict[str, Finished] = {}
 """The finished proofs by label, for `Book.recall`."""
+
+
+def finished(labels: Iterable[str]) -> dict[str, Finished]:
+    """Return finished proofs by their labels."""
+    return {label: _finished[label] for label in labels}
+
+
+def restore(proofs: Mapping[str, Finished]) -> None:
+    """Let results be recalled that were proved before, from the same sources: see `store`."""
+    _finished.update(proofs)
 
 
 NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
@@ -186,7 +205,7 @@ def tex_case(case: sp.Basic) -> str:
 
 def established(label: str, lhs: sp.Expr) -> sp.Expr:
     """Return the last form of `lhs` that the derivation with this label has established exactly."""
-    forms = [right for left, right in _source(label)._exact if left == lhs]
+    forms = [right for left, right in _source(label).exact if left == lhs]
     if not forms:
         raise StepError(f"{label} does not establish {lhs}")
     return forms[-1]
@@ -199,7 +218,7 @@ def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
     return Table(heads, tuple(tuple(told(cell, new) for cell in row) for row in table.rows))
 
 
-def _source(label: str) -> "Book":
+def _source(label: str) -> Finished:
     if label not in _finished:
         raise StepError(f"{label} has not been derived yet")
     return _finished[label]
@@ -244,7 +263,6 @@ class Book:
         """The rules that any step has used."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._steps: list[Step] = []
-        self._result: Derivation | None = None
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
@@ -300,7 +318,7 @@ class Book:
         Its premises and its domain come with it. With `at` it is used at one place: variables on
         which no premise depends get these values.
         """
-        fact = _source(label)._exact.get((sp.sympify(lhs), sp.sympify(rhs)))
+        fact = _source(label).exact.get((sp.sympify(lhs), sp.sympify(rhs)))
         if fact is None:
             raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
         step = fact.step
@@ -339,10 +357,9 @@ class Book:
             premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
         )
         before = _finished.get(self.label)
-        if before is self or (before is not None and before._result != found):
+        if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        self._result = found
-        _finished[self.label] = self
+        _finished[self.label] = Finished(found, dict(self._exact))
         return found
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
@@ -375,8 +392,11 @@ class Book:
 
     def _lettered(self, step: Step) -> Step:
         """Return the step in the letters that this document prints; a recalled one in its source's."""
-        origin = _finished.get(step.source, self)
-        new, own = letters(origin.label, origin._section), letters(self.label, self._section)
+        own = letters(self.label, self._section)
+        new = own
+        if step.source:
+            origin = _finished[step.source].derivation
+            new = letters(origin.label, origin.section)
         return replace(
             step,
             left=printed(step.left, new),
@@ -407,7 +427,7 @@ class Book:
 
     def _status(self) -> str:
         """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
-        used = (_finished[label]._status() for label in self._uses if label in _finished)
+        used = (_finished[label].derivation.status for label in self._uses)
         sampled = ["sampled" for status in used if status == "sampled"]
         return weakest([*(step.status for step in self._steps), *sampled])
 
@@ -658,7 +678,7 @@ class Book:
 
     def _means(self, known: Meaning, meaning: Meaning) -> bool:
         """Tell whether a name of the notation is what the symbol or function of that name is here."""
-        if known is meaning or getattr(known, "func", None) is meaning:
+        if known == meaning or getattr(known, "func", None) == meaning:
             return True
         if isinstance(meaning, sp.Lambda):
             given = known.args if isinstance(known, AppliedUndef) else meaning.variables

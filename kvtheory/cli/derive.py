@@ -72,7 +72,7 @@ def derive(
     """Derive the equations, check every step, and print them.
 
     LaTeX, HTML, PDF, Markdown, a notebook, JSON and BibTeX. Each derivation uses earlier ones, so all up to
-    the last of --only are derived. Without --only all are, which takes a minute or two.
+    the last of --only are derived. Without --only all are, which takes a minute the first time.
     """
     from kvtheory.derivations.contents import CONTENTS
     from kvtheory.derivations.labels import find
