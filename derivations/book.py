@@ -27,7 +27,7 @@ from .conditions import (
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
-from .premises import Fact, Premise, contradiction, merged, violates, weakest
+from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
 from .record import Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
 from .symbols import TEX, alpha
@@ -141,6 +141,9 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
 
     return run
 
+
+_BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
+"""What has a variable of its own."""
 
 _ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
 """The checks that complex letters may enter."""
@@ -637,15 +640,55 @@ class Book:
 
     def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
         """Replace all that was defined or recalled, and carry out the derivatives."""
+        rules, places = self._rules, dict[sp.Expr, tuple[sp.Expr, sp.Expr]]()
         try:
-            found, used, derived = resolve(expr, self._rules, self._hidden())
+            found, used, derived = resolve(expr, rules, self._hidden())
+            while new := self._laws(found, rules):
+                places |= new
+                rules = {**rules, **{call: value for call, (_, value) in new.items()}}
+                found, used, derived = resolve(expr, rules, self._hidden())
         except HiddenError as error:
             raise StepError(f"{self.label}: {error}") from error
+        used = frozenset(places[each][0] if each in places else each for each in used)
         for each in derived:
             if not is_differentiable(each, self._conditions):
                 raise StepError(f"{self.label}: {each} is not known to exist everywhere")
         self._used |= used
         return found
+
+    def _laws(
+        self, expr: sp.Expr, rules: Mapping[sp.Expr, sp.Expr]
+    ) -> dict[sp.Expr, tuple[sp.Expr, sp.Expr]]:
+        """Return, for functions at other places than where their law was written, the law and the value.
+
+        A law is for all values of its letters: none of them has a value or a condition, and each can be
+        what stands at its place.
+        """
+        found = {}
+        laws = {
+            lhs.func: lhs for lhs, rhs in self._rules.items()
+            if isinstance(lhs, AppliedUndef) and is_general(lhs, rhs) and not rhs.has(*_BINDING)
+            and not any(self._is_bounded(letter) for letter in lhs.args)
+        }  # fmt: skip
+        bound = set().union(*(each.variables for each in expr.atoms(*_BINDING))) if laws else set()
+        for call in expr.atoms(AppliedUndef) if laws else ():
+            law = laws.get(call.func)
+            if law is None or call in rules or call.free_symbols & bound:
+                continue
+            places = dict(zip(law.args, call.args, strict=True))
+            if not any(self._open_admissions(*each) for each in places.items()):
+                found[call] = law, self._rules[law].subs(places, simultaneous=True)
+        return found
+
+    def _is_bounded(self, letter: sp.Symbol) -> bool:
+        """Tell whether a letter has a value or a condition here."""
+        conditions = (
+            *self._conditions.positive,
+            *(name for name, *_ in self._conditions.intervals),
+        )
+        premises = (side for fact in self._origins.values() for each in fact.premises
+                    if not isinstance(each.lhs, AppliedUndef) for side in (each.lhs, each.rhs))  # fmt: skip
+        return letter in self._rules or any(each.has(letter) for each in (*conditions, *premises))
 
     def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
