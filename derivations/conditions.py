@@ -97,7 +97,9 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     if expr.is_positive or expr.is_negative:
         return 1 if expr.is_positive else -1
     sign = 0
-    if expr.is_Mul:
+    if isinstance(expr, (sp.sin, sp.cos)):
+        sign = _sign_of_wave(expr, known)
+    elif expr.is_Mul:
         sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
     elif expr.is_Pow and expr.exp.is_Integer:
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
@@ -118,6 +120,17 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
             or _is_definite(one, known, strict=True)
             or _by_slope(one)
         ):
+            return side
+    return 0
+
+
+def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
+    """Decide the sign of a sine in (-pi, pi) and of a cosine in (-pi/2, pi/2)."""
+    (angle,) = expr.args
+    right = sp.pi / 2 if isinstance(expr, sp.cos) else sp.S.Zero
+    for side in (1, -1) if right == 0 else (1,):
+        phase = side * angle + right
+        if proves_positive(phase, known) and proves_positive(sp.pi - phase, known):
             return side
     return 0
 
@@ -329,9 +342,13 @@ def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
 def _outweighs(total: sp.Expr) -> bool:
     """Tell whether each negative term of a sum has a positive one of its own that is larger.
 
-    Roots are compared by their squares, exponentials by their exponents.
+    Roots are compared by their squares, exponentials by their exponents; a root with all other terms too.
     """
     terms = sp.Add.make_args(sp.expand(total))
+    for root in (term for term in terms if term.is_Pow and term.is_positive and term.is_real):
+        rest = sp.expand(sum(terms) - root)
+        if rest.is_real and sp.expand(root**2 - rest**2).is_positive:
+            return True
     plus = [term for term in terms if term.is_positive]
     minus = [-term for term in terms if term.is_negative]
     if len(plus) + len(minus) < len(terms) or not minus:
@@ -431,6 +448,16 @@ def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
             nonnegative.add(node.args[0])
         elif isinstance(node, (sp.asin, sp.acos)):
             nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.acosh):
+            nonnegative.add(node.args[0] - 1)
+        elif isinstance(node, sp.atanh):
+            nonzero.add(1 - node.args[0] ** 2)
+            nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.gamma):  # more than it needs: the poles are at 0, -1, -2 and so on
+            nonzero.add(node.args[0])
+            nonnegative.add(node.args[0])
+        elif isinstance(node, (sp.coth, sp.csch)):
+            nonzero.add(node.args[0])
         elif isinstance(node, (sp.tan, sp.sec)):
             nonzero.add(sp.cos(node.args[0]))
         elif isinstance(node, (sp.cot, sp.csc)):
