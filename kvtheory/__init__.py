@@ -4,6 +4,7 @@ from kvtheory.api import (
     asymptotes,
     compare,
     elements,
+    fit_foundation,
     footprint,
     solve,
     stability,
@@ -17,6 +18,7 @@ from kvtheory.results import (
     Certificate,
     Comparison,
     DivergenceError,
+    FoundationFit,
     QuadratureError,
     Simulation,
     Solution,
@@ -57,10 +59,10 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AsymptoteReport", "Certificate", "Circle", "Comparison", "DeadWeight", "DivergenceError",
-    "Drive", "Fixed", "Foundation", "FractionalKelvinVoigt", "GeneralizedMaxwell", "Parabola",
-    "PowerLaw", "Profile", "QuadratureError", "Revolved", "Run", "Scene", "SceneError",
+    "Drive", "Fixed", "Foundation", "FoundationFit", "FractionalKelvinVoigt", "GeneralizedMaxwell",
+    "Parabola", "PowerLaw", "Profile", "QuadratureError", "Revolved", "Run", "Scene", "SceneError",
     "Simulation", "Sine", "SmoothRamp", "Solution", "Sphere", "SprungTransient", "Stability",
     "SteadyState", "Suspended", "Sweep", "ToleranceError", "Transient", "TransientError",
-    "Triangle", "Wedge", "asymptotes", "compare", "elements", "footprint", "load_scene", "problem",
-    "problems", "solve", "stability", "steady", "sweep", "to_toml", "transient",
+    "Triangle", "Wedge", "asymptotes", "compare", "elements", "fit_foundation", "footprint",
+    "load_scene", "problem", "problems", "solve", "stability", "steady", "sweep", "to_toml", "transient",
 ]  # fmt: skip
