@@ -55,7 +55,7 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    compilation.register(kernels, inlined=(), compiled=kernels.COMPILED, _nrt=False)
+    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
     return compilation.cached(kernels.advance, _nrt=False)
 
 
@@ -74,10 +74,11 @@ class ElementRow:
             law = law._replace(rates=0.0 * law.rates)
         self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
         self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
-        names = ("spacing", "across", "mass", "weight", "spring", "depth", "half_length",
-                 "mass_along", "spring_along", "damping_along")  # fmt: skip
-        self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
-            "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
+        shared = {name: getattr(model, name) for name in Elements._fields if hasattr(model, name)}
+        self.constants = {
+            name: float(x) if isinstance(x, float) else x for name, x in shared.items()
+        }
+        self.constants |= {
             "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
             "rest_velocity": model.at_rest.velocity, "faded": np.ones(law.rates.size),
             "kinks": np.array(model.indenter.kinks, dtype=float),
