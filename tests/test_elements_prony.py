@@ -120,7 +120,7 @@ def test_kelvin_voigt_is_the_limit_of_a_stiff_and_fast_arm_in_first_order(h):
 
 @pytest.mark.parametrize("share", [1e-3, 0.3, 1.0])
 def test_an_element_met_within_a_step_presses_as_its_equations_say(share):
-    """At the end of the step, and on average over it, whose first part it is free in: s_i and u integrated."""
+    """At the end of the step, and on average over it: s_i and u integrated from where it is met."""
     h, rise, depth = 3e-3, 2e-6, 1e-4
     model = Model.of(kv.Scene(foundation=RUBBER, support=kv.Fixed(depth)), 5e-6)
     row = ElementRow(model, model.path(kv.Scene()))
