@@ -79,7 +79,8 @@ class ElementRow:
             name: float(x) if isinstance(x, float) else x for name, x in shared if x is not None
         } | {
             "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
-            "rest_velocity": model.at_rest.velocity, "profile": model.profile, "faded": np.ones(law.rates.size),
+            "rest_velocity": model.at_rest.velocity, "profile": model.profile,
+            "faded": np.ones(law.rates.size),
             "kinks": np.array(model.indenter.kinks, dtype=float),
         }  # fmt: skip
         self.stored = self._empty(0, 1, 1)
@@ -179,7 +180,7 @@ class ElementRow:
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
+        new = self._empty(start, stop - start, max(strips, rows), max(2 * runs, len(old.edges)))
         new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
         new.counts[kernels.STRIPS] = rows
         kept, last = max(start, first), min(stop, first + width)
