@@ -21,6 +21,7 @@ from kvtheory.theory.laws import Array, Element, ElementStep
 
 Runs = NDArray[np.int64]
 Flags = NDArray[np.bool_]
+Pair = tuple[float, float]
 
 DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCES, LAST, GAINED, CURVED = range(9)
 """The indenter: depth, its rate, both along x; means of the forces of explicit steps and their imbalance; the
@@ -256,7 +257,7 @@ def weigh_strips(e: Elements, depth: float) -> None:
 # The row
 
 
-def set_window(e: Elements, places: tuple[float, float], depth: float) -> int:
+def set_window(e: Elements, places: Pair, depth: float) -> int:
     """Find the elements that an indenter of at most this depth can meet at both places of the base."""
     if not (depth < e.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
         return OUTGROWN
@@ -394,7 +395,7 @@ def gap(e: Elements, j: int, i: int, place: float, depth: float) -> float:
 # An element over a step
 
 
-def ramp_functions(z: float) -> tuple[float, float]:
+def ramp_functions(z: float) -> Pair:
     """Return phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, from 1 and 1/2 at z = 0."""
     phi_1 = -math.expm1(-z) / z if z > 0.0 else 1.0
     if z >= SMALL_RAMP:
@@ -405,9 +406,7 @@ def ramp_functions(z: float) -> tuple[float, float]:
     return phi_1, 0.5 * series
 
 
-def enter(
-    e: Elements, h: float, j: int, i: int, start: tuple[float, float], rise: float
-) -> tuple[float, float]:
+def enter(e: Elements, h: float, j: int, i: int, start: Pair, rise: float) -> Pair:
     """Return the stiffness of an element that the indenter meets in a step, at its end and on average.
 
     It is loaded during a share of the step, by `rise`, which follows from its overlap at the `start`, place
@@ -424,7 +423,7 @@ def enter(
 
 
 def change_contact(
-    e: Elements, law: ElementStep, j: int, i: int, start: tuple[float, float], g: float, rise: float
+    e: Elements, law: ElementStep, j: int, i: int, start: Pair, g: float, rise: float
 ) -> None:
     """Complete a step for an element that leaves the indenter in it, or that it meets: u = g, up by `rise`.
 
@@ -444,9 +443,7 @@ def change_contact(
         arm[k] = new / e.faded[k] if leaves else stiffness[k] * (g - rise - new + e.ramps[k] * rise)
 
 
-def finish(
-    e: Elements, law: ElementStep, start: tuple[float, float], depth: float, sunk: float
-) -> None:
+def finish(e: Elements, law: ElementStep, start: Pair, depth: float, sunk: float) -> None:
     """Complete a step: the elements of the runs at its end are on the indenter, at this depth.
 
     `start` are place and depth at its start, `sunk` is how far the indenter sank since `MEETS` was written.
@@ -538,7 +535,7 @@ def kink_area(overlap: Any) -> Any:
     return half * within * w + rise / 12.0, half * (within + w), 2.0 * half
 
 
-def implicit_step(e: Elements, law: ElementStep, state: Array, Y: tuple[float, float]) -> int:
+def implicit_step(e: Elements, law: ElementStep, state: Array, Y: Pair) -> int:
     """Take a step in which the depth at its end is the root of the balance of momentum.
 
     On a spring, so is the place along x: for every place there is one depth.
@@ -597,7 +594,7 @@ def implicit_step(e: Elements, law: ElementStep, state: Array, Y: tuple[float, f
 
 
 def find_thresholds(
-    e: Elements, law: ElementStep, place: float, travel: float, start: tuple[float, float], first: float
+    e: Elements, law: ElementStep, place: float, travel: float, start: Pair, first: float
 ) -> None:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `MEETS`.
 
@@ -653,7 +650,7 @@ def pass_kink(
         e.rows[SLOPE, 0, i] = surface_at(s, e.profile, x - travel, 0.0)[1]
 
 
-def judge_edges(e: Elements, start: tuple[float, float], first: float) -> None:
+def judge_edges(e: Elements, start: Pair, first: float) -> None:
     """Find where the overlap w = g - u outside a run falls, so that the edge moves inward.
 
     This is decided once in a step, so that the iteration cannot oscillate.
@@ -726,9 +723,7 @@ def add_kinks(e: Elements, law: ElementStep, sunk: float) -> tuple[float, float,
     return area, wider, bent, push
 
 
-def solve_along(
-    e: Elements, law: ElementStep, state: Array, sunk: float, slid: float
-) -> tuple[float, float]:
+def solve_along(e: Elements, law: ElementStep, state: Array, sunk: float, slid: float) -> Pair:
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
 
     An element pushes along x with its pressure times the slope halfway through the step, so that the
@@ -814,9 +809,9 @@ def explicit_step(
 
 
 def sum_forces(
-    e: Elements, law: ElementStep, fall: Array, at: Array, start: tuple[float, float], place: float,
+    e: Elements, law: ElementStep, fall: Array, at: Array, start: Pair, place: float,
     velocity: float,
-) -> tuple[float, float]:  # fmt: skip
+) -> Pair:  # fmt: skip
     """Find which elements press at a stage, `MEETS` <= 0, and return M δ'' and M_x x'' there (Eq. 17)."""
     V, rule, depth, arms = velocity - at[ALONG_RATE], e.rule, at[DEPTH], e.ramps.size
     weigh_strips(e, depth)
@@ -903,7 +898,7 @@ def report(e: Elements, none: ElementStep, state: Array, about: Array, found: Ar
 
 
 def report_run(
-    e: Elements, run: tuple[int, int, int], kinks: tuple[float, float], place: float, jump: float,
+    e: Elements, run: tuple[int, int, int], kinks: Pair, place: float, jump: float,
     found: Array,
 ) -> None:  # fmt: skip
     """Add the forces of a run, or of its part between two kinks, to a report, and its peak and edges."""
@@ -982,9 +977,7 @@ def touching(overlap: Any) -> tuple[float, bool]:
     return share, square > STRAIGHT * slope * slope
 
 
-def find_peak(
-    e: Elements, p: Array, k: int, reach: tuple[float, float], low: int, high: int
-) -> Any:
+def find_peak(e: Elements, p: Array, k: int, reach: Pair, low: int, high: int) -> Any:
     """Return the peak near element k, from the parabola through three, and its uncertainty.
 
     Arms remember where contact began, so that the pressure may have a ridge between two elements: there

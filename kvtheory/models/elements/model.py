@@ -257,10 +257,11 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
             x = min(max(secant, math.nextafter(low, high)), math.nextafter(high, low))
         value, before = function(x), rising
         rising = value > 0.0
+        kept = 0.5 if before is rising else 1.0
         if rising:
-            high, above, below = x, value, below * (0.5 if before is True else 1.0)
+            high, above, below = x, value, below * kept
         else:
-            low, below, above = x, value, above * (0.5 if before is False else 1.0)
+            low, below, above = x, value, above * kept
     return high
 
 

@@ -55,7 +55,7 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    compilation.register(kernels, inlined=(), compiled=kernels.COMPILED, _nrt=False)
+    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
     return compilation.cached(kernels.advance, _nrt=False)
 
 
@@ -74,12 +74,13 @@ class ElementRow:
             law = law._replace(rates=0.0 * law.rates)
         self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
         self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
-        names = ("spacing", "across", "mass", "weight", "spring", "depth", "half_length",
-                 "mass_along", "spring_along", "damping_along")  # fmt: skip
-        self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
-            "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
+        shared = ((name, getattr(model, name, None)) for name in Elements._fields)
+        self.constants: dict[str, Any] = {
+            name: float(x) if isinstance(x, float) else x for name, x in shared if x is not None
+        } | {
             "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
-            "rest_velocity": model.at_rest.velocity, "faded": np.ones(law.rates.size),
+            "rest_velocity": model.at_rest.velocity, "profile": model.profile,
+            "faded": np.ones(law.rates.size),
             "kinks": np.array(model.indenter.kinks, dtype=float),
         }  # fmt: skip
         self.stored = self._empty(0, 1, 1)
@@ -174,14 +175,12 @@ class ElementRow:
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
-        (first, low, high, strips, runs, *_), (rows, width) = (
-            old.counts.tolist(),
-            old.flags.shape[1:],
-        )
+        first, low, high, strips, runs, *_ = old.counts.tolist()
+        rows, width = old.flags.shape[1:]
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
+        new = self._empty(start, stop - start, max(strips, rows), max(2 * runs, len(old.edges)))
         new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
         new.counts[kernels.STRIPS] = rows
         kept, last = max(start, first), min(stop, first + width)
