@@ -16,7 +16,7 @@ from flint import arb, fmpq
 
 from .polynomials import proved_sign, real_roots
 from .trees import INFINITY, MINUS, ONE, ZERO, Rules, Tree, UnsupportedError, put, read
-from .values import NEGATIVE, POSITIVE, Facts, Point, UndefinedError, Value, holds, name_of
+from .values import NEGATIVE, POSITIVE, Facts, Point, UndefinedError, Value, holds, name_of, sign_of
 
 PRECISIONS = (192, 768)
 """Bits of the balls: about 58 digits, and more where these do not decide."""
@@ -56,6 +56,8 @@ class Question:
     seed: str
     proved: frozenset[Tree] = frozenset()
     """Integrals whose values were proved: they may be computed instead."""
+    linear: bool = False
+    """Whether only the linearity of integrals is used: each is a sum over the same places."""
     rules: Rules = field(init=False)
 
     def __post_init__(self) -> None:
@@ -93,7 +95,7 @@ class Question:
         for _ in range(TRIES * wanted):
             point = Point(self.rules, self.facts, draw)
             try:
-                point.ranges = ranges
+                point.ranges, point.linear = ranges, self.linear
                 for equation in equations:
                     self._solve(equation, point)
                 if all(self._admits(each, point) for each in names) and all(
@@ -290,6 +292,31 @@ class Record:
         variable, *ends = map(read, claim["over"])
         return _only(question, read(claim["expression"]), variable, ends)
 
+    def crossing(self, claim: Claim, question: Question) -> Verdict:
+        """Look for opposite signs at the ends, and for one sign of the slope between them."""
+        expression, (variable, low, high) = read(claim["expression"]), map(read, claim["over"])
+        slope = Tree("derivative", expression, variable)
+        within, rises = question.where(*_inside(variable, low, high)), set()
+        for point in question.points(expression):
+            places = []
+            for end, sign in ((low, 1), (high, -1)):
+                large = fmpq(-sign) * 2 ** STEPS[0]
+                places.append(
+                    large if end.has(INFINITY) else point.value(end) + fmpq(sign, 2 ** STEPS[1])
+                )
+            below, above = (
+                sign_of(point.at({variable: place}).value(expression)) for place in places
+            )
+            if below * above >= 0:
+                return Verdict("refuted", "the ends have the same sign at a point")
+            rises.add(above)
+        if len(rises) != 1:
+            return Verdict("unconfirmed", "it rises at some points and falls at others")
+        found = [_signed(within, slope, ">" if rises == {1} else "<")]
+        if "slope" in claim:
+            found.append(_equal(within, slope, read(claim["slope"])))
+        return _worst([*found, Verdict("supported", "by signs at the ends")])
+
     def limit(self, claim: Claim, question: Question) -> Verdict:
         """Approach the place, and compare with the next term and with the order of what is left."""
         flint.ctx.prec = 16 * max(STEPS)
@@ -346,6 +373,7 @@ _CHECKS: dict[str, Callable[[Record, Claim, Question], Verdict]] = {
     "integral": Record.integral,
     "root": Record.root,
     "unique root": Record.unique_root,
+    "crossing": Record.crossing,
     "limit": Record.limit,
     "maximum": Record.maximum,
     "equivalence": Record.equivalence,
@@ -391,17 +419,23 @@ def _equal(question: Question, left: Tree, right: Tree) -> Verdict:
         exact = exact and isinstance(one - other, fmpq)
         if not _is_zero(one - other, size, close):
             found = _differ(point, one - other)
-            doubt = found.status == "unconfirmed" and question.proved
-            return _equal(_doubting(question), left, right) if doubt else found
+            others = _alternatives(question, point) if found.status == "unconfirmed" else []
+            tried = (_equal(each, left, right) for each in others)
+            return next((each for each in tried if each.status != "unconfirmed"), found)
         count += 1
         if count == POINTS:
             break
     return Verdict("confirmed", "exactly" if exact else "by balls") if count else NO_POINT
 
 
-def _doubting(question: Question) -> Question:
-    """Return the question with its proved integrals to be computed: they are no premises then."""
-    return replace(question.without(question.proved), proved=frozenset())
+def _alternatives(question: Question, point: Point) -> list[Question]:
+    """Return the question with its proved integrals to be computed, and by their linearity alone."""
+    found = (
+        [replace(question.without(question.proved), proved=frozenset())] if question.proved else []
+    )
+    return (
+        [*found, replace(question, linear=True)] if point.linear and not question.linear else found
+    )
 
 
 def _integrates(tree: Tree) -> bool:
@@ -431,8 +465,8 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
     for point in (*points, *(() if proved else _between_roots(question, gap))):
         if not holds(relation, point.value(gap)):
             verdict = _differ(point, point.value(gap))
-            doubt = verdict.status == "unconfirmed" and question.proved
-            return _signed(_doubting(question), gap, relation) if doubt else verdict
+            doubt = _alternatives(question, point) if verdict.status == "unconfirmed" else []
+            return _signed(doubt[0], gap, relation) if doubt else verdict
         count += 1
     if not count:
         return NO_POINT

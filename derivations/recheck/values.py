@@ -112,9 +112,12 @@ class Point:
         return self.value(next(value for value, where in cases if self.truth(where)))
 
     def _rank(self, matrix: Tree) -> Value:
-        return fmpq(
-            flint.fmpq_mat([[self.value(part) for part in row] for row in matrix.args]).rank()
-        )
+        return fmpq(flint.fmpq_mat([list(map(self.value, row)) for row in matrix.args]).rank())
+
+    def _determinant(self, matrix: Tree) -> Value:
+        rows = [list(map(self.value, row)) for row in matrix.args]
+        exact = all(isinstance(each, fmpq) for row in rows for each in row)
+        return flint.fmpq_mat(rows).det() if exact else flint.arb_mat(rows).det()
 
     def truth(self, relation: Tree) -> bool:
         """Tell whether a relation holds; a doubt is an error."""
@@ -172,7 +175,9 @@ class Point:
         if place in root.places():
             return root.value(root.places()[place])
         calls = [each for each in self.rules.reach(inner) if each.op == "call"]
-        if any(each.args[0] in self.rules.related and not self.rules.law(each) for each in calls):
+        if root.linear or any(
+            each.args[0] in self.rules.related and not self.rules.law(each) for each in calls
+        ):
             root.linear = True
             weights = [(drawn((), self.draw), drawn((), self.draw)) for _ in range(NODES)]
             weights = root._opaque.setdefault(tuple(_rounded([low, high])), weights)
