@@ -41,6 +41,7 @@ class Verdict:
     """The kind of the claim."""
 
 
+EMPTY = Verdict("unconfirmed", "both sides are the same expression")
 NO_POINT = Verdict("unconfirmed", "no admissible point was found")
 
 
@@ -236,7 +237,9 @@ class Record:
         return Verdict("refuted", "its source does not establish it")
 
     def equality(self, claim: Claim, question: Question) -> Verdict:
-        """Compare both sides, in each case."""
+        """Compare both sides, in each case; sides that are the same tree claim nothing."""
+        if claim["left"] == claim["right"]:
+            return EMPTY
         cases = [question.where(read(case)) for case in claim.get("cases", ())] or [question]
         return _worst(_equal(each, *_sides(claim)) for each in cases)
 
@@ -384,7 +387,7 @@ def _worst(verdicts: Iterable[Verdict]) -> Verdict:
     """Join the parts of one claim: it is as certain as the least certain of them."""
     found = list(verdicts)
     least = min((each.status for each in found), key=STATUSES.index)
-    ways = dict.fromkeys(each.how for each in found if each.status == least)
+    ways = dict.fromkeys(each.how for each in found if each.how and each.status == least)
     return Verdict(least, "; ".join(ways))
 
 
@@ -406,7 +409,7 @@ def _value(point: Point, tree: Tree) -> Value:
 def _equal(question: Question, left: Tree, right: Tree) -> Verdict:
     """Compare two trees at points."""
     if left is right:
-        return Verdict("confirmed", "as they are written")
+        return Verdict("confirmed", "")
     exact, count = True, 0
     close = QUADRATURE if _integrates(left) or _integrates(right) else CLOSE
     for point in question.points(left, right, wanted=8 * POINTS):
