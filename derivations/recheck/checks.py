@@ -8,7 +8,6 @@
 import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import Any
 
 import flint
@@ -78,17 +77,11 @@ class Question:
 
     def points(self, *trees: Tree, wanted: int = POINTS) -> Iterator[Point]:
         """Yield points at which those premises and conditions hold that matter to some trees."""
-        draw, found, reach = random.Random(self.seed), 0, frozenset[Tree]()
-        wider, near = reach.union(*map(self.rules.reach, trees)), []
-        while (
-            wider != reach
-        ):  # what shares a letter with the trees matters, and what shares one with that
-            reach = wider
-            near = [
-                each
-                for each in (*self.conditions, *self.equations)
-                if self.rules.reach(each) & reach
-            ]
+        draw, found, reach, near = random.Random(self.seed), 0, frozenset[Tree](), list[Tree]()
+        given, wider = (*self.conditions, *self.equations), frozenset(trees)
+        while wider != reach:  # what shares a letter with the trees matters, or with what matters
+            reach = wider.union(*map(self.rules.reach, trees))
+            near = [each for each in given if self.rules.reach(each) & reach]
             wider = reach.union(*map(self.rules.reach, near))
         names, ranges = [lhs for lhs in self.values if lhs in reach], self.ranges()
         conditions = [each for each in self.conditions if each in near]
@@ -99,9 +92,8 @@ class Question:
                 point.ranges, point.linear = ranges, self.linear
                 for equation in equations:
                     self._solve(equation, point)
-                if all(self._admits(each, point) for each in names) and all(
-                    map(point.truth, conditions)
-                ):
+                named = all(self._admits(each, point) for each in names)
+                if named and all(map(point.truth, conditions)):
                     yield point
                     found += 1
             except UndefinedError:
@@ -114,19 +106,16 @@ class Question:
         ranges: dict[Tree, tuple[Value, Value]] = {}
         numbers = Point(self.rules, {}, random.Random(0))
         for relation in (each for each in self.conditions if each.op in {"<", "<=", ">", ">="}):
-            sides = relation.args if "<" in relation.op else relation.args[::-1]
-            for letter, end, below in ((sides[0], sides[1], False), (sides[1], sides[0], True)):
-                if (
-                    letter.op == "symbol"
-                    and not self.rules.law(letter)
-                    and not self.rules.reach(end)
-                ):
+            less, more = relation.args if "<" in relation.op else relation.args[::-1]
+            for letter, end in ((less, more), (more, less)):
+                free = letter.op in {"symbol", "call"} and not self.rules.law(letter)
+                if free and not self.rules.reach(end):
                     low, high = ranges.get(letter, (None, None))
                     value = numbers.value(end)
-                    if below:
-                        low = value if low is None or value > low else low
-                    else:
-                        high = value if high is None or value < high else high
+                    if letter is more and (low is None or value > low):
+                        low = value
+                    if letter is less and (high is None or value < high):
+                        high = value
                     ranges[letter] = (low, high)
         return ranges
 
@@ -134,9 +123,8 @@ class Question:
         """Tell whether a point with another value of a letter is in the domain."""
         names = [letter, *(lhs for lhs in self.values if letter in self.rules.reach(lhs))]
         try:
-            return all(self._admits(each, point) for each in names) and all(
-                map(point.truth, self.conditions)
-            )
+            named = all(self._admits(each, point) for each in names)
+            return named and all(map(point.truth, self.conditions))
         except UndefinedError:
             return False
 
@@ -465,7 +453,7 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
             continue
         proved = proved or found in proofs[relation]
     points = question.points(gap, wanted=POINTS if proved else MORE_POINTS)
-    for point in (*points, *(() if proved else _between_roots(question, gap))):
+    for point in points:
         if not holds(relation, point.value(gap)):
             verdict = _differ(point, point.value(gap))
             doubt = _alternatives(question, point) if verdict.status == "unconfirmed" else []
@@ -478,20 +466,6 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
         if proved
         else Verdict("supported", "at points")
     )
-
-
-def _between_roots(question: Question, gap: Tree) -> Iterator[Point]:
-    """Yield points between the roots of a rational function of one variable, where its sign may differ."""
-    for start in question.points(gap, wanted=1):
-        letters = [each for each in question.rules.reach(gap) if not question.rules.law(each)]
-        try:
-            roots = sorted(root.mid().fmpq() for root in real_roots(gap, letters[0], start))
-        except (UnsupportedError, UndefinedError):
-            return
-        for low, high in pairwise([roots[0] - 2, *roots, roots[-1] + 2] if roots else []):
-            point = start.at({letters[0]: (low + high) / 2})
-            if len(letters) == 1 and question.admits(point, letters[0]):
-                yield point
 
 
 def _inside(variable: Tree, low: Tree, high: Tree) -> list[Tree]:

@@ -207,6 +207,8 @@ def drawn(
     """Draw a rational number that obeys what is assumed of a letter, and lies between bounds."""
     facts, share = set(facts), fmpq(draw.randrange(1, 2**12), 2**12)
     if low is not None and high is not None:
+        near = share**4  # one end or the other, where an interval that is too wide shows
+        share = draw.choice((share, near, 1 - near))
         return low + (high - low) * share
     whole = "integer" in facts
     size = fmpq(draw.randrange(1, 9)) if whole else share * fmpq(2) ** draw.randrange(-2, 4)
