@@ -107,16 +107,23 @@ class Question:
         numbers = Point(self.rules, {}, random.Random(0))
         for relation in (each for each in self.conditions if each.op in {"<", "<=", ">", ">="}):
             less, more = relation.args if "<" in relation.op else relation.args[::-1]
-            for letter, end in ((less, more), (more, less)):
-                free = letter.op in {"symbol", "call"} and not self.rules.law(letter)
-                if free and not self.rules.reach(end):
-                    low, high = ranges.get(letter, (None, None))
-                    value = numbers.value(end)
-                    if letter is more and (low is None or value > low):
-                        low = value
-                    if letter is less and (high is None or value < high):
-                        high = value
-                    ranges[letter] = (low, high)
+            letters = [each for each in self.rules.reach(more - less) if not self.rules.law(each)]
+            if len(letters) != 1 or letters[0].op != "symbol":
+                continue
+            (letter,), gap = letters, more - less
+            try:
+                zero, one, two = (numbers.at({letter: fmpq(k)}).value(gap) for k in (0, 1, 2))
+            except (UndefinedError, UnsupportedError):
+                continue
+            low, high = ranges.get(letter, (None, None))
+            if not isinstance(one, fmpq | arb) or not _is_zero(two - one - one + zero):
+                continue
+            end = zero / (zero - one)
+            if one > zero and (low is None or end > low):
+                low = end
+            if one < zero and (high is None or end < high):
+                high = end
+            ranges[letter] = (low, high)
         return ranges
 
     def admits(self, point: Point, letter: Tree) -> bool:

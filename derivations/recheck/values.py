@@ -206,6 +206,8 @@ def drawn(
 ) -> Value:
     """Draw a rational number that obeys what is assumed of a letter, and lies between bounds."""
     facts, share = set(facts), fmpq(draw.randrange(1, 2**12), 2**12)
+    low = fmpq(0) if facts & POSITIVE and (low is None or low < 0) else low
+    high = fmpq(0) if facts & NEGATIVE and (high is None or high > 0) else high
     if low is not None and high is not None:
         near = share**4  # one end or the other, where an interval that is too wide shows
         share = draw.choice((share, near, 1 - near))
@@ -214,8 +216,7 @@ def drawn(
     size = fmpq(draw.randrange(1, 9)) if whole else share * fmpq(2) ** draw.randrange(-2, 4)
     if low is not None or high is not None:
         return low + size if high is None else high - size
-    negative = facts & NEGATIVE or (not facts & POSITIVE and draw.random() < 0.5)
-    return -size if negative else size
+    return -size if draw.random() < 0.5 else size
 
 
 def holds(relation: str, gap: Value) -> bool:
