@@ -171,6 +171,8 @@ def another_place(record, claim, draw):
 
 def second_root(record, claim, draw):
     """A factor with another root inside: at k/9973 the polynomial, of small integers, has none itself."""
+    if claim["kind"] == "crossing":  # or one with none
+        yield {**claim, "expression": ["+", "1", ["^", claim["expression"], "2"]]}
     if claim["kind"] == "unique root":
         variable, low, high = claim["over"]
         place = ["*", f"{draw.randrange(1, 100)}/9973", "1"]

@@ -8,7 +8,6 @@
 import random
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import Any
 
 import flint
@@ -16,7 +15,7 @@ from flint import arb, fmpq
 
 from .polynomials import proved_sign, real_roots
 from .trees import INFINITY, MINUS, ONE, ZERO, Rules, Tree, UnsupportedError, put, read
-from .values import NEGATIVE, POSITIVE, Facts, Point, UndefinedError, Value, holds, name_of
+from .values import NEGATIVE, POSITIVE, Facts, Point, UndefinedError, Value, holds, name_of, sign_of
 
 PRECISIONS = (192, 768)
 """Bits of the balls: about 58 digits, and more where these do not decide."""
@@ -41,6 +40,7 @@ class Verdict:
     """The kind of the claim."""
 
 
+EMPTY = Verdict("unconfirmed", "both sides are the same expression")
 NO_POINT = Verdict("unconfirmed", "no admissible point was found")
 
 
@@ -56,6 +56,8 @@ class Question:
     seed: str
     proved: frozenset[Tree] = frozenset()
     """Integrals whose values were proved: they may be computed instead."""
+    linear: bool = False
+    """Whether only the linearity of integrals is used: each is a sum over the same places."""
     rules: Rules = field(init=False)
 
     def __post_init__(self) -> None:
@@ -75,17 +77,11 @@ class Question:
 
     def points(self, *trees: Tree, wanted: int = POINTS) -> Iterator[Point]:
         """Yield points at which those premises and conditions hold that matter to some trees."""
-        draw, found, reach = random.Random(self.seed), 0, frozenset[Tree]()
-        wider, near = reach.union(*map(self.rules.reach, trees)), []
-        while (
-            wider != reach
-        ):  # what shares a letter with the trees matters, and what shares one with that
-            reach = wider
-            near = [
-                each
-                for each in (*self.conditions, *self.equations)
-                if self.rules.reach(each) & reach
-            ]
+        draw, found, reach, near = random.Random(self.seed), 0, frozenset[Tree](), list[Tree]()
+        given, wider = (*self.conditions, *self.equations), frozenset(trees)
+        while wider != reach:  # what shares a letter with the trees matters, or with what matters
+            reach = wider.union(*map(self.rules.reach, trees))
+            near = [each for each in given if self.rules.reach(each) & reach]
             wider = reach.union(*map(self.rules.reach, near))
         names, ranges = [lhs for lhs in self.values if lhs in reach], self.ranges()
         conditions = [each for each in self.conditions if each in near]
@@ -93,12 +89,11 @@ class Question:
         for _ in range(TRIES * wanted):
             point = Point(self.rules, self.facts, draw)
             try:
-                point.ranges = ranges
+                point.ranges, point.linear = ranges, self.linear
                 for equation in equations:
                     self._solve(equation, point)
-                if all(self._admits(each, point) for each in names) and all(
-                    map(point.truth, conditions)
-                ):
+                named = all(self._admits(each, point) for each in names)
+                if named and all(map(point.truth, conditions)):
                     yield point
                     found += 1
             except UndefinedError:
@@ -111,29 +106,32 @@ class Question:
         ranges: dict[Tree, tuple[Value, Value]] = {}
         numbers = Point(self.rules, {}, random.Random(0))
         for relation in (each for each in self.conditions if each.op in {"<", "<=", ">", ">="}):
-            sides = relation.args if "<" in relation.op else relation.args[::-1]
-            for letter, end, below in ((sides[0], sides[1], False), (sides[1], sides[0], True)):
-                if (
-                    letter.op == "symbol"
-                    and not self.rules.law(letter)
-                    and not self.rules.reach(end)
-                ):
-                    low, high = ranges.get(letter, (None, None))
-                    value = numbers.value(end)
-                    if below:
-                        low = value if low is None or value > low else low
-                    else:
-                        high = value if high is None or value < high else high
-                    ranges[letter] = (low, high)
+            less, more = relation.args if "<" in relation.op else relation.args[::-1]
+            letters = [each for each in self.rules.reach(more - less) if not self.rules.law(each)]
+            if len(letters) != 1 or letters[0].op != "symbol":
+                continue
+            (letter,), gap = letters, more - less
+            try:
+                zero, one, two = (numbers.at({letter: fmpq(k)}).value(gap) for k in (0, 1, 2))
+            except (UndefinedError, UnsupportedError):
+                continue
+            low, high = ranges.get(letter, (None, None))
+            if not isinstance(one, fmpq | arb) or not _is_zero(two - one - one + zero):
+                continue
+            end = zero / (zero - one)
+            if one > zero and (low is None or end > low):
+                low = end
+            if one < zero and (high is None or end < high):
+                high = end
+            ranges[letter] = (low, high)
         return ranges
 
     def admits(self, point: Point, letter: Tree) -> bool:
         """Tell whether a point with another value of a letter is in the domain."""
         names = [letter, *(lhs for lhs in self.values if letter in self.rules.reach(lhs))]
         try:
-            return all(self._admits(each, point) for each in names) and all(
-                map(point.truth, self.conditions)
-            )
+            named = all(self._admits(each, point) for each in names)
+            return named and all(map(point.truth, self.conditions))
         except UndefinedError:
             return False
 
@@ -234,7 +232,9 @@ class Record:
         return Verdict("refuted", "its source does not establish it")
 
     def equality(self, claim: Claim, question: Question) -> Verdict:
-        """Compare both sides, in each case."""
+        """Compare both sides, in each case; sides that are the same tree claim nothing."""
+        if claim["left"] == claim["right"]:
+            return EMPTY
         cases = [question.where(read(case)) for case in claim.get("cases", ())] or [question]
         return _worst(_equal(each, *_sides(claim)) for each in cases)
 
@@ -289,6 +289,31 @@ class Record:
         """Count the roots in the interval."""
         variable, *ends = map(read, claim["over"])
         return _only(question, read(claim["expression"]), variable, ends)
+
+    def crossing(self, claim: Claim, question: Question) -> Verdict:
+        """Look for opposite signs at the ends, and for one sign of the slope between them."""
+        expression, (variable, low, high) = read(claim["expression"]), map(read, claim["over"])
+        slope = Tree("derivative", expression, variable)
+        within, rises = question.where(*_inside(variable, low, high)), set()
+        for point in question.points(expression):
+            places = []
+            for end, sign in ((low, 1), (high, -1)):
+                large = fmpq(-sign) * 2 ** STEPS[0]
+                places.append(
+                    large if end.has(INFINITY) else point.value(end) + fmpq(sign, 2 ** STEPS[1])
+                )
+            below, above = (
+                sign_of(point.at({variable: place}).value(expression)) for place in places
+            )
+            if below * above >= 0:
+                return Verdict("refuted", "the ends have the same sign at a point")
+            rises.add(above)
+        if len(rises) != 1:
+            return Verdict("unconfirmed", "it rises at some points and falls at others")
+        found = [_signed(within, slope, ">" if rises == {1} else "<")]
+        if "slope" in claim:
+            found.append(_equal(within, slope, read(claim["slope"])))
+        return _worst([*found, Verdict("supported", "by signs at the ends")])
 
     def limit(self, claim: Claim, question: Question) -> Verdict:
         """Approach the place, and compare with the next term and with the order of what is left."""
@@ -346,6 +371,7 @@ _CHECKS: dict[str, Callable[[Record, Claim, Question], Verdict]] = {
     "integral": Record.integral,
     "root": Record.root,
     "unique root": Record.unique_root,
+    "crossing": Record.crossing,
     "limit": Record.limit,
     "maximum": Record.maximum,
     "equivalence": Record.equivalence,
@@ -356,7 +382,7 @@ def _worst(verdicts: Iterable[Verdict]) -> Verdict:
     """Join the parts of one claim: it is as certain as the least certain of them."""
     found = list(verdicts)
     least = min((each.status for each in found), key=STATUSES.index)
-    ways = dict.fromkeys(each.how for each in found if each.status == least)
+    ways = dict.fromkeys(each.how for each in found if each.how and each.status == least)
     return Verdict(least, "; ".join(ways))
 
 
@@ -378,7 +404,7 @@ def _value(point: Point, tree: Tree) -> Value:
 def _equal(question: Question, left: Tree, right: Tree) -> Verdict:
     """Compare two trees at points."""
     if left is right:
-        return Verdict("confirmed", "as they are written")
+        return Verdict("confirmed", "")
     exact, count = True, 0
     close = QUADRATURE if _integrates(left) or _integrates(right) else CLOSE
     for point in question.points(left, right, wanted=8 * POINTS):
@@ -391,17 +417,23 @@ def _equal(question: Question, left: Tree, right: Tree) -> Verdict:
         exact = exact and isinstance(one - other, fmpq)
         if not _is_zero(one - other, size, close):
             found = _differ(point, one - other)
-            doubt = found.status == "unconfirmed" and question.proved
-            return _equal(_doubting(question), left, right) if doubt else found
+            others = _alternatives(question, point) if found.status == "unconfirmed" else []
+            tried = (_equal(each, left, right) for each in others)
+            return next((each for each in tried if each.status != "unconfirmed"), found)
         count += 1
         if count == POINTS:
             break
     return Verdict("confirmed", "exactly" if exact else "by balls") if count else NO_POINT
 
 
-def _doubting(question: Question) -> Question:
-    """Return the question with its proved integrals to be computed: they are no premises then."""
-    return replace(question.without(question.proved), proved=frozenset())
+def _alternatives(question: Question, point: Point) -> list[Question]:
+    """Return the question with its proved integrals to be computed, and by their linearity alone."""
+    found = (
+        [replace(question.without(question.proved), proved=frozenset())] if question.proved else []
+    )
+    return (
+        [*found, replace(question, linear=True)] if point.linear and not question.linear else found
+    )
 
 
 def _integrates(tree: Tree) -> bool:
@@ -428,11 +460,11 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
             continue
         proved = proved or found in proofs[relation]
     points = question.points(gap, wanted=POINTS if proved else MORE_POINTS)
-    for point in (*points, *(() if proved else _between_roots(question, gap))):
+    for point in points:
         if not holds(relation, point.value(gap)):
             verdict = _differ(point, point.value(gap))
-            doubt = verdict.status == "unconfirmed" and question.proved
-            return _signed(_doubting(question), gap, relation) if doubt else verdict
+            doubt = _alternatives(question, point) if verdict.status == "unconfirmed" else []
+            return _signed(doubt[0], gap, relation) if doubt else verdict
         count += 1
     if not count:
         return NO_POINT
@@ -441,20 +473,6 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
         if proved
         else Verdict("supported", "at points")
     )
-
-
-def _between_roots(question: Question, gap: Tree) -> Iterator[Point]:
-    """Yield points between the roots of a rational function of one variable, where its sign may differ."""
-    for start in question.points(gap, wanted=1):
-        letters = [each for each in question.rules.reach(gap) if not question.rules.law(each)]
-        try:
-            roots = sorted(root.mid().fmpq() for root in real_roots(gap, letters[0], start))
-        except (UnsupportedError, UndefinedError):
-            return
-        for low, high in pairwise([roots[0] - 2, *roots, roots[-1] + 2] if roots else []):
-            point = start.at({letters[0]: (low + high) / 2})
-            if len(letters) == 1 and question.admits(point, letters[0]):
-                yield point
 
 
 def _inside(variable: Tree, low: Tree, high: Tree) -> list[Tree]:

@@ -112,9 +112,12 @@ class Point:
         return self.value(next(value for value, where in cases if self.truth(where)))
 
     def _rank(self, matrix: Tree) -> Value:
-        return fmpq(
-            flint.fmpq_mat([[self.value(part) for part in row] for row in matrix.args]).rank()
-        )
+        return fmpq(flint.fmpq_mat([list(map(self.value, row)) for row in matrix.args]).rank())
+
+    def _determinant(self, matrix: Tree) -> Value:
+        rows = [list(map(self.value, row)) for row in matrix.args]
+        exact = all(isinstance(each, fmpq) for row in rows for each in row)
+        return flint.fmpq_mat(rows).det() if exact else flint.arb_mat(rows).det()
 
     def truth(self, relation: Tree) -> bool:
         """Tell whether a relation holds; a doubt is an error."""
@@ -172,7 +175,9 @@ class Point:
         if place in root.places():
             return root.value(root.places()[place])
         calls = [each for each in self.rules.reach(inner) if each.op == "call"]
-        if any(each.args[0] in self.rules.related and not self.rules.law(each) for each in calls):
+        if root.linear or any(
+            each.args[0] in self.rules.related and not self.rules.law(each) for each in calls
+        ):
             root.linear = True
             weights = [(drawn((), self.draw), drawn((), self.draw)) for _ in range(NODES)]
             weights = root._opaque.setdefault(tuple(_rounded([low, high])), weights)
@@ -201,14 +206,17 @@ def drawn(
 ) -> Value:
     """Draw a rational number that obeys what is assumed of a letter, and lies between bounds."""
     facts, share = set(facts), fmpq(draw.randrange(1, 2**12), 2**12)
+    low = fmpq(0) if facts & POSITIVE and (low is None or low < 0) else low
+    high = fmpq(0) if facts & NEGATIVE and (high is None or high > 0) else high
     if low is not None and high is not None:
+        near = share**4  # one end or the other, where an interval that is too wide shows
+        share = draw.choice((share, near, 1 - near))
         return low + (high - low) * share
     whole = "integer" in facts
     size = fmpq(draw.randrange(1, 9)) if whole else share * fmpq(2) ** draw.randrange(-2, 4)
     if low is not None or high is not None:
         return low + size if high is None else high - size
-    negative = facts & NEGATIVE or (not facts & POSITIVE and draw.random() < 0.5)
-    return -size if negative else size
+    return -size if draw.random() < 0.5 else size
 
 
 def holds(relation: str, gap: Value) -> bool:

@@ -63,16 +63,17 @@ def second_opinion(document: str) -> str:
     total = sum(count.values()) - count["recalled"]
     lines = [f"| {' | '.join(row)} |" for row in rows]
     lines.insert(1, "|---" * len(rows[0]) + "|")
-    open_ones = ", ".join(
-        f"`{name}` ({each.how})" for name, each in having(verdicts, "unconfirmed").items()
-    )
+    open_ones: dict[str, list[str]] = {}
+    for name, each in having(verdicts, "unconfirmed").items():
+        open_ones.setdefault(each.how, []).append(f"`{name}`")
+    reasons = "; ".join(f"{how}: {', '.join(names)}" for how, names in open_ones.items())
     told = [
-        f"Of {total} claims it confirms {count['confirmed']} and supports {count['supported']}.",
-        f"Unconfirmed: {open_ones or 'none'}.",
-        f"Refuted: {', '.join(having(verdicts, 'refuted')) or 'none'}.",
+        f"Of {total} claims it confirms {count['confirmed']}, supports {count['supported']}, leaves "
+        f"{count['unconfirmed']} unconfirmed and refutes {count['refuted']}.",
         f"{count['recalled']} recalled relations stand in their sources under the same conditions.",
     ]
-    return " ".join(told) + "\n\n" + "\n".join(lines) + "\n"
+    rest = f"\nUnconfirmed: {reasons}.\n" if reasons else ""
+    return " ".join(told) + "\n\n" + "\n".join(lines) + "\n" + rest
 
 
 def _same(section: str, title: str) -> bool:
