@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
+from sympy.printing.latex import LatexPrinter
 
 from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
 from .conditions import (
@@ -142,6 +143,9 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
     return run
 
 
+_SHORT = 8
+"""The operations of a condition that is printed as it is; of a longer one, which letter is positive is."""
+
 _BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
 """What has a variable of its own."""
 
@@ -149,9 +153,28 @@ _ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order
 """The checks that complex letters may enter."""
 
 
+class _Printer(LatexPrinter):
+    """SymPy's own, but for values at a place, whose brackets it leaves out."""
+
+    def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
+        inner = self._print(node.expr)
+        bracketed = any(part.is_Add for part in sp.Mul.make_args(node.expr))
+        bracketed = bracketed or node.expr.could_extract_minus_sign()
+        shown = rf"\left({inner}\right)" if bracketed else inner
+        pairs = zip(node.variables, node.point, strict=True)
+        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
+        return rf"\left. {shown} \right|_{{{places}}}"
+
+
 def tex(expr: sp.Expr) -> str:
-    """Print an expression in the notation of the paper."""
-    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
+    r"""Print an expression in the notation of the paper.
+
+    >>> x, y = sp.symbols("x y")
+    >>> tex(sp.Subs(x + y, x, 0))
+    '\\left. \\left(x + y\\right) \\right|_{x = 0}'
+    """
+    printer = _Printer({"symbol_names": TEX, "fold_frac_powers": True})
+    return str(printer.doprint(sp.sympify(expr)))
 
 
 def tex_interval(over: Interval) -> str:
@@ -159,16 +182,27 @@ def tex_interval(over: Interval) -> str:
 
     >>> x = sp.Symbol("x", real=True)
     >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
-    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\in \\mathbb{R}']
+    ['0 < x < 1', 'x > 0', 'x < 2', '-\\infty < x < \\infty']
     """
     variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
     if low == -sp.oo and high == sp.oo:
-        return rf"{variable} \in \mathbb{{R}}"
+        return rf"-\infty < {variable} < \infty"
     if high == sp.oo:
         return f"{variable} > {tex(low)}"
     if low == -sp.oo:
         return f"{variable} < {tex(high)}"
     return f"{tex(low)} < {variable} < {tex(high)}"
+
+
+def tex_within(over: Interval) -> str:
+    r"""Print that a variable lies in an open interval, in one formula without a chain.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> [tex_within((x, *ends)) for ends in ((0, 1), (0, sp.oo))]
+    ['x \\in (0, 1)', 'x \\in (0, \\infty)']
+    """
+    variable, low, high = (tex(sp.sympify(each)) for each in over)
+    return rf"{variable} \in ({low}, {high})"
 
 
 def tex_condition(gap: sp.Expr) -> str:
@@ -414,6 +448,7 @@ class Book:
             left=printed(step.left, new),
             right=printed(step.right, new),
             domain=printed(step.domain, new),
+            note=told(step.note, new),
             reason=told(step.reason, own),
         )
 
@@ -438,10 +473,10 @@ class Book:
         return self.done(*key)
 
     def _status(self) -> str:
-        """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
+        """Return the weakest status of the steps; what rests on a proof without proof is no better."""
         used = (_finished[label].derivation.status for label in self._uses)
-        sampled = ["sampled" for status in used if status == "sampled"]
-        return weakest([*(step.status for step in self._steps), *sampled])
+        weak = [status for status in used if status in ("sampled", "argued")]
+        return weakest([*(step.status for step in self._steps), *weak])
 
     def _meant(self, argument: object, *, complex_too: bool = False) -> None:
         """Refuse what is no exact real value, and letters bound to places where they cannot be."""
@@ -563,11 +598,16 @@ class Book:
         roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
         gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
         if name.is_nonnegative or name.is_nonpositive:
-            signed = value if name.is_nonnegative else -value
-            strict = name.is_nonzero or not proves_nonnegative(signed, self._conditions)
-            gaps += open_factors(signed, self._conditions) if strict else []
+            forms = [
+                each if name.is_nonnegative else -each
+                for each in (sp.sympify(self._rules[name]), value)
+            ]
+            proves = proves_positive if name.is_nonzero else proves_nonnegative
+            if not any(proves(form, self._conditions) for form in forms):
+                gaps += open_factors(forms[1], self._conditions)
         for gap in gaps:
-            self._demand(gap, tex_condition(gap))
+            short = gap.count_ops() <= _SHORT or not name.is_Symbol
+            self._demand(gap, tex_condition(gap) if short else f"{tex(name)} > 0")
 
     def _demand(self, gap: sp.Expr, latex: str) -> None:
         """Let an expression be positive from here on."""
@@ -801,6 +841,7 @@ class Book:
         cases: tuple[Relational, ...] = (),
         trusted: bool = False,
         bound: bool = False,
+        note: str = "",
     ) -> Fact:
         """Keep a step; an exact one is an equality that later proofs may use as a rule.
 
@@ -823,7 +864,7 @@ class Book:
         domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)
-        step = Step(left, relation, right, reason, worth, domain=", ".join(own), claim=claim)
+        step = Step(left, relation, right, reason, worth, "", ", ".join(own), note, claim)
         fact = Fact(step, premises, conditions, domain)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
@@ -841,7 +882,7 @@ class Book:
         self._used = set()
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)
-        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim)
+        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
         placed = Fact(step, fact.premises, fact.conditions, fact.domain)

@@ -110,7 +110,9 @@ class Guarded(Book):
 def _parts(base: sp.Expr) -> set[sp.Expr]:
     """Return the factors of an expression that may vanish."""
     found = set()
-    for part in sp.fraction(sp.together(base)):
+    for part in map(sp.powsimp, sp.fraction(sp.together(base))):
+        if not part.free_symbols:
+            continue
         _, factors = sp.factor_list(part)
         found |= {factor for factor, _ in factors if not factor.is_nonzero}
     return found

@@ -522,6 +522,18 @@ FALSE = {
             (define(f(y), y), where(u > 0), equal(Integral(f(u), (u, -1, 1)), Integral(u, (u, -1, 1))),
              "nothing is said below 0"),
         "letter of a law": (define(f(x), a * x), equal(f(a), a * x), "a^2"),
+        "arc tangent below its argument": (holds(atan(1 / l) - 1 / l), "l = 1"),
+        "arc tangent and a constant":
+            (holds(-3 * l**3 * atan(1 / l) + 3 * l**2 - 3 * l * atan(1 / l) + 2 - third), "tends to -1/3"),
+        "arc tangent of a ratio": (holds(atan(a / b) - a / b), "a = b"),
+        "smaller of two": (holds(sp.Min(x, 1)), "x = -1"),
+        "larger of two": (holds(sp.Max(x, u)), "both -1"),
+        "a coefficient that changes its sign":
+            (holds(a**2 * (exp(z) - 1 - z) + a * (exp(z) - 2 - z)), "z = 1/10, a small"),
+        "share of a power": (where(q < 1), holds(nu - 2 * q * q**nu), "nu small"),
+        "power of unknown sign": (where(q < 1), holds(1 - q * q**x), "x = -5"),
+        "negative power": (where(q < 1), holds(1 - q ** (-nu)), "q^-nu > 1"),
+        "power of a real number": (where(x < 1), holds(1 - x**2), "x = -3"),
     },
 }  # fmt: skip
 
