@@ -4,6 +4,7 @@ from kvtheory.api import (
     asymptotes,
     compare,
     elements,
+    fit,
     fit_foundation,
     footprint,
     solve,
@@ -19,6 +20,7 @@ from kvtheory.results import (
     Comparison,
     DivergenceError,
     FoundationFit,
+    FrictionFit,
     QuadratureError,
     Simulation,
     Solution,
@@ -59,10 +61,11 @@ __version__ = "0.1.0"
 
 __all__ = [
     "AsymptoteReport", "Certificate", "Circle", "Comparison", "DeadWeight", "DivergenceError",
-    "Drive", "Fixed", "Foundation", "FoundationFit", "FractionalKelvinVoigt", "GeneralizedMaxwell",
-    "Parabola", "PowerLaw", "Profile", "QuadratureError", "Revolved", "Run", "Scene", "SceneError",
-    "Simulation", "Sine", "SmoothRamp", "Solution", "Sphere", "SprungTransient", "Stability",
-    "SteadyState", "Suspended", "Sweep", "ToleranceError", "Transient", "TransientError",
-    "Triangle", "Wedge", "asymptotes", "compare", "elements", "fit_foundation", "footprint",
-    "load_scene", "problem", "problems", "solve", "stability", "steady", "sweep", "to_toml", "transient",
+    "Drive", "Fixed", "Foundation", "FoundationFit", "FractionalKelvinVoigt", "FrictionFit",
+    "GeneralizedMaxwell", "Parabola", "PowerLaw", "Profile", "QuadratureError", "Revolved",
+    "Run", "Scene", "SceneError", "Simulation", "Sine", "SmoothRamp", "Solution", "Sphere",
+    "SprungTransient", "Stability", "SteadyState", "Suspended", "Sweep", "ToleranceError",
+    "Transient", "TransientError", "Triangle", "Wedge", "asymptotes", "compare", "elements",
+    "fit", "fit_foundation", "footprint", "load_scene", "problem", "problems", "solve",
+    "stability", "steady", "sweep", "to_toml", "transient",
 ]  # fmt: skip

@@ -1,5 +1,6 @@
 """`kvtheory foundation` and `fit`: from measurements to a scene."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -60,16 +61,8 @@ def foundation(
             how["poisson_ratio"] = _number(how["poisson_ratio"])
         found = fit_foundation(data, load_scene(scene), **how)
         text = found.to_toml() if output else ""
-
-    def save(path: Path) -> None:
-        path.write_text(text, encoding="utf-8")
-
-    console.write_files({output: save} if output else {}, found, plot)
-    if as_json:
-        console.print_json(found.as_dict())
-        return
-    click.echo(str(found))
-    if found.scene is None:
+    _finish(found, text, output, plot, as_json=as_json)
+    if found.scene is None and not as_json:
         click.echo("Give --thickness and --poisson-ratio for the foundation of a scene.")
 
 
@@ -79,3 +72,62 @@ def _number(text: str) -> Any:
         return float(text)
     except ValueError:
         return text
+
+
+@main.command(
+    example="kvtheory fit --data mu.csv --free foundation.stiffness,foundation.retardation_time && "
+    "kvtheory fit --data mu.csv --models"
+)
+@console.scene_options
+@click.option(
+    "--data",
+    type=FILE,
+    required=True,
+    help="CSV of friction over velocity: V [mm/s],mu or V [mm/s],F_x [N].",
+)
+@click.option("--free", metavar="KEY,...", help="Quantities of the scene to be fitted.")
+@click.option(
+    "--models", is_flag=True, help="Weigh Kelvin-Voigt, a springpot and one to three arms instead."
+)
+@click.option(
+    "-o",
+    "--output",
+    type=OutputFile(".toml"),
+    help="Write the scene with the fitted values to FILE.toml.",
+)
+@console.plot_option
+@console.overwrite_option
+@console.json_option
+def fit(
+    scene: str | None, overrides: Sequence[str], data: Path, free: str | None, output: Path | None,
+    plot: Path | None, *, models: bool, as_json: bool,
+) -> None:  # fmt: skip
+    """Fit quantities of SCENE to measured friction over velocity.
+
+    Other columns of the data vary quantities from row to row: F_z [N] the load, T [degC] the temperature, or
+    any key of the scene.
+    """
+    from kvtheory.api import fit as find
+    from kvtheory.scene import load_scene
+
+    checked = load_scene(scene, overrides)
+    with console.progress_bar("fit") as progress:
+        found = find(
+            checked, data, free=console.split(free or ""), models=models, progress=progress
+        )
+    _finish(found, found.to_toml() if output else "", output, plot, as_json=as_json)
+
+
+def _finish(
+    found: Any, text: str, output: Path | None, plot: Path | None, *, as_json: bool
+) -> None:
+    """Write the files, and print the result."""
+
+    def save(path: Path) -> None:
+        path.write_text(text, encoding="utf-8")
+
+    console.write_files({output: save} if output else {}, found, plot)
+    if as_json:
+        console.print_json(found.as_dict())
+    else:
+        click.echo(str(found))

@@ -182,12 +182,15 @@ def best(data: Moduli) -> tuple[Series, float]:
         bound, more = dual(data, spectrum)
         least = max(least, bound)
         spectrum = solved(data, np.union1d(spectrum.time, more))
-    within = solved(data, grid(data, BEYOND, PER_DECADE))
-    arms = refined(data, clusters(within, np.log(10.0) / PER_DECADE))
-    return arms, max(least, dual(data, spectrum)[0])
+    return refined(data, clustered(data)), max(least, dual(data, spectrum)[0])
 
 
-def fewer(data: Moduli, series: Series) -> Series:
+def clustered(data: Moduli) -> Series:
+    """Return the best spectrum on the grid of times, with arms on neighbouring points gathered into one."""
+    return clusters(solved(data, grid(data, BEYOND, PER_DECADE)), np.log(10.0) / PER_DECADE)
+
+
+def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
     """Return the series with one arm less: two neighbours as one, or the slowest one as part of the spring.
 
     The pairs that change the moduli least are tried, and the best one is refined.
@@ -200,14 +203,14 @@ def fewer(data: Moduli, series: Series) -> Series:
     tried = [np.delete(np.where(np.arange(tau.size) == i, mean[i], tau), i + 1)
              for i in np.argsort(cost)[:TRIED]]  # fmt: skip
     found = [solved(data, times) for times in [*tried, tau[:-1], tau[1:]]]
-    return refined(data, min(found, key=lambda each: each.misfit(data)), FEW_STEPS)
+    return refined(data, min(found, key=lambda each: each.misfit(data)), steps)
 
 
 def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Series:
     """Return the series of the fewest arms with a misfit of at most `target`, or of at most `count` arms."""
     kept = start
     while kept.time.size > max(count or 1, 1):
-        less = fewer(data, kept)
+        less = fewer(data, kept, FEW_STEPS if count is None else 0)
         if count is None and less.misfit(data) > target:
             polished = refined(data, less)
             if polished.misfit(data) > target:

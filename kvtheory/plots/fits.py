@@ -7,15 +7,25 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from kvtheory.plots.style import BLACK, BLUE, RED, Picture
-from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
+from kvtheory.plots import style
+from kvtheory.plots.style import BLACK, BLUE, LABELS, RED, Picture
+from kvtheory.results import SHOWN_UNITS
+from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit, FrictionFit
+from kvtheory.results.presented import with_unit
 
 WIDTH, HEIGHT = 7.2, 2.6
 """Of a picture with two panels in a row, and of each row, in inches."""
 MARKS = ("o", "s")
 COLOURS = BLUE, RED
+MOST_NAMED = 8
+"""Most curves that a legend names."""
 CURVE = 400
 """Points of a smooth curve."""
+
+
+def draw_fit(fit: FoundationFit | FrictionFit) -> Picture:
+    """Return the picture of a fit."""
+    return draw_foundation_fit(fit) if isinstance(fit, FoundationFit) else draw_friction_fit(fit)
 
 
 def draw_foundation_fit(fit: FoundationFit) -> Picture:
@@ -122,3 +132,53 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
         )
         ax.legend(fontsize=6)
     ax.set(xlabel="temperature [°C]", ylabel=r"$\log_{10} a_T$", title="shift factors")
+
+
+def draw_friction_fit(fit: FrictionFit) -> Picture:
+    """Return the picture: measured and fitted friction over velocity, and the residuals.
+
+    Rows with equal conditions but the velocity form a curve.
+    """
+    name = next(name for name in fit.data["measured"] if name.startswith("friction"))
+    conditions, measured, fitted = (fit.data[part] for part in ("conditions", "measured", "fitted"))
+    V = np.abs(conditions["drive.velocity"])
+    others = {key: values for key, values in conditions.items() if key != "drive.velocity"}
+    rows = np.array([0.0 * V, *others.values()]).T
+    sets, group = np.unique(rows, axis=0, return_inverse=True)
+    colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(sets)))
+    figure = Picture(WIDTH, HEIGHT + 0.4)
+    over, rest = figure.subplots(1, 2)
+    label, factor = style.label(name, fit.data["units"][name])
+    x_label, x_factor = LABELS["velocity"]
+    for i, (values, colour) in enumerate(zip(sets, colours, strict=True)):
+        own = np.ravel(group) == i
+        words = ", ".join(
+            _condition(fit, key, value) for key, value in zip(others, values[1:], strict=True)
+        )
+        over.plot(V[own] * x_factor, np.abs(measured[name][own]) * factor, "o", color=colour, markersize=3,
+                  label=words if len(sets) <= MOST_NAMED else None)  # fmt: skip
+        curve = np.geomspace(V[own & (V > 0.0)].min(), V[own].max(), CURVE)
+        where = {**dict(zip(others, values[1:], strict=True)), "drive.velocity": curve}
+        state = fit.data["solve"](fit.scene.replace(where))
+        over.plot(curve * x_factor, getattr(state, name) * factor, color=colour, linewidth=1.0)
+        off = (fitted[name][own] / measured[name][own] - 1.0) * 100.0
+        rest.plot(V[own] * x_factor, off, "o", color=colour, markersize=3)
+    rest.axhline(0.0, color=BLACK, linewidth=0.8)
+    over.set(xscale="log", xlabel=x_label, ylabel=label, title=f"data and fit of {fit.model}")
+    rest.set(
+        xscale="log",
+        xlabel=x_label,
+        ylabel="fit minus data [%]",
+        title=f"residuals, RMS {fit.misfit:.2%}",
+    )
+    if len(sets) > 1:
+        over.legend()
+    return figure
+
+
+def _condition(fit: FrictionFit, key: str, value: float) -> str:
+    """Return a condition of a curve with its unit."""
+    unit = fit.scene.replaceable[key].unit
+    if unit == "K":
+        return f"{value - ZERO_CELSIUS:.4g} °C"
+    return with_unit(value, unit) if unit in SHOWN_UNITS else f"{value:.4g} {unit}"

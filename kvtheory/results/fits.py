@@ -1,9 +1,9 @@
 """What was fitted to measurements: the foundation from moduli, the quantities of a scene from friction."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from textwrap import wrap
-from typing import Any
+from typing import Any, NamedTuple
 
 from kvtheory.export import Columns
 from kvtheory.results.presented import Exported, above, aligned
@@ -13,7 +13,8 @@ from kvtheory.scene.model import Scene
 
 ZERO_CELSIUS = 273.15
 HEADING = "# A scene whose foundation was fitted to measured moduli"
-"""First line of its file."""
+FITTED = "# A scene whose quantities were fitted to measured friction"
+"""First lines of files."""
 WIDTH = 100
 
 
@@ -88,19 +89,8 @@ class FoundationFit(Exported):
 
     def to_toml(self) -> str:
         """Return the scene with this foundation as TOML text, with remarks as comments."""
-        scene = self.foundation and self.scene
-        lines = [HEADING]
-        for line in to_toml(scene).splitlines():  # type: ignore[arg-type]
-            if line == "[foundation]":
-                lines.append(line)
-                for remark in self.remarks:
-                    lines += wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="# ")
-            elif line.startswith("arms = "):
-                pairs = line.removeprefix("arms = [[").removesuffix("]]").split("], [")
-                lines += ["arms = [", *(f"  [{pair}]," for pair in pairs), "]"]
-            else:
-                lines.append(line)
-        return "\n".join([*lines, ""])
+        _ = self.foundation
+        return commented(self.scene or Scene(), HEADING, "foundation", self.remarks)
 
     def _columns(self) -> Columns:
         x, rows, fitted = self.data["x"], self.data["measured"], self.data["fitted"]
@@ -118,3 +108,106 @@ class FoundationFit(Exported):
     def plot(self) -> Any:
         """Draw data and fit, residuals and arms, and the shift of the sweeps, and return the figure."""
         return above("plots").plot_result(self)
+
+
+class Parameter(NamedTuple):
+    """A fitted quantity of a scene and its standard error, of linear theory at the minimum, in SI."""
+
+    value: float
+    standard_error: float
+
+
+class WeighedModel(NamedTuple):
+    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all."""
+
+    name: str
+    unknowns: int
+    misfit: float
+    aicc: float
+    weight: float
+
+
+@dataclass(frozen=True, repr=False)
+class FrictionFit(Exported):
+    """Quantities of a scene fitted to measured friction.
+
+    `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
+    of the correlations of their logarithms, in the same order. `not_identifiable` lists the keys that the
+    data cannot tell, or cannot tell apart: a combination of them is open by more than a factor of two.
+    `misfit` is the root mean square of the relative residuals. `models` are the foundations that were
+    weighed. `scene` is the scene with the fitted values.
+    """
+
+    parameters: Mapping[str, Parameter]
+    correlations: tuple[tuple[float, ...], ...]
+    not_identifiable: tuple[tuple[str, ...], ...]
+    misfit: float
+    model: str
+    models: tuple[WeighedModel, ...]
+    source: str
+    notes: tuple[str, ...] = ()
+    scene: Scene = field(default_factory=Scene, repr=False)
+    data: Any = field(default=None, repr=False, compare=False)
+    """Conditions, measured and fitted quantities by name, and units."""
+
+    @property
+    def remarks(self) -> list[str]:
+        """What should be known about the fit, a line each."""
+        rows = len(self.data["conditions"]["drive.velocity"])
+        lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
+        for keys in self.not_identifiable:
+            apart = " apart: a combination of them" if len(keys) > 1 else ": it"
+            open_ = "is open by more than a factor of two"
+            lines.append(f"The data cannot tell {', '.join(keys)}{apart} {open_}.")
+        return [*lines, *self.notes]
+
+    def __repr__(self) -> str:
+        specs = self.scene.replaceable
+        rows = [
+            (key, f"{value:.5g}", f"{error:.2g}", specs[key].unit, f"{error / value:.2g}")
+            for key, (value, error) in self.parameters.items()
+        ]
+        heads = "quantity", "value", "standard error", "unit", "relative"
+        lines = aligned(heads, rows)
+        if self.models:
+            heads = "model", "unknowns", "misfit", "AICc", "weight"
+            weighed = [
+                (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
+                for m in self.models
+            ]
+            lines += ["", *aligned(heads, weighed)]
+        return "\n".join([f"Fit of {self.model}", *lines, "", *self.remarks])
+
+    def to_toml(self) -> str:
+        """Return the scene with the fitted values as TOML text, with remarks as comments."""
+        return commented(self.scene, FITTED, "foundation", self.remarks)
+
+    def _columns(self) -> Columns:
+        specs, units = self.scene.replaceable, self.data["units"]
+        columns = {key: (v, specs[key].unit) for key, v in self.data["conditions"].items()}
+        for name, values in self.data["measured"].items():
+            columns[f"{name}, data"] = values, units[name]
+            columns[f"{name}, fit"] = self.data["fitted"][name], units[name]
+        return columns
+
+    def _attributes(self) -> Mapping[str, str]:
+        return {"source": self.source, "remarks": " ".join(self.remarks)}
+
+    def plot(self) -> Any:
+        """Draw data and fit over velocity, and the residuals, and return the figure."""
+        return above("plots").plot_result(self)
+
+
+def commented(scene: Scene, heading: str, section: str, remarks: Sequence[str]) -> str:
+    """Return a scene as TOML text with remarks as comments in a section, and an arm in each line."""
+    lines = [heading]
+    for line in to_toml(scene).splitlines():
+        if line.startswith("arms = "):
+            pairs = line.removeprefix("arms = [[").removesuffix("]]").split("], [")
+            lines += ["arms = [", *(f"  [{pair}]," for pair in pairs), "]"]
+            continue
+        lines.append(line)
+        if line == f"[{section}]":
+            for remark in remarks:
+                lines += wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="# ")
+    return "\n".join([*lines, ""])
