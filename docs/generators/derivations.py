@@ -10,7 +10,7 @@ from kvtheory.derivations.recheck.report import counts, having, recheck
 from kvtheory.derivations.render import edition, json, markdown
 from kvtheory.derivations.render.text import by_section
 
-from generators import premises
+from generators import exercises, premises
 from generators.equations import place_of, users
 from generators.files import put
 from generators.labels import anchor_of, page_of
@@ -23,7 +23,7 @@ MOST = 6
 def write(directory: Path) -> None:
     """Derive everything and write the pages, and what other pages include."""
     derived = catalogue()
-    made = {**pages(), **premises.pages(derived)}
+    made = {**pages(), **premises.pages(derived), **exercises.pages(derived)}
     made["theory/second-opinion.txt"] = second_opinion(json.document(edition(derived)))
     for path, text in made.items():
         put(directory / path, text)
