@@ -117,9 +117,9 @@ def _given(record: Derivation) -> Iterator[tuple[str, Step]]:
 
 
 def _ranges(record: Derivation) -> dict[str, str]:
-    """Return the inequalities and intervals that the steps of a record state."""
-    own = _own(record)
-    return {s.domain or s.latex: s.reason for s, claim in own if s.domain or claim.check == "where"}
+    """Return the inequalities and intervals that the steps of a record state, the former with reasons."""
+    found = {step.domain: "" for step, _ in _own(record) if step.domain}
+    return found | {s.latex: s.reason for s, claim in _own(record) if claim.check == "where"}
 
 
 def _signs(record: Derivation) -> dict[str, str]:
