@@ -5,11 +5,12 @@ import json
 import subprocess
 import sys
 from collections import Counter
+from importlib.util import find_spec
 
 import pytest
 from click.testing import CliRunner
 from kvtheory.derivations.catalogue import catalogue
-from kvtheory.derivations.recheck.checks import _CHECKS, EMPTY, Record
+from kvtheory.derivations.recheck.checks import _CHECKS, EMPTY, Record, Verdict
 from kvtheory.derivations.recheck.report import counts, having, recheck
 from kvtheory.derivations.render import edition
 from kvtheory.derivations.render import json as written
@@ -92,6 +93,21 @@ def test_what_is_not_understood_is_not_confirmed(records):
         {"left": claim["right"]},
     ):
         assert Record(record, {}).verdict({**claim, **strange}).status == "unconfirmed"
+
+
+def test_z3_decides_inequalities_of_several_letters_where_it_is_installed():
+    def verdict(right):
+        record = {"symbols": {"x": ["positive"], "y": ["positive"]}, "functions": {}, "claims": []}
+        claim = {
+            "id": "new/0", "kind": "inequality", "premises": [], "domain": [["<", "y", "x"]],
+            "left": ["^", "x", "2"], "relation": ">", "right": right,
+        }  # fmt: skip
+        return Record(record, {}).verdict(claim)
+
+    found = verdict(["*", "x", "y"])
+    by_z3 = find_spec("z3") is not None
+    assert found == Verdict(*(("confirmed", "by z3") if by_z3 else ("supported", "at points")))
+    assert verdict(["*", "2", "x", "y"]).status == "refuted"
 
 
 def test_neither_sympy_nor_the_engine_is_imported():
