@@ -149,7 +149,8 @@ def test_the_command_says_which_claim_is_refuted(monkeypatch):
 
 
 def test_the_command_refuses_what_it_would_not_do(monkeypatch):
-    assert "--recheck writes nothing" in run("--format", "pdf", code=2).stderr
+    for option in (["--format", "pdf"], ["-o", "here"], ["--numbers"], ["--closure"]):
+        assert "--recheck writes nothing" in run(*option, code=2).stderr
     assert "'eq270'" in run("--only", "eq270", code=2).stderr
     for name in [name for name in sys.modules if "derivations.recheck" in name]:
         monkeypatch.delitem(sys.modules, name)
