@@ -70,6 +70,7 @@ benchmark: $(VENV)/.installed
 	$(BIN)/python -m figures.benchmark_transient
 	$(BIN)/python -m figures.benchmark_calls
 	$(BIN)/python -m figures.benchmark_elements
+	$(BIN)/python -m figures.benchmark_foundation
 	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:

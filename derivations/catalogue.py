@@ -44,8 +44,10 @@ from . import (
     viscoelastic_limits,
     wedge,
 )
+from .book import finished, restore
 from .contents import CONTENTS
 from .record import Derivation
+from .store import digests, keep, load
 
 _CHAPTERS = (
     *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
@@ -69,8 +71,24 @@ def wanted_up_to(labels: Collection[str]) -> int:
 
 
 @cache
+def _digests() -> dict[str, str]:
+    return digests([_name(chapter) for chapter in _CHAPTERS])
+
+
+def _name(chapter: ModuleType) -> str:
+    return chapter.__name__.rpartition(".")[2]
+
+
+@cache
 def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
+    """Prove a chapter, or read what was proved from the same sources before."""
+    name = _name(chapter)
+    known = load(name, _digests()[name])
+    if known is not None:
+        restore(known)
+        return tuple(each.derivation for each in known.values())
     derived: tuple[Derivation, ...] = chapter.derive()
+    keep(name, _digests()[name], finished(each.label for each in derived))
     return derived
 
 
@@ -79,8 +97,8 @@ def catalogue(
 ) -> tuple[Derivation, ...]:
     """Derive everything, or the chapters up to the last of the labels `until`.
 
-    Every step is checked anew, once in the life of the process. `report` is told the share done, and how
-    many records that is.
+    Every step is checked, unless it was before and nothing has changed since (`store`). `report` is told the
+    share done, and how many records that is.
 
     >>> [derivation.label for derivation in catalogue(until=["eq3"])][:3]
     ['eq1', 'eq2', 'eq3']

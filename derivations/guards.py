@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from .algebra import normalise
+from .algebra import in_one_angle, normalise
 from .book import Book, StepError
 from .conditions import (
     Interval,
@@ -85,7 +85,7 @@ class Guarded(Book):
             (0, proves_nonzero, "may vanish"),
             (1, proves_nonnegative, "may be negative"),
         ):
-            sides = []
+            sides: list[list[sp.Expr]] = []
             for raw, resolved in (left, right):
                 named = {base: self._resolve(base) for base in demands(sp.sympify(raw))[kind]}
                 settled = {
@@ -95,8 +95,12 @@ class Guarded(Book):
                 open_ones = {
                     base for base in map(normalise, bases) if not proves(base, self._conditions)
                 }
-                sides.append(open_ones if kind else set().union(*map(_parts, open_ones)))
-            for base in sides[0] ^ sides[1]:
+                sides.append(sorted(open_ones, key=str))
+            written = iter(in_one_angle(*sides[0], *sides[1]))
+            one, other = ({base for _, base in zip(each, written, strict=False)} for each in sides)
+            if kind == 0:
+                one, other = (set().union(*map(_parts, each)) for each in (one, other))
+            for base in one ^ other:
                 if not proves(base, self._conditions):
                     raise StepError(
                         f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
@@ -106,7 +110,9 @@ class Guarded(Book):
 def _parts(base: sp.Expr) -> set[sp.Expr]:
     """Return the factors of an expression that may vanish."""
     found = set()
-    for part in sp.fraction(sp.together(base)):
+    for part in map(sp.powsimp, sp.fraction(sp.together(base))):
+        if not part.free_symbols:
+            continue
         _, factors = sp.factor_list(part)
         found |= {factor for factor, _ in factors if not factor.is_nonzero}
     return found

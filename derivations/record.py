@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
+STATUSES = ("definition", "proved", "proved-leading-order", "sampled", "argued")
 """The status of an equality, strongest first."""
 
 
@@ -48,6 +48,8 @@ class Step:
     """Label of the derivation that a recalled step comes from."""
     domain: str = ""
     """The values of its variable for which a sign or a root was proved, in LaTeX."""
+    note: str = ""
+    """What was checked besides the formula, in words: of which equation it is the only root, and where."""
     claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property

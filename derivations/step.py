@@ -29,7 +29,7 @@ from .algebra import (
     sign_between,
     value_at,
 )
-from .book import Shown, StepError, asked, tex
+from .book import Shown, StepError, asked, tex, tex_interval, tex_within
 from .conditions import (
     Interval,
     demands,
@@ -167,6 +167,7 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {value} depends on {variable} itself")
         whole = self._resolve_free(expr, variable)
         claim = f"root {variable} = {value} of {expr}"
+        where = tex_interval(over) if over else _reach(variable)
         if over is not None:
             self._interval(over, symbolic=True)
             over = (over[0], *(self._resolve(end) for end in over[1:]))
@@ -189,8 +190,9 @@ class Proof(Guarded):
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
         # The variable of a root with a name of its own is bound: its interval restricts nothing else.
+        note = rf"the only root of ${tex(sp.sympify(expr))} = 0$ for ${where}$"
         fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise,
-                            bound=called != variable)  # fmt: skip
+                            bound=called != variable, note=note)  # fmt: skip
         if called != variable:
             self._rule(called, value)
             self._origins[called] = fact
@@ -215,7 +217,10 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
         if odd != 1 or poles:
             raise StepError(f"{self.label}: {expr} does not change its sign at its root in {over}")
-        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
+        self._displayed(sp.sympify(expr), sp.S.Zero, shown)
+        given: Shown = {**shown, "right": rf"0 \quad\text{{for exactly one }} {tex_within(over)}"}
+        self._record(expr, "=", sp.S.Zero, reason, "proved", given, exact=False, over=over, trusted=True,
+                     note="where it changes its sign")  # fmt: skip
 
     @asked
     def sign(
@@ -418,9 +423,8 @@ class Proof(Guarded):
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
-        self._record(
-            expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
-        )
+        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True,
+                     note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
         return c, k
 
     @asked
@@ -438,6 +442,21 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
+    @asked
+    def argued(
+        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
+    ) -> None:
+        """Keep a relation for which only words speak; its result is "argued", and no proof can recall it."""
+        left, right = self._resolve(lhs), self._resolve(rhs)
+        if relation == "=" and (found := refutation(left, right, self._conditions.positive)):
+            raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
+        if relation in _RELATIONS and proves_positive(
+            (right - left) * (1 if ">" in relation else -1), self._conditions
+        ):
+            raise StepError(f"{self.label}: {lhs} {relation} {rhs} is wrong")
+        sign = _RELATIONS.get(relation, relation)
+        self._record(lhs, sign, rhs, reason, "argued", shown, exact=False)
+
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
         if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
@@ -449,6 +468,14 @@ class Proof(Guarded):
         )
         for one, other in pairs:
             self._vanish(self._resolve(one), self._resolve(other), f"{defined} = {evaluated}")
+
+
+def _reach(variable: sp.Expr) -> str:
+    """Print the values that a variable can have by its assumptions."""
+    domain = domain_of(variable, None)
+    if domain.low_included or domain.high_included:
+        return f"{tex(variable)} {_RELATIONS['>=' if domain.low_included else '<=']} 0"
+    return tex_interval((variable, domain.low, domain.high))
 
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:

@@ -79,6 +79,9 @@ def test_the_list_of_commands_cuts_no_description_off():
         assert "..." not in run(*arguments, "--help").stdout.split("Commands:")[1]
 
 
+DMA = Path(__file__).parents[1] / "docs" / "data" / "dma"
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_ends_with_an_example_that_runs(name, place, monkeypatch):
     """Some do without what takes long; the example of `derive` runs in `test_derive_cli`."""
@@ -86,6 +89,10 @@ def test_help_ends_with_an_example_that_runs(name, place, monkeypatch):
     assert run(*name.split()[1:], "--help").stdout.endswith(f"Example:\n  {example}\n")
     (place / "my-scene.toml").write_text(kv.to_toml(kv.Scene()))
     (place / "mine.csv").write_bytes((place.parent / "data.csv").read_bytes())
+    (place / "dma.csv").write_bytes((DMA / "time_user_raw.csv").read_bytes())
+    (place / "mu.csv").write_text(
+        "V [m/s],mu\n1e-3,0.0010\n1e-2,0.0099\n0.1,0.0857\n1,0.0662\n3,0.0390\n"
+    )
     for replaced, by in SLOW.items():
         monkeypatch.setattr(f"kvtheory.{replaced}", by)
     for line in example.split(" && ") if name != "kvtheory derive" else ():
@@ -413,6 +420,9 @@ def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
 
     monkeypatch.setattr("kvtheory.plots.comparison.save_comparison_report", refuse)
     monkeypatch.setattr("kvtheory.plots.files.save_page", refuse)
+    (place / "mu.csv").write_text(
+        "V [m/s],mu\n1e-3,0.0010\n1e-2,0.0099\n0.1,0.0857\n1,0.0662\n3,0.0390\n"
+    )
     for replaced, by in SLOW.items():
         monkeypatch.setattr(f"kvtheory.{replaced}", by)
     run(*arguments, status=2)

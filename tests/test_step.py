@@ -207,3 +207,18 @@ def test_the_interval_of_a_named_root_restricts_nothing_else():
     later.recall("edge", a, sp.sqrt(y))
     with pytest.raises(StepError):
         later.holds(x, ">", 0, "x is any place here")
+
+
+def test_what_words_say_is_argued_and_nothing_better():
+    first = Proof("words", None, section="Trial", title="Trial")
+    first.argued(sp.sqrt(y), ">", sp.log(y), "a root grows faster")
+    first.equal(2 * y, y + y, "twice")
+    assert first.done(2 * y, y + y).status == "argued"
+    second = Proof("resting", None, section="Trial", title="Trial", uses=("words",))
+    second.equal(3 * y, y + y + y, "thrice")
+    assert second.done(3 * y, y + y + y).status == "argued"
+    with pytest.raises(StepError, match="does not establish"):
+        second.recall("words", sp.sqrt(y), sp.log(y))
+    for relation, wrong in (("=", sp.sqrt(y) + 1), (">", sp.sqrt(y) + 1)):
+        with pytest.raises(StepError, match=r"fails|is wrong"):
+            second.argued(sp.sqrt(y), relation, wrong, "a planted error")

@@ -10,9 +10,10 @@ from kvtheory.derivations.recheck.report import counts, having, recheck
 from kvtheory.derivations.render import edition, json, markdown
 from kvtheory.derivations.render.text import by_section
 
+from generators import exercises, premises
 from generators.equations import place_of, users
 from generators.files import put
-from generators.labels import anchor_of
+from generators.labels import anchor_of, page_of
 from kvtheory import __version__
 
 MOST = 6
@@ -20,12 +21,12 @@ MOST = 6
 
 
 def write(directory: Path) -> None:
-    """Derive everything and write the pages, and a part of another page."""
-    for path, text in pages().items():
+    """Derive everything and write the pages, and what other pages include."""
+    derived = catalogue()
+    made = {**pages(), **premises.pages(derived), **exercises.pages(derived)}
+    made["theory/second-opinion.txt"] = second_opinion(json.document(edition(derived)))
+    for path, text in made.items():
         put(directory / path, text)
-    put(
-        directory / "theory/second-opinion.txt", second_opinion(json.document(edition(catalogue())))
-    )
 
 
 def pages() -> dict[str, str]:
@@ -37,7 +38,7 @@ def pages() -> dict[str, str]:
     texts, names = {}, []
     for section in sections:
         title, _, body = section.partition("\n")
-        name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+        name = page_of(title)
         names.append(name)
         labels = [
             each.label for each in next((m for s, m in members.items() if _same(s, title)), ())

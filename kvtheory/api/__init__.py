@@ -3,6 +3,8 @@
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
 from kvtheory.api._elements import elements
+from kvtheory.api._fit import fit
+from kvtheory.api._fit_foundation import fit_foundation
 from kvtheory.api._solve import solve
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import footprint, steady
@@ -10,6 +12,6 @@ from kvtheory.api._sweep import sweep
 from kvtheory.api._transient import transient
 
 __all__ = [
-    "asymptotes", "compare", "elements", "footprint", "solve", "stability", "steady", "sweep",
-    "transient",
+    "asymptotes", "compare", "elements", "fit", "fit_foundation", "footprint", "solve", "stability", "steady",
+    "sweep", "transient",
 ]  # fmt: skip

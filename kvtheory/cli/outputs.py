@@ -25,6 +25,7 @@ BEGINNINGS = {
     ".tex": (b"\\documentclass[11pt,a4paper]{article}\n\\usepackage[margin=25mm]{geometry}",),
     ".md": (b"# Sliding friction on ", b"# Steady sliding of an indenter of the shape"),
     ".ipynb": (b'{\n "cells": ',),
+    ".toml": (b"# A scene whose foundation was fitted", b"# A scene whose quantities were fitted"),
     ".bib": (b"@article{NakanoKono2020,",),
 }
 """First bytes of the files that commands write; a sweep recognises its own files."""

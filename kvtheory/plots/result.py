@@ -12,9 +12,19 @@ from scipy.integrate import simpson
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
+from kvtheory.plots.fits import draw_fit
 from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, Picture, label, with_unit
 from kvtheory.plots.sweep import plot_over, plot_sweep
-from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
+from kvtheory.results import (
+    QUANTITIES,
+    AsymptoteReport,
+    Comparison,
+    FoundationFit,
+    FrictionFit,
+    SteadyState,
+    Sweep,
+    Transient,
+)
 from kvtheory.results.transient import TimeSeries
 from kvtheory.theory.closed_forms import ball_friction_coefficient_factor
 
@@ -104,6 +114,8 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
     """Draw a time series, steady sliding, a comparison or a sweep, and return the figure."""
     if isinstance(result, Comparison):
         return draw_comparison(result)
+    if isinstance(result, FoundationFit | FrictionFit):
+        return draw_fit(result)
     if isinstance(result, Sweep):
         return plot_sweep(axes, result, **style).figure
     if hasattr(result, "time"):

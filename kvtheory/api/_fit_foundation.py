@@ -1,0 +1,206 @@
+"""A foundation from measured moduli: `fit_foundation`."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kvtheory.api._edge import double_precision, one_scene
+from kvtheory.api._steady import method_for
+from kvtheory.models.steady.methods import METHODS
+from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
+from kvtheory.scene.arguments import a_scene, checked, choice, count, flag, measured, number
+from kvtheory.scene.foundations import MOST_ARMS, GeneralizedMaxwell
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import quantities
+
+LAYER = quantities(GeneralizedMaxwell)
+DIGITS = 6
+"""Significant digits of a fitted number."""
+STEPS = 60
+"""Steps of V <- f c(V): c falls so slowly with V that each divides the error by more than two."""
+
+
+@checked(
+    scene=a_scene, modulus=choice(("E", "G")), thickness=measured(LAYER["thickness"]),
+    poisson_ratio=measured(LAYER["poisson_ratio"]), temperature=measured(LAYER["temperature"]),
+    vertical=flag, arms=count, rtol=number(0.0),
+)  # fmt: skip
+def fit_foundation(
+    data: Any,
+    scene: Scene | None = None,
+    *,
+    modulus: str | None = None,
+    thickness: Any = None,
+    poisson_ratio: Any = None,
+    temperature: Any = None,
+    shift_factors: Any = None,
+    vertical: bool = False,
+    arms: int | None = None,
+    rtol: float | None = None,
+) -> FoundationFit:
+    """Fit a Prony series with non-negative arms to measured moduli.
+
+    The moduli are dynamic, E'(f) and E''(f) or tan delta, or relax, E(t). Over all non-negative spectra the
+    relative misfit is convex, so that the best one is found, and how good it is: no series, of any number
+    of arms, has a misfit below `least_misfit` of the result. The arms are the fewest within the scatter of
+    the data.
+
+    Parameters
+    ----------
+    data
+        A file as instruments export it, or a mapping of arrays by header (``{"f [Hz]": ..., "E' [MPa]":
+        ..., "E'' [MPa]": ...}``): units in the headers or in the row below; E or G in Pa to GPa, or
+        stiffnesses per unit area in N/m^3. Sweeps at several temperatures (a column T) are shifted to one
+        master curve.
+    scene
+        The scene that is given this foundation; without it, the paper's Table 1 with a dead weight.
+    modulus
+        ``"E"`` or ``"G"``, where the headers do not say which.
+    thickness, poisson_ratio
+        Of the layer that is the foundation. Poisson's ratio is needed for shear moduli: E = 2 G (1 + nu).
+    temperature
+        That of the foundation. The reference temperature is that of the nearest sweep; without
+        `temperature`, that of the middle one.
+    shift_factors
+        A file, or a mapping, of temperatures and log10 a_T (or a_T), instead of fitted shifts.
+    vertical
+        Whether moduli may shift too, by a factor for each sweep.
+    arms
+        Number of arms.
+    rtol
+        Root mean square of the relative residuals that is allowed, instead of the scatter of the data.
+
+    Returns
+    -------
+    FoundationFit
+        Arms, relaxed modulus and misfits, in SI; the scene with this foundation, and its TOML text.
+
+    Raises
+    ------
+    ValueError
+        If the data cannot be read, with column and line; if no series is within `rtol`; if the moduli relax
+        to zero; or if an argument is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kvtheory as kv
+    >>> f = np.geomspace(0.1, 100.0, 31)
+    >>> z = 2 * np.pi * f * 0.02  # one arm of 3 MPa and 20 ms, beside 1 MPa
+    >>> data = {"f [Hz]": f, "E' [MPa]": 1 + 3 * z**2 / (1 + z**2), "E'' [MPa]": 3 * z / (1 + z**2)}
+    >>> found = kv.fit_foundation(data, thickness="2 mm", poisson_ratio=0.45)
+    >>> found.arms, found.modulus, round(found.foundation.stiffness / 1e9, 4)
+    (((3000000.0, 0.02),), 1000000.0, 1.8966)
+
+    References
+    ----------
+    Baumgaertel and Winter (1989), doi:10.1007/BF01332922; Lawson and Hanson (1974), chapter 23.
+    """
+    from kvtheory.fitting.foundation import fit
+
+    scene = one_scene(scene, "a fit")
+    if (thickness is None) != (poisson_ratio is None) and thickness is not None:
+        raise ValueError("`thickness` needs `poisson_ratio` beside it")
+    if arms is not None and arms > MOST_ARMS:
+        raise ValueError(f"`arms` = {arms}: expected at most {MOST_ARMS}")
+    found = fit(data, modulus, temperature, shift_factors, vertical=vertical, arms=arms, rtol=rtol)
+    factor, per_area = 1.0, found.measured.kind == "K"
+    if found.measured.kind == "G":
+        if poisson_ratio is None:
+            told = "the moduli are shear moduli: Young's modulus is 2 G (1 + nu)"
+            raise ValueError(f"`poisson_ratio`: missing; {told}")
+        factor = 2.0 * (1.0 + poisson_ratio)
+    if per_area and thickness is not None:
+        raise ValueError(
+            "`thickness`: the data are stiffnesses of a foundation, not moduli of a layer"
+        )
+    series = replace(
+        found.series,
+        relaxed=_rounded(found.series.relaxed * factor) / factor,
+        modulus=np.array([_rounded(E * factor) / factor for E in found.series.modulus]),
+        time=np.array([_rounded(tau) for tau in found.series.time]),
+    )
+    pairs = tuple(
+        (_rounded(E * factor), tau)
+        for E, tau in zip(series.modulus, series.time.tolist(), strict=True)
+    )
+    relaxed, master, law = _rounded(series.relaxed * factor), found.shifted, found.law
+    thermal: dict[str, Any] = {}
+    if law is not None and master is not None:
+        constants = tuple(map(_rounded, law.constants))
+        thermal = {"wlf": constants} if law.name == "wlf" else {"activation_energy": constants[0]}
+        thermal["reference_temperature"] = _rounded(master.reference)
+        thermal |= {} if temperature is None else {"temperature": temperature}
+    elif temperature is not None:
+        told = (
+            "no law of the shift factor is known: it needs several temperatures, or `shift_factors`"
+        )
+        raise ValueError(f"`temperature`: {told}")
+    own = {"stiffness": relaxed, "arms": pairs, **thermal} if per_area else None
+    if thickness is not None:
+        own = {
+            "modulus": relaxed,
+            "thickness": thickness,
+            "poisson_ratio": poisson_ratio,
+            "arms": pairs,
+            **thermal,
+        }
+    whole = None if own is None else replace(scene, foundation=GeneralizedMaxwell(**own))
+    residuals = series.residuals(found.data)
+    x = found.data.x
+    ends = (
+        np.array([x.min(), x.max()]) / (2.0 * math.pi)
+        if found.data.dynamic
+        else 1.0 / np.array([x.max(), x.min()])
+    )
+    source = (
+        Path(found.measured.source).name if isinstance(data, (str, Path)) else found.measured.source
+    )
+    return FoundationFit(
+        arms=pairs,
+        modulus=None if per_area else relaxed,
+        stiffness=relaxed if per_area else None if whole is None else float(whole.foundation.stiffness),
+        misfit=float(np.sqrt(np.mean(residuals**2))),
+        largest_misfit=float(np.abs(residuals).max()),
+        least_misfit=found.least_misfit,
+        shift_factors=None if master is None else tuple(
+            (round(T - ZERO_CELSIUS, 4), _rounded(shift))
+            for T, shift in zip(master.temperatures.tolist(), master.log_shift.tolist(), strict=True)
+        ),
+        shift_errors=None if master is None else tuple(map(_rounded, master.errors.tolist())),
+        shift_law=None if law is None or master is None else (
+            f"{law.text} at {master.reference - ZERO_CELSIUS:.4g} degC, log10 a_T to {law.misfit:.2g}"
+        ),
+        frequencies=(_rounded(ends[0]), _rounded(ends[1])),
+        velocities=None if whole is None else _velocities(whole, ends),
+        source=source,
+        notes=found.notes,
+        scene=whole,
+        data={
+            "x": x, "measured": found.data.values * factor,
+            "fitted": series.values(x, dynamic=found.data.dynamic) * factor, "residuals": residuals,
+            "sweeps": found.measured.sweeps, "shifted": master, "law": law, "factor": factor,
+        },
+    )  # fmt: skip
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{DIGITS}g}")
+
+
+def _velocities(scene: Scene, ends: Any) -> tuple[float, float] | None:
+    """Return the velocities at which V over the length of the contact is at the ends of the frequencies."""
+    solve = METHODS[method_for(scene, None)]
+    factor = scene.foundation.shift_factor
+    V = np.asarray(ends) / factor
+    try:
+        for _ in range(STEPS):
+            with double_precision(scene):
+                state = solve(scene.at(V))
+            V = np.asarray(ends) / factor * (state.trailing_edge - state.leading_edge)
+    except (ValueError, ArithmeticError):
+        return None
+    return _rounded(V[0]), _rounded(V[1])

@@ -1,0 +1,1 @@
+"""Measured data: Prony series from moduli, shift factors, quantities of a scene from friction."""

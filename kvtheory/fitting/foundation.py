@@ -1,0 +1,159 @@
+"""A Prony series from measured moduli: master curve, fewest arms within the scatter, remarks."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.stats import chi2
+
+from kvtheory.fitting import moduli, shifting
+from kvtheory.fitting.shifting import Law, Shifted
+from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, rms
+
+CONFIDENCE = 0.95
+"""Probability with which the scatter of the data alone makes the sum of squares as large as is allowed."""
+SYSTEMATIC = 2.0
+"""Ratio of the least misfit of any series to the scatter from which the data violate Kramers-Kronig."""
+VISIBLE = 0.01
+"""Least misfit below which they are never said to."""
+UNSEEN = 1e-3
+"""Relaxed modulus over the least storage or relaxation modulus below which the data do not show it."""
+WINDOW = 5
+"""Points of the running mean that shows where."""
+VAGUE = 0.3
+"""Standard error of log10 a_T from which a shift is reported as vague."""
+
+
+class Fitted(NamedTuple):
+    """A series fitted to the master curve `data`, the dual bound on misfits, the shifts, remarks."""
+
+    measured: moduli.Measured
+    data: Moduli
+    series: Series
+    least_misfit: float
+    shifted: Shifted | None
+    law: Law | None
+    notes: tuple[str, ...]
+
+
+def fit(
+    data: Any, modulus: str | None, near: float | None, shift_factors: Any, *, vertical: bool,
+    arms: int | None, rtol: float | None,
+) -> Fitted:  # fmt: skip
+    """Return the series that fits a file of moduli; `near` is the temperature (K) of interest."""
+    measured = moduli.read(data, modulus)
+    notes, master, law = list(measured.notes), None, None
+    factors = None if shift_factors is None else shifting.read_factors(shift_factors)
+    sweeps = measured.sweeps
+    if vertical and not sweeps[0].moduli.dynamic:
+        told = "a relaxation modulus alone cannot tell a vertical shift from one in time"
+        raise ValueError(f"`vertical`: {told}; expected dynamic moduli")
+    whole = sweeps[0].moduli
+    if len(sweeps) > 1:
+        master = shifting.shifted(sweeps, near, factors, vertical=vertical)
+        whole = master.moduli
+    elif factors is not None:  # of data that are a master curve already
+        T, log_shift = factors
+        reference = float(T[np.abs(log_shift).argmin()])
+        master = Shifted(whole, reference, T, log_shift, 0.0 * T, 0.0 * T)
+    if master is not None:
+        law = shifting.law_of(
+            master.temperatures, master.log_shift, master.reference, master.errors
+        )
+        notes += _about_shifts(master, law)
+    thin = whole.thinned
+    if thin.x.size < whole.x.size:
+        notes.append(
+            f"{whole.x.size:,} values were averaged to {thin.x.size:,}; misfits are of these."
+        )
+    start, least = best(thin)
+    series = arms_of(thin, start, arms, _target(thin, start, least, rtol))
+    if _no_plateau(thin, series):
+        series = _with_plateau(thin, series, measured.source)
+        notes.append("The data show no relaxed modulus: the slowest arm was taken as the spring.")
+    if arms is not None and series.time.size < arms:
+        notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
+    notes += _inconsistent(thin, series if series.time.size > start.time.size else start, least)
+    return Fitted(measured, thin, series, least, master, law, tuple(notes))
+
+
+def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> float:
+    """Return the misfit that is allowed: `rtol`, or what the scatter of the data makes likely.
+
+    The scatter is estimated from the best series, by its degrees of freedom.
+    """
+    if rtol is not None:
+        if least > rtol:
+            told = f"no series with arms above 0 is as close: the least misfit is {least:.3g}, see `notes`"
+            raise ValueError(f"`rtol` = {rtol:g}: {told}")
+        return rtol
+    count = data.target.size
+    free = max(count - 2 * start.time.size - 1, 0.5 * count)
+    variance = max((start.misfit(data) * math.sqrt(count / free)) ** 2, FINEST**2)
+    return math.sqrt(variance * float(chi2.ppf(CONFIDENCE, free)) / count)
+
+
+def _no_plateau(data: Moduli, series: Series) -> bool:
+    """Whether the relaxed modulus is not seen in the data."""
+    return series.relaxed < UNSEEN * float(data.values[0].min())
+
+
+def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
+    """Return a series with a relaxed modulus for data that do not reach it."""
+    from kvtheory.fitting.spectrum import refined
+
+    found = series
+    while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
+        found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
+    if _no_plateau(data, found) or not found.time.size:
+        told = (
+            "the moduli relax to zero within the data; a foundation needs a relaxed modulus above 0"
+        )
+        raise ValueError(f"{source}: {told}. Measure down to the rubber plateau")
+    return found
+
+
+def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
+    notes = []
+    vague = [
+        f"{T - 273.15:.4g}"
+        for T, e in zip(master.temperatures, master.errors, strict=True)
+        if e > VAGUE
+    ]
+    if vague:
+        told = "The sweeps overlap too little, or are too flat, to tell their shift factors"
+        notes.append(f"{told} to {VAGUE} decades at {', '.join(vague)} degC.")
+    if law is None:
+        notes.append("Neither WLF's nor Arrhenius' law fits the shift factors.")
+    return notes
+
+
+def _inconsistent(data: Moduli, series: Series, least: float) -> list[str]:
+    """Return a remark if no Prony series fits the data within their scatter, and where not.
+
+    The scatter is that of the residuals from one value to the next.
+    """
+    r = series.residuals(data)
+    if r.shape[1] < 2 * WINDOW:
+        return []
+    steps = r[:, 1:-1] - 0.5 * (r[:, :-2] + r[:, 2:])
+    scatter = np.median(np.abs(steps), axis=1) / 0.6745 / math.sqrt(1.5)
+    if least < max(SYSTEMATIC * rms(scatter), VISIBLE):
+        return []
+    mean = np.apply_along_axis(np.convolve, 1, r, np.full(WINDOW, 1.0 / WINDOW), "same")
+    row, at = np.unravel_index(np.abs(mean).argmax(), mean.shape)
+    off = np.abs(mean[row]) > 0.5 * abs(mean[row, at])
+    low, high = at, at
+    while low > 0 and off[low - 1]:
+        low -= 1
+    while high < off.size - 1 and off[high + 1]:
+        high += 1
+    ends = data.x[[low, high]] / (2.0 * math.pi if data.dynamic else 1.0)
+    unit = "Hz" if data.dynamic else "s"
+    which = ("storage", "loss")[row] if data.dynamic else "relaxation"
+    rule = "Kramers-Kronig's relations" if data.dynamic else "decreasing convex relaxation"
+    return [
+        f"The data do not obey {rule}: no series with arms above 0 has a misfit below {least:.2%} (dual "
+        f"bound), and the scatter is {rms(scatter):.2%}. The {which} modulus is off most from "
+        f"{ends[0]:.3g} to {ends[1]:.3g} {unit}, by {-mean[row, at]:+.1%}."
+    ]

@@ -1,0 +1,265 @@
+r"""A Prony series from moduli: the best non-negative spectrum, and the fewest arms that are as good.
+
+The moduli are linear in the spectrum, E = E_0 + sum E_i k(tau_i), with k = z^2/(1 + z^2) for the storage
+and z/(1 + z^2) for the loss modulus, z = omega tau, or e^(-t/tau) for relaxation. Over all spectra E_i >= 0
+the sum of squared relative residuals is convex: non-negative least squares (NNLS) on a fine grid of
+relaxation times finds its minimum. With the residual r and unit data, D(tau) = k(tau) . r is then nowhere
+positive; where it is by up to kappa k(tau) . 1, lambda = r - kappa 1 is admissible in the dual problem, and
+
+    misfit^2 n >= 2 lambda . 1 - lambda . lambda    (dual bound)
+
+for every series with any number of arms (`dual`). NNLS gathers the spectrum in few clusters. They become
+arms, refined by bounded least squares; then the pair whose merger costs least becomes one arm, again and
+again.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+Array = NDArray[np.float64]
+
+PER_DECADE, FINER = 12, 4
+"""Relaxation times of the grid per decade, and the factor by which the grid of the dual function is
+finer."""
+BEYOND = 0.5
+"""Decades by which relaxation times may lie beyond the data, where an arm still changes them."""
+ROUNDS = 3
+"""Times that points are added to the grid."""
+FAR = 4.0
+"""Decades beyond the data over which the dual function is evaluated; from there on it keeps its sign."""
+LEAST_LOSS = 0.01
+"""Smallest scale of a loss modulus, over |E*|: below it, its relative error says nothing."""
+TRIED, FEW_STEPS = 3, 8
+"""Pairs of arms whose merger is tried, and steps of the refinement until the number of arms is found."""
+MOST_POINTS = 1200
+"""Most points that are fitted; more are averaged over equal steps of the logarithm."""
+FINEST = 1e-4
+"""Misfit below which more arms are never needed: no instrument is as accurate."""
+SOLVED, MOST_STEPS, MOST_DAMPING = 1e-9, 60, 1e6
+"""Gain of a step of the refinement at which it ends, its most steps, and its damping where none gains."""
+RIDGE = 1e-12
+"""Relative change of a diagonal that keeps normal equations solvable."""
+
+
+@dataclass(frozen=True)
+class Moduli:
+    """Moduli over the angular frequency in rad/s (rows storage and loss), or over time in s (one row)."""
+
+    x: Array
+    values: Array
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether they are dynamic moduli."""
+        return len(self.values) == 2
+
+    @cached_property
+    def scale(self) -> Array:
+        """What residuals are relative to: the value; of a loss modulus at least a part of |E*|."""
+        size = np.abs(self.values)
+        return np.maximum(size, LEAST_LOSS * np.hypot.reduce(self.values, axis=0))
+
+    @cached_property
+    def times(self) -> tuple[float, float]:
+        """The shortest and the longest time that they cover, in s."""
+        ends = np.array([self.x.min(), self.x.max()])
+        return tuple(np.sort(1.0 / ends if self.dynamic else ends).tolist())
+
+    @cached_property
+    def thinned(self) -> "Moduli":
+        """The data, averaged over equal steps of log x if they are many."""
+        order = np.argsort(self.x, kind="stable")
+        x, values = self.x[order], self.values[:, order]
+        if x.size <= MOST_POINTS:
+            return Moduli(x, values)
+        edges = np.geomspace(x[0], x[-1], MOST_POINTS + 1)
+        starts = np.unique(np.searchsorted(x, edges[:-1]))
+        count = np.diff(np.append(starts, x.size))
+        mean = np.add.reduceat(values, starts, axis=1) / count
+        return Moduli(np.exp(np.add.reduceat(np.log(x), starts) / count), mean)
+
+    def kernel(self, tau: Array) -> Array:
+        """Return the moduli of unit arms in columns, in the scale of the data; a spring has the time inf."""
+        z = self.x[:, None] * tau if self.dynamic else self.x[:, None] / tau
+        if self.dynamic:  # in 1/z where z is large or infinite
+            small = np.minimum(z, 1.0 / np.maximum(z, 1e-300))
+            share = 1.0 / (1.0 + small * small)
+            rows = np.stack([np.where(z > 1.0, share, small * small * share), small * share])
+        else:
+            rows = np.exp(-z)[None]
+        return (rows / self.scale[..., None]).reshape(-1, np.size(tau))
+
+    def slopes(self, tau: Array) -> Array:
+        """Return the derivatives of `kernel` by ln tau."""
+        z = self.x[:, None] * tau if self.dynamic else self.x[:, None] / tau
+        if self.dynamic:
+            q = 1.0 / (1.0 + z * z)
+            rows = np.stack([2.0 * (z * q) ** 2, z * (1.0 - z * z) * q * q])
+        else:
+            rows = (z * np.exp(-z))[None]
+        return (rows / self.scale[..., None]).reshape(-1, tau.size)
+
+    @property
+    def target(self) -> Array:
+        """The data in their own scale."""
+        return (self.values / self.scale).reshape(-1)
+
+
+@dataclass(frozen=True)
+class Series:
+    """A Prony series fitted to moduli: the relaxed modulus, and the arms by increasing relaxation time."""
+
+    relaxed: float
+    modulus: Array
+    time: Array
+
+    def residuals(self, data: Moduli) -> Array:
+        """Return fit minus data, in the scale of the data, in the shape of the data."""
+        arms = data.kernel(np.append(np.inf, self.time))
+        own = np.einsum("ij,j->i", arms, np.append(self.relaxed, self.modulus))
+        return (own - data.target).reshape(data.values.shape)
+
+    def misfit(self, data: Moduli) -> float:
+        """Return the root mean square of the relative residuals."""
+        return rms(self.residuals(data))
+
+    def values(self, x: Array, *, dynamic: bool) -> Array:
+        """Return the moduli of the series at frequencies or times."""
+        unit = Moduli(x, np.ones((2 if dynamic else 1, x.size)))
+        return self.residuals(unit) * unit.scale + unit.values
+
+
+def rms(values: Array) -> float:
+    """Return the root mean square."""
+    return float(np.sqrt(np.mean(values * values)))
+
+
+def grid(data: Moduli, beyond: float, per_decade: int) -> Array:
+    """Return relaxation times at equal steps of the logarithm."""
+    low, high = np.log10(data.times)
+    return np.logspace(low - beyond, high + beyond, 2 + int((high - low + 2 * beyond) * per_decade))
+
+
+def solved(data: Moduli, time: Array) -> Series:
+    """Return the series of least misfit with arms of these times, by NNLS."""
+    held, _ = nnls(data.kernel(np.append(np.inf, time)), data.target, maxiter=30 * (time.size + 10))
+    kept = held[1:] > 0.0
+    return Series(float(held[0]), held[1:][kept], time[kept])
+
+
+def dual(data: Moduli, series: Series) -> tuple[float, Array]:
+    """Return the dual bound, below which no misfit of any series is, and the times of arms that help.
+
+    The bound is sharp if the series is optimal. The dual function is evaluated on a fine grid, with twice
+    what its curvature adds between the points.
+    """
+    times = np.append(np.inf, grid(data, FAR, PER_DECADE * FINER))
+    arms, r, one = data.kernel(times), -series.residuals(data).reshape(-1), np.abs(data.target)
+    slope, size = (np.einsum("ij,i->j", arms, each) for each in (r, one))
+    ratio = slope[size > 0.0] / size[size > 0.0]
+    bend = np.abs(np.diff(ratio[1:], 2))  # between points, a maximum is higher by an eighth of it
+    kappa = max(float(ratio.max()), float((ratio[2:-1] + 0.25 * bend).max()), 0.0)
+    rest = r - kappa * one
+    bound = float(2.0 * rest @ data.target - rest @ rest)
+    peaks = 1 + np.flatnonzero(
+        (slope[1:-1] > np.maximum(slope[:-2], slope[2:])) & (slope[1:-1] > 0.0)
+    )
+    return float(np.sqrt(max(bound, 0.0) / one.size)), times[peaks]
+
+
+def best(data: Moduli) -> tuple[Series, float]:
+    """Return the best non-negative spectrum, gathered into arms, and the dual bound on the misfit of any.
+
+    Its times are limited to those that the data tell; for the bound they are not. Where the dual function
+    has positive peaks between the points of the grid, points are added.
+    """
+    spectrum, least = solved(data, grid(data, FAR, PER_DECADE)), 0.0
+    for _ in range(ROUNDS):
+        bound, more = dual(data, spectrum)
+        least = max(least, bound)
+        spectrum = solved(data, np.union1d(spectrum.time, more))
+    return refined(data, clustered(data)), max(least, dual(data, spectrum)[0])
+
+
+def clustered(data: Moduli) -> Series:
+    """Return the best spectrum on the grid of times, with arms on neighbouring points gathered into one."""
+    return clusters(solved(data, grid(data, BEYOND, PER_DECADE)), np.log(10.0) / PER_DECADE)
+
+
+def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
+    """Return the series with one arm less: two neighbours as one, or the slowest one as part of the spring.
+
+    The pairs that change the moduli least are tried, and the best one is refined.
+    """
+    E, tau = series.modulus, series.time
+    both = E[:-1] + E[1:]
+    mean = np.exp((E[:-1] * np.log(tau[:-1]) + E[1:] * np.log(tau[1:])) / both)
+    own, merged = data.kernel(tau) * E, data.kernel(mean) * both
+    cost = ((own[:, :-1] + own[:, 1:] - merged) ** 2).sum(axis=0)
+    tried = [np.delete(np.where(np.arange(tau.size) == i, mean[i], tau), i + 1)
+             for i in np.argsort(cost)[:TRIED]]  # fmt: skip
+    found = [solved(data, times) for times in [*tried, tau[:-1], tau[1:]]]
+    return refined(data, min(found, key=lambda each: each.misfit(data)), steps)
+
+
+def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Series:
+    """Return the series of the fewest arms with a misfit of at most `target`, or of at most `count` arms."""
+    kept = start
+    while kept.time.size > max(count or 1, 1):
+        less = fewer(data, kept, FEW_STEPS if count is None else 0)
+        if count is None and less.misfit(data) > target:
+            polished = refined(data, less)
+            if polished.misfit(data) > target:
+                break
+            less = polished
+        kept = less
+    return refined(data, kept)
+
+
+def clusters(spectrum: Series, step: float) -> Series:
+    """Return the spectrum with arms on neighbouring points of the grid gathered into one."""
+    if not spectrum.time.size:
+        return spectrum
+    first = np.flatnonzero(np.append(True, np.diff(np.log(spectrum.time)) > 1.5 * step))
+    modulus = np.add.reduceat(spectrum.modulus, first)
+    mean = np.add.reduceat(spectrum.modulus * np.log(spectrum.time), first) / modulus
+    return Series(spectrum.relaxed, modulus, np.exp(mean))
+
+
+def refined(data: Moduli, series: Series, steps: int = MOST_STEPS) -> Series:
+    """Return the series after bounded least squares in the logarithms of its times; NNLS gives the moduli.
+
+    By Levenberg and Marquardt, with the slopes of variable projection: what the moduli cannot take up.
+    Normal equations suffice for a minimum in which times are apart, and are small.
+    """
+    low, high = np.log(data.times) + np.log(10.0) * BEYOND * np.array([-1.0, 1.0])
+    y, damping = np.clip(np.log(series.time), low, high), 1e-3
+
+    def solve(y: Array) -> tuple[Array, Array, Array, float]:
+        kernel = data.kernel(np.append(np.inf, np.exp(y)))
+        held, norm = nnls(kernel, data.target, maxiter=30 * (y.size + 10))
+        return kernel, held, np.einsum("ij,j->i", kernel, held) - data.target, norm
+
+    kernel, held, r, norm = solve(y)
+    for _ in range(steps if y.size else 0):
+        rows, basis = data.slopes(np.exp(y)) * held[1:], kernel[:, held > 0.0]
+        own = np.einsum("ij,ik->jk", basis, basis)
+        own[np.diag_indices_from(own)] *= 1.0 + RIDGE
+        rows = rows - basis @ np.linalg.solve(own, np.einsum("ij,ik->jk", basis, rows))
+        curve, slope = np.einsum("ij,ik->jk", rows, rows), np.einsum("ij,i->j", rows, r)
+        size = np.maximum(np.diag(curve), RIDGE * max(curve.max(), np.finfo(float).tiny))
+        tried = np.clip(y - np.linalg.solve(curve + damping * np.diag(size), slope), low, high)
+        new = solve(tried)
+        if new[3] < norm:
+            gain = 1.0 - new[3] / norm
+            y, (kernel, held, r, norm), damping = tried, new, 0.2 * damping
+            if gain < SOLVED:
+                break
+        elif (damping := 5.0 * damping) > MOST_DAMPING:
+            break
+    result = solved(data, np.exp(np.sort(y)))
+    return result if result.misfit(data) <= series.misfit(data) else series

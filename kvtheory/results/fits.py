@@ -1,0 +1,213 @@
+"""What was fitted to measurements: the foundation from moduli, the quantities of a scene from friction."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+from kvtheory.export import Columns
+from kvtheory.results.presented import Exported, above, aligned
+from kvtheory.scene.files import to_toml
+from kvtheory.scene.foundations import GeneralizedMaxwell
+from kvtheory.scene.model import Scene
+
+ZERO_CELSIUS = 273.15
+HEADING = "# A scene whose foundation was fitted to measured moduli"
+FITTED = "# A scene whose quantities were fitted to measured friction"
+"""First lines of files."""
+WIDTH = 100
+
+
+@dataclass(frozen=True, repr=False)
+class FoundationFit(Exported):
+    """A Prony series fitted to measured moduli, in SI.
+
+    `arms` are pairs of modulus (Pa) and relaxation time (s), by increasing time; `modulus` is that of the
+    relaxed material. Moduli are Young's; if the data are stiffnesses per unit area, in N/m^3, `stiffness`
+    stands for it. `misfit` is the root mean square of the relative residuals, `largest_misfit` the largest
+    of them; no series with non-negative arms has a misfit below `least_misfit`, however many arms it has.
+
+    `shift_factors` are pairs of temperature (degrees Celsius) and log10 a_T, `shift_errors` the standard
+    errors of the latter, `shift_law` the law that was fitted to them. `frequencies` (Hz) are those that the
+    data cover at the reference temperature; sliding at `velocities` (m/s), V over the length of the contact
+    of `scene`, is within them. `notes` are remarks on the data. Without a layer there is no `scene`: its
+    `foundation` needs `thickness` and `poisson_ratio`.
+    """
+
+    arms: tuple[tuple[float, float], ...]
+    modulus: float | None
+    stiffness: float | None
+    misfit: float
+    largest_misfit: float
+    least_misfit: float
+    shift_factors: tuple[tuple[float, float], ...] | None
+    shift_errors: tuple[float, ...] | None
+    shift_law: str | None
+    frequencies: tuple[float, float]
+    velocities: tuple[float, float] | None
+    source: str
+    notes: tuple[str, ...] = ()
+    scene: Scene | None = field(default=None, repr=False)
+    data: Any = field(default=None, repr=False, compare=False)
+    """Measured moduli (over rad/s or s), fit, and the sweeps before they were shifted."""
+
+    @property
+    def foundation(self) -> GeneralizedMaxwell:
+        """The foundation of `scene`."""
+        if self.scene is None:
+            raise ValueError(
+                "a foundation from moduli is a layer: give `thickness` and `poisson_ratio`"
+            )
+        return self.scene.foundation  # type: ignore[return-value]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What should be known about the fit, a line each."""
+        low, high = self.frequencies
+        lines = [
+            f"Fitted to {self.source}: {len(self.arms)} arms, misfit {self.misfit:.3g} (largest "
+            f"{self.largest_misfit:.3g});",
+            f"no series with non-negative arms has a misfit below {self.least_misfit:.3g}.",
+            f"The data cover {low:.3g} to {high:.3g} Hz.",
+        ]
+        if self.velocities is not None:
+            low, high = self.velocities
+            lines.append(
+                f"That is V/c, contact length c, for velocities from {low:.3g} to {high:.3g} m/s."
+            )
+        if self.shift_law is not None:
+            lines.append(f"{self.shift_law}.")
+        return [*lines, *self.notes]
+
+    def __repr__(self) -> str:
+        unit = "N/m^3" if self.modulus is None else "Pa"
+        heads = f"arm [{unit}]", "relaxation time [s]"
+        rows = [(f"{E:.6g}", f"{tau:.6g}") for E, tau in self.arms]
+        relaxed = self.stiffness if self.modulus is None else self.modulus
+        first = f"Prony series, relaxed {relaxed:.6g} {unit}"
+        return "\n".join([first, *aligned(heads, rows), *self.remarks])
+
+    def to_toml(self) -> str:
+        """Return the scene with this foundation as TOML text, with remarks as comments."""
+        _ = self.foundation
+        return commented(self.scene or Scene(), HEADING, "foundation", self.remarks)
+
+    def _columns(self) -> Columns:
+        x, rows, fitted = self.data["x"], self.data["measured"], self.data["fitted"]
+        names = ("storage", "loss") if len(rows) == 2 else ("relaxation",)
+        unit = "N/m^3" if self.modulus is None else "Pa"
+        columns = {"angular_frequency": (x, "rad/s")} if len(rows) == 2 else {"time": (x, "s")}
+        for name, measured, fit in zip(names, rows, fitted, strict=True):
+            columns[f"{name}_modulus, data"] = measured, unit
+            columns[f"{name}_modulus, fit"] = fit, unit
+        return columns
+
+    def _attributes(self) -> Mapping[str, str]:
+        return {"source": self.source, "remarks": " ".join(self.remarks)}
+
+    def plot(self) -> Any:
+        """Draw data and fit, residuals and arms, and the shift of the sweeps, and return the figure."""
+        return above("plots").plot_result(self)
+
+
+class Parameter(NamedTuple):
+    """A fitted quantity of a scene and its standard error, of linear theory at the minimum, in SI."""
+
+    value: float
+    standard_error: float
+
+
+class WeighedModel(NamedTuple):
+    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all."""
+
+    name: str
+    unknowns: int
+    misfit: float
+    aicc: float
+    weight: float
+
+
+@dataclass(frozen=True, repr=False)
+class FrictionFit(Exported):
+    """Quantities of a scene fitted to measured friction.
+
+    `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
+    of the correlations of their logarithms, in the same order. `not_identifiable` lists the keys that the
+    data cannot tell, or cannot tell apart: a combination of them is open by more than a factor of two.
+    `misfit` is the root mean square of the relative residuals. `models` are the foundations that were
+    weighed. `scene` is the scene with the fitted values.
+    """
+
+    parameters: Mapping[str, Parameter]
+    correlations: tuple[tuple[float, ...], ...]
+    not_identifiable: tuple[tuple[str, ...], ...]
+    misfit: float
+    model: str
+    models: tuple[WeighedModel, ...]
+    source: str
+    notes: tuple[str, ...] = ()
+    scene: Scene = field(default_factory=Scene, repr=False)
+    data: Any = field(default=None, repr=False, compare=False)
+    """Conditions, measured and fitted quantities by name, and units."""
+
+    @property
+    def remarks(self) -> list[str]:
+        """What should be known about the fit, a line each."""
+        rows = len(self.data["conditions"]["drive.velocity"])
+        lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
+        for keys in self.not_identifiable:
+            apart = " apart: a combination of them" if len(keys) > 1 else ": it"
+            open_ = "is open by more than a factor of two"
+            lines.append(f"The data cannot tell {', '.join(keys)}{apart} {open_}.")
+        return [*lines, *self.notes]
+
+    def __repr__(self) -> str:
+        specs = self.scene.replaceable
+        rows = [
+            (key, f"{value:.5g}", f"{error:.2g}", specs[key].unit, f"{error / value:.2g}")
+            for key, (value, error) in self.parameters.items()
+        ]
+        heads = "quantity", "value", "standard error", "unit", "relative"
+        lines = aligned(heads, rows)
+        if self.models:
+            heads = "model", "unknowns", "misfit", "AICc", "weight"
+            weighed = [
+                (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
+                for m in self.models
+            ]
+            lines += ["", *aligned(heads, weighed)]
+        return "\n".join([f"Fit of {self.model}", *lines, "", *self.remarks])
+
+    def to_toml(self) -> str:
+        """Return the scene with the fitted values as TOML text, with remarks as comments."""
+        return commented(self.scene, FITTED, "foundation", self.remarks)
+
+    def _columns(self) -> Columns:
+        specs, units = self.scene.replaceable, self.data["units"]
+        columns = {key: (v, specs[key].unit) for key, v in self.data["conditions"].items()}
+        for name, values in self.data["measured"].items():
+            columns[f"{name}, data"] = values, units[name]
+            columns[f"{name}, fit"] = self.data["fitted"][name], units[name]
+        return columns
+
+    def _attributes(self) -> Mapping[str, str]:
+        return {"source": self.source, "remarks": " ".join(self.remarks)}
+
+    def plot(self) -> Any:
+        """Draw data and fit over velocity, and the residuals, and return the figure."""
+        return above("plots").plot_result(self)
+
+
+def commented(scene: Scene, heading: str, section: str, remarks: Sequence[str]) -> str:
+    """Return a scene as TOML text with remarks as comments in a section, and an arm in each line."""
+    lines = [heading]
+    for line in to_toml(scene).splitlines():
+        if line.startswith("arms = "):
+            pairs = line.removeprefix("arms = [[").removesuffix("]]").split("], [")
+            lines += ["arms = [", *(f"  [{pair}]," for pair in pairs), "]"]
+            continue
+        lines.append(line)
+        if line == f"[{section}]":
+            for remark in remarks:
+                lines += wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="# ")
+    return "\n".join([*lines, ""])

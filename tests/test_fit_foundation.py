@@ -1,0 +1,347 @@
+"""Prony series from measured moduli: reading, fitting, shifting, and the scene that is written."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.fitting import moduli, shifting, spectrum
+from kvtheory.fitting.spectrum import Moduli, Series
+
+ROOT = Path(__file__).parents[1]
+DMA = ROOT / "docs" / "data" / "dma"
+TRUE = Series(1e6, np.array([5e6, 3e6, 1e6]), np.array([1e-4, 1e-2, 0.5]))
+OMEGA = np.geomspace(0.05, 1e5, 60)
+
+
+def dynamic(noise=0.0, seed=1, series=TRUE, omega=OMEGA):
+    values = series.values(omega, dynamic=True)
+    noisy = values * (1.0 + noise * np.random.default_rng(seed).standard_normal(values.shape))
+    return {"omega [rad/s]": omega, "E' [Pa]": noisy[0], "E'' [Pa]": noisy[1]}
+
+
+def written(tmp_path, text, name="data.csv", encoding="utf-8"):
+    path = tmp_path / name
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+NUMBERS = [(0.1, 2.0, 0.2), (1.0, 3.0, 0.6), (10.0, 5.0, 0.9), (100.0, 6.0, 0.3), (1e3, 6.5, 0.1)]
+"""Frequency in Hz, storage and loss modulus in MPa."""
+
+
+def table(form, order=1):
+    """Return a line for each row of NUMBERS, written by a template of f, E, L (MPa), omega, tan and i."""
+    return "".join(
+        form.format(f=f, E=E, L=L, omega=repr(2 * np.pi * f), tan=repr(L / E), i=i) + "\n"
+        for i, (f, E, L) in enumerate(NUMBERS[::order])
+    )
+
+
+ROWS = table("{f:g},{E:g},{L:g}")
+GERMAN = table("{f:g};{E:g};{L:g}").replace(".", ",")
+TRIOS = (
+    "Filename\tC:\\TA\\sample.tri\nInstrument name\tDMA850\nnumber of points\t5\n\n"
+    "[step]\nFrequency sweep - 1\n"
+    "Angular frequency\tStorage modulus\tLoss modulus\tTan(delta)\tTemperature\tStep time\n"
+    "rad/s\tMPa\tMPa\t\t°C\ts\n"
+)
+RHEOCOMPASS = (
+    "Project:\tRubber\nTest:\tsweep\n\nInterval and data points:\t1\t5\n"
+    "Interval data:\tPoint No.\tAngular Frequency\tStorage Modulus\tLoss Modulus\tLoss Factor\n"
+    "\t\t\t\t\t\n\t\t[rad/s]\t[Pa]\t[Pa]\t[1]\n\n"
+)
+FILES = {
+    "two rows": "f, E_stor, E_loss\nHz, MPa, MPa\n" + ROWS,
+    "brackets": "f [Hz];E' [MPa];E'' [MPa]\n" + GERMAN,
+    "slashes": "f/Hz\tE'/MPa\tE''/MPa\n" + GERMAN.replace(";", "\t"),
+    "bracketed units below": "Frequency;E';E''\n[Hz];[MPa];[MPa]\n" + GERMAN,
+    "mark and comments": "\ufeff# sample 7\nf,E′,E″\nHz,MPa,MPa\n# begin\n" + ROWS,
+    "double quotes": '"f [Hz]","E\' [MPa]","E\'\' [MPa]"\n' + ROWS,
+    "inch mark": "f [Hz];E' [MPa];E\" [MPa]\n" + GERMAN,
+    "other units": "f [kHz],E' [GPa],E'' [kPa]\n" + table("{f:g}e-3,{E:g}e-3,{L:g}e3"),
+    "tan delta": "f [Hz],E' [MPa],tan δ\n" + table("{f:g},{E:g},{tan}"),
+    "unsorted": "f [Hz],E'' [MPa],E' [MPa]\n" + table("{f:g},{L:g},{E:g}", -1),
+    "rows twice": "f [Hz],E' [MPa],E'' [MPa]\n" + ROWS + ROWS,
+    "both frequencies": (
+        "f [Hz],omega [rad/s],E' [MPa],E'' [MPa],tan(delta)\n"
+        + table("{f:g},{omega},{E:g},{L:g},{tan}")
+    ),
+    "TRIOS": TRIOS + table("{omega}\t{E:g}\t{L:g}\t{tan}\t23.0{i}\t{i}"),
+    "RheoCompass": RHEOCOMPASS + table("\t{i}\t{omega}\t{E:g}e6\t{L:g}e6\t{tan}"),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_exports_of_instruments_are_read_alike(tmp_path, name):
+    encodings = ("utf-8", "utf-16") if name == "RheoCompass" else ("utf-8",)
+    modulus = "E" if name in {"TRIOS", "RheoCompass"} else None
+    for encoding in encodings:
+        found = moduli.read(written(tmp_path, FILES[name], encoding=encoding), modulus)
+        (sweep,) = found.sweeps
+        assert found.kind == "E"
+        assert sweep.moduli.x == pytest.approx([2 * np.pi * f for f, _, _ in NUMBERS])
+        assert sweep.moduli.values[0] == pytest.approx([1e6 * a for _, a, _ in NUMBERS])
+        assert sweep.moduli.values[1] == pytest.approx([1e6 * b for _, _, b in NUMBERS])
+
+
+HEAD = "f [Hz],E' [MPa],E'' [MPa]\n"
+BAD = {
+    "not a number": (HEAD + ROWS + "9,x,1\n", 'line 7, column "E\' [MPa]": "x" is not a number'),
+    "empty cell": (HEAD + "9,,1\n" + ROWS, 'line 2, column "E\' [MPa]": the cell is empty'),
+    "nan": (HEAD + ROWS + "9,1,nan\n", "line 7, column \"E'' [MPa]\": nan is not a finite number"),
+    "negative": (HEAD + "9,-1,1\n" + ROWS, 'line 2, column "E\' [MPa]": -1 is not above 0'),
+    "negative loss": (HEAD + "9,1,-2\n" + ROWS, "line 2, column \"E'' [MPa]\": -2 is negative"),
+    "zero frequency": (HEAD + "0,1,1\n" + ROWS, 'line 2, column "f [Hz]": 0 is not above 0'),
+    "two rows": (HEAD + "1,2,1\n2,3,1\n", "2 rows; at least 4"),
+    "one frequency": (HEAD + "1,2,1\n1,3,1\n1,4,1\n1,5,1\n", "at different frequencies"),
+    "no loss": (HEAD + "1,2,0\n2,2,0\n3,2,0\n4,2,0\n", "without loss there is nothing to fit"),
+    "no header": (ROWS, "line 1 holds numbers that no row of names precedes"),
+    "unknown": ("a,b,c\n" + ROWS, "line 2 holds numbers that no row of names precedes"),
+    "empty": ("", "no row names the columns"),
+    "no unit": ("f [Hz],E',E''\n" + ROWS, 'column "E\'": has no unit'),
+    "wrong unit": ("f [Hz],E' [mm],E'' [MPa]\n" + ROWS, "wrong dimension"),
+    "frequency in 1/s": ("f [1/s],E' [MPa],E'' [MPa]\n" + ROWS, 'unit "1/s"; expected Hz'),
+    "omega in Hz": ("omega [Hz],E' [MPa],E'' [MPa]\n" + ROWS, 'unit "Hz"; expected rad/s'),
+    "unknown kind": ("f [Hz],storage modulus [MPa],loss modulus [MPa]\n" + ROWS, "may be E or G"),
+    "mixed": ("f [Hz],E' [MPa],G'' [MPa]\n" + ROWS, "not of the same kind"),
+    "twice": ("f [Hz],E' [MPa],E_stor [MPa],E'' [MPa]\n", "both the E'"),
+    "two units": ("f [Hz],E' [MPa],E'' [MPa]\nHz,GPa,MPa\n" + ROWS, 'and "GPa" below it'),
+    "no temperature": (
+        "f [Hz],E' [MPa],E'' [MPa],T [C]\n" + table("{f},{E},{L},20") + "1,2,1,\n",
+        'line 7, column "T [C]": the cell is empty',
+    ),
+    "drifting temperature": (
+        "f [Hz],E' [MPa],E'' [MPa],T [C]\n" + table("{f},{E},{L},{i}"),
+        "drifts from",
+    ),
+    "disagreeing frequencies": (
+        "f [Hz],omega [rad/s],E' [MPa],E'' [MPa]\n" + table("{f},{f},{E},{L}"),
+        "is not the angular frequency",
+    ),
+    "liquid": (
+        "t [s],E(t) [MPa]\n1,0.36788\n2,0.13534\n4,0.018316\n8,3.3546e-4\n",
+        "relax to zero",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_doubtful_data_are_refused_with_column_and_line(tmp_path, name):
+    text, told = BAD[name]
+    with pytest.raises(ValueError, match=re.escape(told)):
+        kv.fit_foundation(written(tmp_path, text))
+
+
+def test_a_known_series_is_found_with_as_many_arms():
+    found = kv.fit_foundation(dynamic(), thickness="2 mm", poisson_ratio=0.3)
+    assert np.array(found.arms) == pytest.approx(
+        np.column_stack([TRUE.modulus, TRUE.time]), rel=1e-5
+    )
+    assert found.modulus == pytest.approx(1e6, rel=1e-5)
+    assert found.misfit < 1e-5
+    assert found.notes == ()
+    t = np.geomspace(1e-5, 10.0, 80)
+    relaxing = {"t [s]": t, "E(t) [MPa]": TRUE.values(t, dynamic=False)[0] / 1e6}
+    again = kv.fit_foundation(relaxing)
+    assert np.array(again.arms) == pytest.approx(np.array(found.arms), rel=1e-4)
+
+
+@pytest.mark.parametrize("noise", [0.003, 0.02, 0.05])
+def test_noise_adds_no_arms_and_the_misfit_is_the_noise(noise):
+    for seed in range(4):
+        found = kv.fit_foundation(dynamic(noise, seed))
+        assert len(found.arms) == 3, (seed, found.arms)
+        assert found.least_misfit <= found.misfit < 1.2 * noise
+        assert found.notes == ()
+        assert np.array(found.arms) == pytest.approx(
+            np.column_stack([TRUE.modulus, TRUE.time]), rel=5 * noise
+        )
+
+
+def test_no_series_is_better_than_the_dual_bound_and_the_best_is_close_to_it():
+    rng = np.random.default_rng(3)
+    for seed in range(6):
+        x, series = (
+            np.geomspace(1e-3, 1e3, 25),
+            Series(1.0, rng.uniform(0, 4, 5), 10.0 ** rng.uniform(-3, 3, 5)),
+        )
+        values = series.values(x, dynamic=True) * rng.uniform(0.8, 1.25, (2, x.size))
+        data = Moduli(x, values)
+        found, least = spectrum.best(data)
+        for _ in range(40):
+            times = np.sort(10.0 ** rng.uniform(-5, 5, rng.integers(1, 60)))
+            assert spectrum.solved(data, times).misfit(data) >= least
+        assert least <= found.misfit(data) <= 1.03 * least, seed
+
+
+def test_arms_and_rtol_choose_the_number_of_arms():
+    data = dynamic(0.02)
+    assert len(kv.fit_foundation(data, arms=2).arms) == 2
+    assert len(kv.fit_foundation(data, rtol=0.4).arms) < 3
+    with pytest.raises(ValueError, match="is as close: the least misfit is 0"):
+        kv.fit_foundation(data, rtol=0.005)
+    assert "arms fit best; 50 would be no better" in kv.fit_foundation(data, arms=50).notes[0]
+
+
+def test_moduli_that_no_series_fits_are_told_with_where():
+    data = dynamic(0.005)
+    hump = 1.0 + 0.5 * np.exp(-(np.log(OMEGA / 300.0) ** 2))
+    bad = kv.fit_foundation(data | {"E'' [Pa]": data["E'' [Pa]"] * hump})
+    (note,) = bad.notes
+    assert "Kramers-Kronig" in note
+    assert "The loss modulus is off most from" in note
+
+
+def wlf_sweeps(noise, vertical=0.0):
+    """Return sweeps at seven temperatures, and log10 a_T relative to 20 degC."""
+    law = shifting.Law("wlf", (8.0, 120.0))
+    parts, rng = [], np.random.default_rng(5)
+    for T in np.arange(-10.0, 60.0, 10.0):
+        f = np.geomspace(0.1, 100.0, 16)
+        a_T = 10.0 ** law.log_shift(T, 20.0)
+        values = TRUE.values(2.0 * np.pi * f * a_T * 30.0, dynamic=True) * 10.0 ** (
+            vertical * (T - 20.0)
+        )
+        values = values * (1.0 + noise * rng.standard_normal(values.shape))
+        parts.append(np.vstack([f, values, T + rng.uniform(-0.2, 0.2, f.size)]))
+    whole = np.hstack(parts)[:, rng.permutation(7 * 16)]
+    return dict(zip(("f [Hz]", "E' [Pa]", "E'' [Pa]", "T [C]"), whole, strict=True)), law
+
+
+def test_sweeps_shift_to_the_master_curve_and_wlf_is_found():
+    data, law = wlf_sweeps(0.01)
+    found = kv.fit_foundation(data, temperature="22 degC", thickness="2 mm", poisson_ratio=0.3)
+    T, shift = np.array(found.shift_factors).T
+    errors = np.array(found.shift_errors)
+    assert np.abs(shift - law.log_shift(T, 20.0)).max() < 0.15
+    assert np.all(np.abs(shift - law.log_shift(T, 20.0)) < 3.0 * errors + 0.03)
+    assert found.shift_law.startswith("WLF")
+    assert len(found.arms) == 3
+    assert found.arms[1][1] == pytest.approx(0.3, rel=0.05)
+    assert found.foundation.shift_factor == pytest.approx(
+        10.0 ** law.log_shift(22.0, 20.0), rel=0.1
+    )
+
+
+def test_moduli_shift_vertically_if_allowed():
+    data, law = wlf_sweeps(0.003, vertical=0.004)
+    found = kv.fit_foundation(data, temperature=293.15, vertical=True)
+    T, shift = np.array(found.shift_factors).T
+    assert np.abs(shift - law.log_shift(T, 20.0)).max() < 0.1
+    assert found.misfit < 0.5 * kv.fit_foundation(data, temperature=293.15, arms=3).misfit
+    with pytest.raises(ValueError, match="vertical"):
+        kv.fit_foundation({"t [s]": OMEGA, "E(t) [Pa]": 1.0 + 1.0 / OMEGA}, vertical=True)
+
+
+def test_given_shift_factors_are_used_and_arrhenius_is_found(tmp_path):
+    data, _ = wlf_sweeps(0.01)
+    T = np.arange(-10.0, 60.0, 10.0)
+    law = shifting.Law("arrhenius", (9e4,))
+    text = "".join(f"{t:g};{law.log_shift(t + 273.15, 293.15):.6f}\n".replace(".", ",") for t in T)
+    path = written(tmp_path, "\ufeffT;log_aT\nC;-\n" + text)
+    found = kv.fit_foundation(data, shift_factors=path, arms=4)
+    assert "Arrhenius: E_a = 90" in found.shift_law
+    assert found.shift_factors[0] == pytest.approx((-10.0, law.log_shift(263.15, 293.15)), abs=0.3)
+    with pytest.raises(ValueError, match="no temperature with a_T = 1"):
+        kv.fit_foundation(data, shift_factors={"T [degC]": T, "log_aT": T + 100.0})
+    with pytest.raises(ValueError, match="has none for"):
+        kv.fit_foundation(data, shift_factors={"T [degC]": T[:-1], "log_aT": 20.0 - T[:-1]})
+
+
+def test_shear_moduli_need_poissons_ratio_and_stiffnesses_no_layer():
+    data = dynamic()
+    shear = {key.replace("E", "G"): values for key, values in data.items()}
+    with pytest.raises(ValueError, match="poisson_ratio"):
+        kv.fit_foundation(shear)
+    assert kv.fit_foundation(shear, poisson_ratio=0.25).modulus == pytest.approx(2.5e6, rel=1e-5)
+    per_area = {key.replace("[Pa]", "[N/m^3]"): values for key, values in data.items()}
+    found = kv.fit_foundation(per_area)
+    assert found.modulus is None
+    assert found.foundation.stiffness == found.stiffness == pytest.approx(1e6, rel=1e-5)
+    with pytest.raises(ValueError, match="give `thickness` and `poisson_ratio`"):
+        _ = kv.fit_foundation(data).foundation
+
+
+@pytest.mark.parametrize("name", ["freq_user_master", "time_user_master", "time_user_raw"])
+def test_the_sample_data_are_fitted_to_their_scatter(name):
+    found = kv.fit_foundation(DMA / f"{name}.csv")
+    assert found.least_misfit <= found.misfit <= 1.13 * found.least_misfit
+    assert ("Kramers-Kronig" in "".join(found.notes)) == (name == "freq_user_master")
+
+
+def test_the_command_writes_a_scene_that_loads_and_slides(tmp_path):
+    path, picture = tmp_path / "rubber.toml", tmp_path / "fit.png"
+    data = str(DMA / "time_user_raw.csv")
+    layer = ["--thickness", "2 mm", "--poisson-ratio", "0.3"]
+    how = [
+        *layer,
+        "--temperature",
+        "30 degC",
+        "--arms",
+        "12",
+        "-o",
+        str(path),
+        "--plot",
+        str(picture),
+    ]
+    done = CliRunner().invoke(main, ["foundation", data, *how, "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert {
+        "arms",
+        "modulus",
+        "stiffness",
+        "misfit",
+        "largest_misfit",
+        "shift_factors",
+    } <= found.keys()
+    scene = kv.load_scene(path)
+    assert [arm.modulus for arm in scene.foundation.arms] == [E for E, _ in found["arms"]]
+    assert scene.foundation.stiffness == pytest.approx(found["stiffness"])
+    V = np.array(found["velocities"])
+    state = kv.steady(scene, over={"drive.velocity": V})
+    rate = V / (state.trailing_edge - state.leading_edge)  # at the temperature of the scene
+    assert rate * scene.foundation.shift_factor == pytest.approx(found["frequencies"], rel=1e-3)
+    assert picture.stat().st_size > 10_000
+    text = path.read_text()
+    assert "misfit" in text
+    small = ["foundation", str(written(tmp_path, HEAD + ROWS)), *layer, "-o", str(path)]
+    assert CliRunner().invoke(main, small).exit_code == 0
+    path.write_text("mine")
+    assert CliRunner().invoke(main, small).exit_code == 2
+    assert path.read_text() == "mine"
+
+
+def test_mistakes_in_the_options_are_messages(tmp_path):
+    data = str(written(tmp_path, HEAD + ROWS))
+    for options, told in (
+        (["-o", str(tmp_path / "x.toml")], "--thickness"),
+        (["--thickness", "2", "--poisson-ratio", "0.3"], "--thickness"),
+        (["--thickness", "2 mm"], "--poisson-ratio"),
+        (["--poisson-ratio", "half"], "--poisson-ratio"),
+        (["--temperature", "20 degC"], "no law of the shift factor is known"),
+        (["--modulus", "K"], "expected one of: E, G"),
+        (["--modulus", "G"], "is E"),
+    ):
+        done = CliRunner().invoke(main, ["foundation", data, "--arms", "1", *options])
+        assert done.exit_code == 2, options
+        assert told in done.stderr, (options, done.stderr)
+        assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_long_record_is_averaged_and_read_in_one_go(tmp_path):
+    omega = np.geomspace(0.05, 1e5, 30_000)
+    data = dynamic(0.05, omega=omega)
+    path = tmp_path / "long.csv"
+    columns = np.column_stack(list(data.values()))
+    np.savetxt(path, columns, delimiter="\t", header="\t".join(data), comments="")
+    found = kv.fit_foundation(path)
+    assert len(found.arms) == 3
+    assert found.arms[1][0] == pytest.approx(3e6, rel=3e-3)
+    assert "30,000 values were averaged to 1,200" in found.notes[0]
