@@ -5,11 +5,12 @@ import json
 import subprocess
 import sys
 from collections import Counter
+from importlib.util import find_spec
 
 import pytest
 from click.testing import CliRunner
 from kvtheory.derivations.catalogue import catalogue
-from kvtheory.derivations.recheck.checks import _CHECKS, EMPTY, Record
+from kvtheory.derivations.recheck.checks import _CHECKS, EMPTY, Record, Verdict
 from kvtheory.derivations.recheck.report import counts, having, recheck
 from kvtheory.derivations.render import edition
 from kvtheory.derivations.render import json as written
@@ -94,6 +95,21 @@ def test_what_is_not_understood_is_not_confirmed(records):
         assert Record(record, {}).verdict({**claim, **strange}).status == "unconfirmed"
 
 
+def test_z3_decides_inequalities_of_several_letters_where_it_is_installed():
+    def verdict(right):
+        record = {"symbols": {"x": ["positive"], "y": ["positive"]}, "functions": {}, "claims": []}
+        claim = {
+            "id": "new/0", "kind": "inequality", "premises": [], "domain": [["<", "y", "x"]],
+            "left": ["^", "x", "2"], "relation": ">", "right": right,
+        }  # fmt: skip
+        return Record(record, {}).verdict(claim)
+
+    found = verdict(["*", "x", "y"])
+    by_z3 = find_spec("z3") is not None
+    assert found == Verdict(*(("confirmed", "by z3") if by_z3 else ("supported", "at points")))
+    assert verdict(["*", "2", "x", "y"]).status == "refuted"
+
+
 def test_neither_sympy_nor_the_engine_is_imported():
     code = (
         "import sys; import kvtheory.derivations.recheck.report; "
@@ -133,7 +149,8 @@ def test_the_command_says_which_claim_is_refuted(monkeypatch):
 
 
 def test_the_command_refuses_what_it_would_not_do(monkeypatch):
-    assert "--recheck writes nothing" in run("--format", "pdf", code=2).stderr
+    for option in (["--format", "pdf"], ["-o", "here"], ["--numbers"], ["--closure"]):
+        assert "--recheck writes nothing" in run(*option, code=2).stderr
     assert "'eq270'" in run("--only", "eq270", code=2).stderr
     for name in [name for name in sys.modules if "derivations.recheck" in name]:
         monkeypatch.delitem(sys.modules, name)

@@ -14,6 +14,7 @@ import flint
 from flint import arb, fmpq
 
 from .polynomials import proved_sign, real_roots
+from .solver import proves
 from .trees import INFINITY, MINUS, ONE, ZERO, Rules, Tree, UnsupportedError, put, read
 from .values import NEGATIVE, POSITIVE, Facts, Point, UndefinedError, Value, holds, name_of, sign_of
 
@@ -468,9 +469,12 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
         count += 1
     if not count:
         return NO_POINT
+    if proved:
+        return Verdict("confirmed", "by the signs of polynomials")
+    given = question.rules, question.facts, question.conditions, question.equations
     return (
-        Verdict("confirmed", "by the signs of polynomials")
-        if proved
+        Verdict("confirmed", "by z3")
+        if proves(gap, relation, *given)
         else Verdict("supported", "at points")
     )
 

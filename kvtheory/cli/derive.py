@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from kvtheory.cli import console
 from kvtheory.cli.group import DISAGREES, main
@@ -103,7 +104,8 @@ def derive(
         told = "it does not go with --only, --closure or --numbers"
         raise ValueError(f"--shape derives a separate chapter; {told}")
     if recheck:
-        if formats or shape or numbers or notation or closure:
+        placed = click.get_current_context().get_parameter_source("output")
+        if formats or shape or numbers or notation or closure or placed != ParameterSource.DEFAULT:
             raise ValueError("--recheck writes nothing; it goes with --only and --json alone")
         _recheck(find(console.split(only), CONTENTS), as_json)
         return
