@@ -17,6 +17,7 @@ from typing import Any
 
 import mpmath
 import sympy as sp
+from sympy.core.function import AppliedUndef, UndefinedFunction
 from sympy.external.gmpy import GROUND_TYPES
 
 from .book import Finished
@@ -97,13 +98,25 @@ def _content(proofs: Mapping[str, Finished]) -> list[Any]:
     return [proofs, claims]
 
 
+def _function(name: str, assumptions: Mapping[str, bool]) -> UndefinedFunction:
+    return sp.Function(name, **assumptions)
+
+
+def _call(function: UndefinedFunction, arguments: tuple[sp.Expr, ...]) -> sp.Expr:
+    return function(*arguments)
+
+
 class _Pickler(pickle.Pickler):
-    """Writes sums, products and powers as they stand; SymPy's own way evaluates what it reads."""
+    """Writes sums, products and powers as they stand, which SymPy would evaluate, and unknown functions."""
 
     def reducer_override(self, node: Any) -> Any:
-        """Say how to build such a node again."""
+        """Say how to build a node again."""
         if type(node) in (sp.Add, sp.Mul):
             return type(node)._from_args, (node.args,)
         if type(node) is sp.Pow:
             return sp.Pow, (*node.args, False)
+        if isinstance(node, AppliedUndef):
+            return _call, (node.func, node.args)
+        if isinstance(node, UndefinedFunction):
+            return _function, (node.__name__, node._kwargs)
         return NotImplemented
