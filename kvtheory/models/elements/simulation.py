@@ -55,7 +55,7 @@ MORE_ROOM = 16.0
 PAUSE = {True: 3e7, False: 1e5}
 """Elements times steps between two reports of progress, compiled and interpreted."""
 MOST_OF_ALL = 2e9
-"""Upper bound on elements in the contact at rest times steps: so many take from minutes to hours."""
+"""Upper bound on elements in the contact at rest times steps: so many take seconds to hours."""
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
