@@ -531,8 +531,13 @@ class Book:
         roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
         gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
         if name.is_nonnegative or name.is_nonpositive:
-            signed = value if name.is_nonnegative else -value
+            sign = 1 if name.is_nonnegative else -1
+            signed, named = (
+                sign * value,
+                sign * self._rules[name],
+            )  # what the names in it are is known
             strict = name.is_nonzero or not proves_nonnegative(signed, self._conditions)
+            strict = strict and not proves_positive(named, self._conditions)
             gaps += open_factors(signed, self._conditions) if strict else []
         for gap in gaps:
             self._demand(gap, tex_condition(gap))
