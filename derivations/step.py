@@ -137,7 +137,11 @@ class Proof(Guarded):
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
-        self._imply(lhs)
+        inside = self._conditions.with_interval((variable, low, high))
+        ordered = proves_positive(high - low, self._conditions)
+        sure = lhs.is_nonnegative and not lhs.is_integer
+        if not (sure and ordered and proves_positive(inner, inside)):
+            self._imply(lhs)
         self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(

@@ -47,6 +47,9 @@ class _Code(StrPrinter):
     def _print_Rank(self, expr: sp.Expr) -> str:  # noqa: N802
         return f"S({self._print(expr.args[0])}.rank())"
 
+    def _print_Determinant(self, expr: sp.Expr) -> str:  # noqa: N802
+        return f"({self._print(expr.args[0])}).det(method='berkowitz')"
+
 
 def document(edition: Edition) -> str:
     """Return the notebook; running its cells from top to bottom checks every step."""
@@ -134,6 +137,7 @@ _PARAMETERS: dict[str, tuple[str, ...]] = {
     "integral": ("lhs", "integrand", "over", "antiderivative", "value"),
     "root": ("expr", "variable", "value", "name"),
     "unique_root": ("expr", "over"),
+    "crossing": ("expr", "over"),
     "sign": ("expr", "relation", "bound", "over"),
     "where": ("condition",),
     "holds": ("lhs", "relation", "rhs", "cases"),
