@@ -6,6 +6,7 @@ from textwrap import wrap
 from typing import Any, NamedTuple
 
 from kvtheory.export import Columns
+from kvtheory.results.certificate import Recorded
 from kvtheory.results.presented import Exported, above, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
@@ -196,6 +197,22 @@ class FrictionFit(Exported):
     def plot(self) -> Any:
         """Draw data and fit over velocity, and the residuals, and return the figure."""
         return above("plots").plot_result(self)
+
+
+@dataclass(frozen=True)
+class FewerArms(Recorded):
+    """A Prony series with fewer arms, pairs of stiffness (N/m^3) and relaxation time (s).
+
+    `difference` is the largest relative change of the friction coefficient at the velocities, from the
+    first to the last in m/s; `bound` is proved to be no less, NaN where none is known. `scene` is the scene
+    with these arms.
+    """
+
+    arms: tuple[tuple[float, float], ...]
+    bound: float
+    difference: float
+    velocities: tuple[float, float]
+    scene: Scene = field(repr=False)
 
 
 def commented(scene: Scene, heading: str, section: str, remarks: Sequence[str]) -> str:
