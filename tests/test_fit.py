@@ -82,7 +82,7 @@ def solved(scene, keys, data, seed=0):
     return friction.solve(problem, seed)
 
 
-@pytest.mark.parametrize(("name", "few"), [("line", 24), ("springpot", 3)])
+@pytest.mark.parametrize(("name", "few"), [("line", 15), ("springpot", 3)])
 def test_the_true_values_are_within_two_standard_errors(name, few):
     """Of 95 % of the fits; KVTHEORY_TEST_SCENES=1000 makes 400 of them."""
     scene, keys, how = CASES[name]
@@ -169,7 +169,7 @@ def test_other_columns_are_conditions(tmp_path):
 
 def test_a_shape_that_is_integrated_can_be_fitted():
     circle = kv.Scene(indenter=kv.Circle("10 mm"))
-    few = np.geomspace(1e-3, 0.3, 4)
+    few = np.array([1e-2, 0.3])
     found = kv.fit(circle, table(circle, velocity=few), free=["foundation.stiffness"])
     assert found.parameters["foundation.stiffness"].value == pytest.approx(1e10, rel=1e-4)
 

@@ -235,7 +235,7 @@ class Problem:
         first = float(scene.values()[key])
         if key in self.keys:
             name = next(name for name in ("load", *reversed(MEASURED)) if name in measured)
-            tried = np.logspace(*DECADES, 4 * (DECADES[1] - DECADES[0]) + 1)
+            tried = np.logspace(*DECADES, 2 * (DECADES[1] - DECADES[0]) + 1)
             off = [self._expected(name, {**still, key: K}) for K in tried]
             off = np.log(np.array(off) / np.abs(measured[name]).max())
             if np.nanmax(off) - np.nanmin(off) > 1.0:  # else it does not depend on the stiffness
