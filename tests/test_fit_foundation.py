@@ -128,6 +128,9 @@ BAD = {
         "t [s],E(t) [MPa]\n1,0.36788\n2,0.13534\n4,0.018316\n8,3.3546e-4\n",
         "relax to zero",
     ),
+    "stiffening": ("t [s],E(t) [MPa]\n1,1\n10,2\n100,3\n1000,4\n", "the moduli do not relax"),
+    "constant": ("t [s],E(t) [MPa]\n1,1\n10,1\n100,1\n1000,1.0\n", "the moduli do not relax"),
+    "softening": (HEAD + "1,5,1\n10,4,1\n100,3,1\n1e3,2,1\n1e4,1,1\n", "or stiffen as they relax"),
 }
 
 

@@ -65,9 +65,10 @@ class FoundationFit(Exported):
     def remarks(self) -> list[str]:
         """What should be known about the fit, a line each."""
         low, high = self.frequencies
+        count = f"{len(self.arms)} arm{'s' * (len(self.arms) > 1)}"
         lines = [
-            f"Fitted to {self.source}: {len(self.arms)} arms, misfit {self.misfit:.3g} (largest "
-            f"{self.largest_misfit:.3g});",
+            f"Fitted to {self.source}: {count}, misfit {self.misfit:.3g} "
+            f"(largest {self.largest_misfit:.3g});",
             f"no series with non-negative arms has a misfit below {self.least_misfit:.3g}.",
             f"The data cover {low:.3g} to {high:.3g} Hz.",
         ]
