@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
     Conditions,
@@ -26,16 +27,28 @@ _SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
 """Functions that have all derivatives wherever their argument is real."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
+_WRITTEN = {
+    sp.tan: lambda u: sp.sin(u) / sp.cos(u),
+    sp.asinh: lambda u: sp.log(u + sp.sqrt(u**2 + 1)),
+    sp.acosh: lambda u: sp.log(u + sp.sqrt(u - 1) * sp.sqrt(u + 1)),
+    sp.atanh: lambda u: (sp.log(1 + u) - sp.log(1 - u)) / 2,
+    sp.re: lambda u: (u + sp.conjugate(u)) / 2,
+    sp.im: lambda u: (u - sp.conjugate(u)) / (2 * sp.I),
+}
+"""Functions by others; true of all complex numbers, of the inverse ones for principal values."""
 
 
 @lru_cache(maxsize=4096)
 def normalise(expr: sp.Expr) -> sp.Expr:
-    """Write tangents as quotients, minima by cases, and factor radicands.
+    """Write functions by others, minima by cases, and factor radicands.
 
     Factoring lets ``sqrt((1 - q**2)**2/(4*q**2) + 1)`` become ``(q**2 + 1)/(2*q)`` where the
     assumptions on the symbols allow it.
     """
-    expr = expr.replace(sp.tan, lambda angle: sp.sin(angle) / sp.cos(angle))
+    for kind, written in _WRITTEN.items():
+        expr = expr.replace(kind, written)
+    if expr.has(sp.conjugate):
+        expr = expr.replace(_is_square_of_size, lambda e: _size_squared(e) ** (e.exp / 2))
     if expr.has(sp.Max):
         expr = expr.replace(_is_of_two, _by_distance)
     expr = expr.replace(sp.Min, lambda *args: sp.Min(*args).rewrite(sp.Piecewise))
@@ -43,6 +56,53 @@ def normalise(expr: sp.Expr) -> sp.Expr:
         lambda e: e.is_Pow and e.exp.is_Rational and not e.exp.is_Integer,
         lambda e: sp.expand_power_base(sp.factor(sp.together(e.base)) ** e.exp),
     )
+
+
+def _is_square_of_size(expr: sp.Expr) -> bool:
+    return bool(expr.is_Pow and isinstance(expr.base, sp.Abs) and expr.exp.is_even)
+
+
+def _size_squared(power: sp.Pow) -> sp.Expr:
+    (number,) = power.base.args
+    return number * sp.conjugate(number)
+
+
+def in_one_angle(*expressions: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Write the sines and cosines of several expressions in those of one angle, sin**2 as 1 - cos**2.
+
+    As they are, if their angles are no small multiples of one.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> in_one_angle(1 + sp.cos(x), sp.cos(x / 2))
+    (2*cos(x/2)**2, cos(x/2))
+    """
+    waves = set().union(*(expr.atoms(sp.sin, sp.cos) for expr in expressions))
+    angles = sorted({wave.args[0] for wave in waves if wave.free_symbols}, key=str)
+    ratios = [sp.cancel(angle / angles[0]) for angle in angles]
+    if not angles or not all(ratio.is_Rational for ratio in ratios):
+        return expressions
+    part = sp.Rational(sp.igcd(0, *(r.p for r in ratios)), sp.ilcm(1, *(r.q for r in ratios)))
+    if max(abs(ratio / part) for ratio in ratios) > _MOST_TURNS:
+        return expressions
+    one, sine, cosine = sp.Dummy(real=True), sp.Dummy("sine"), sp.Dummy("cosine")
+    names = {sp.sin(one): sine, sp.cos(one): cosine}
+    many = dict(zip(angles, ratios, strict=True))
+    new = {w: sp.expand_trig(w.func(many[w.args[0]] / part * one)) for w in waves if w.free_symbols}
+    angle, found = angles[0] * part, []
+    for expr in expressions:
+        sides = sp.fraction(sp.together(expr.xreplace(new).xreplace(names)))
+        if not all(side.is_polynomial(sine, cosine) for side in sides):
+            return expressions
+        reduced = (sp.rem(side, sine**2 + cosine**2 - 1, sine) for side in map(sp.expand, sides))
+        top, bottom = (
+            each.xreplace({sine: sp.sin(angle), cosine: sp.cos(angle)}) for each in reduced
+        )
+        found.append(top / bottom if bottom != 0 else expr)
+    return tuple(found)
+
+
+_MOST_TURNS = 6
+"""Largest multiple of an angle whose sine is written in that of the angle."""
 
 
 def _is_of_two(expr: sp.Expr) -> bool:
@@ -71,7 +131,9 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    if vanishes(rest) or _is_no_angle(rest):
+    if vanishes(rest) or _is_no_angle(rest) or _is_no_logarithm(rest):
+        return sp.S.Zero
+    if rest.has(sp.sin, sp.cos) and vanishes(in_one_angle(rest)[0]):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
     if rest.has(sp.Integral):
@@ -85,6 +147,20 @@ def _is_no_angle(number: sp.Expr) -> bool:
         return False
     tangent = sp.expand_trig(sp.tan(number))
     return bool(tangent == 0 and abs(number.n(30)) < 1)
+
+
+def _is_no_logarithm(number: sp.Expr) -> bool:
+    """Tell whether a sum of logarithms of positive rational numbers is zero, by those of the primes."""
+    if number.free_symbols or not number.has(sp.log):
+        return False
+    logarithms = number.atoms(sp.log)
+    if not all(each.args[0].is_Rational and each.args[0].is_positive for each in logarithms):
+        return False
+    return bool(vanishes(sp.expand_log(number.replace(sp.log, _by_primes))))
+
+
+def _by_primes(number: sp.Rational) -> sp.Expr:
+    return sp.Add(*(power * sp.log(prime) for prime, power in sp.factorrat(number).items()))
 
 
 def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:
@@ -319,7 +395,14 @@ def next_order(
     up for its sign. The ratio must have a series in whole powers of the distance: then the power after
     the last one that is written bounds the rest.
     """
-    found = [_next_on(ratio, eps, variable, point, side) for side in sides(variable, point, known)]
+    approached = sides(variable, point, known)
+    try:
+        found = [_next_on(ratio, eps, variable, point, side) for side in approached]
+    except UndecidedError:
+        inner = _in_small(ratio, eps, variable, point, known)
+        if inner is None:
+            raise
+        found = [_next_on(*inner, 0, 1)]
     c, k, rest, _ = found[0]
     if not any(positive for *_, positive in found):
         raise UndecidedError(f"{eps} is not a small positive quantity")
@@ -327,6 +410,32 @@ def next_order(
         if difference(c, other[0]) != 0 or other[1] != k or not (k.is_Integer or other[3]):
             raise UndecidedError(f"{ratio} has another series on the other side of {point}")
     return c, k, rest
+
+
+def _in_small(
+    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
+) -> tuple[sp.Expr, sp.Expr, sp.Symbol] | None:
+    """Write a ratio that is a function of the small quantity alone in a variable of which that is a power.
+
+    The small quantity is a power of the variable, or an exponential: of unknown order, but known to fade.
+    """
+    ratio = ratio.rewrite(sp.exp) if ratio.has(HyperbolicFunction) else ratio
+    ratio, small = sp.powsimp(sp.expand(ratio), deep=True), sp.Dummy("small", positive=True)
+    if eps.is_Pow and eps.base == variable and variable.is_positive and point in (0, sp.oo):
+        fades = proves_positive(eps.exp if point == 0 else -eps.exp, known)
+        nodes = {node: node.exp for node in ratio.atoms(sp.Pow) if node.base == variable}
+        nodes[variable] = sp.S.One
+    elif isinstance(eps, sp.exp) and variable.is_positive and point == sp.oo:
+        rate, order = eps.exp.as_coeff_exponent(variable)
+        fades = not rate.has(variable) and proves_positive(-rate, known) and order.is_positive
+        nodes = {node: node.exp for node in ratio.atoms(sp.exp) if node.has(variable)}
+    else:
+        return None
+    powers = {node: sp.cancel(exponent / eps.exp) for node, exponent in nodes.items()}
+    whole = {node: power for node, power in powers.items() if power.is_Rational}
+    order = sp.ilcm(1, 1, *(power.q for power in whole.values()))
+    inner = ratio.xreplace({node: small ** (order * power) for node, power in whole.items()})
+    return (inner, small**order, small) if fades and not inner.has(variable) else None
 
 
 def _next_on(
@@ -377,6 +486,8 @@ def is_continuous(
     inside = known.with_interval(over)
     if expr.is_Pow:
         return _is_continuous_power(expr, over, known, smooth)
+    if isinstance(expr, (sp.tan, sp.atanh, sp.acosh)):
+        return is_continuous(_WRITTEN[expr.func](*expr.args), over, known, smooth=smooth)
     if isinstance(expr, (sp.log, sp.asin, sp.acos)):
         (argument,) = expr.args
         if isinstance(expr, sp.log):
@@ -436,20 +547,36 @@ def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
     if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.acos, sp.asinh, sp.log):
         return False
     (letter,) = expr.free_symbols
-    connected = letter.is_real and not (
-        letter.is_integer or (letter.is_nonzero and not letter.is_positive)
-    )
-    everywhere = letter, -sp.oo, sp.oo
-    if (
-        not connected
-        or known != Conditions()
-        or not is_continuous(expr, everywhere, known, smooth=True)
-    ):
+    place = _place(letter, known)
+    if place is None or not is_continuous(expr, (letter, -sp.oo, sp.oo), known, smooth=True):
         return False
     return (
         difference(expr.diff(letter), sp.S.Zero) == 0
-        and difference(expr.subs(letter, 1), sp.S.Zero) == 0
+        and difference(expr.subs(letter, place), sp.S.Zero) == 0
     )
+
+
+def _place(letter: sp.Symbol, known: Conditions) -> sp.Expr | None:
+    """Return a value of a letter inside the interval of all that it can be; None if that may be none."""
+    if not letter.is_real or letter.is_integer or (letter.is_nonzero and not letter.is_positive):
+        return None
+    low = [sp.S.Zero] if letter.is_nonnegative else []
+    high = [sp.S.Zero] if letter.is_nonpositive else []
+    for name, *ends in known.intervals:
+        if name == letter:
+            low, high = [*low, sp.sympify(ends[0])], [*high, sp.sympify(ends[1])]
+    for gap in known.positive:
+        slope = gap.diff(letter)
+        if slope.is_Rational and slope != 0:  # else it leaves the letter alone, or no interval
+            (low if slope > 0 else high).append(sp.expand(letter - gap / slope))
+        elif gap.has(letter):
+            return None
+    if not all(end.is_Rational or end.is_infinite for end in (*low, *high)):
+        return None
+    below, above = max(low, default=-sp.oo), min(high, default=sp.oo)
+    if below.is_infinite and above.is_infinite:
+        return sp.S.One
+    return _inside(below, above) if below < above else None
 
 
 def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:

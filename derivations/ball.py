@@ -6,6 +6,7 @@ that another radius across only scales y. ``theta`` is arctan(1/l), ``T`` and ``
 functions, by which every result is a sum without cancellation.
 """
 
+from collections.abc import Mapping
 from functools import partial
 
 import sympy as sp
@@ -15,7 +16,6 @@ from .step import Proof
 from .symbols import (
     aside,
     ball_angle,
-    ball_behind,
     ball_coefficient,
     ball_cross,
     ball_depth,
@@ -38,7 +38,6 @@ from .symbols import (
     ball_scaled_ss,
     ball_share,
     ball_slip,
-    ball_steep,
     ball_tail,
     kappa,
     l,
@@ -59,6 +58,7 @@ LOSS = (sp.Rational(2, 3) - l * T / 2) / (1 + l**2)
 LOAD = (PI + sp.Rational(16, 3) * l + T) / 4
 FRICTION = l * (PI + T) / 4
 COEFFICIENT = l * (PI + T) / (PI + sp.Rational(16, 3) * l + T)
+REST = sp.Rational(2, 15) - l**2 * (sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta)
 HIGH = 3 * PI / 16
 UNIT = (y, 0, 1)
 
@@ -68,7 +68,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 def derive() -> tuple[Derivation, ...]:
     """Prove F20 and what follows from it."""
     return (
-        *(_load(), _tail(), _loss(), _friction(), _energy(), _limits(), _high()),
+        *(_tail(), _load(), _loss(), _friction(), _energy(), _limits(), _high()),
         *(_balance(), _crossing(), _slip(), _unique(), *_errors()),
     )
 
@@ -77,10 +77,15 @@ def _angle(proof: Proof) -> None:
     proof.define(theta, ANGLE, r"half the angle of the contact as seen from $-l_{\mathrm{r}}$")
 
 
+def known(proof: Proof, at: Mapping[sp.Symbol, sp.Expr] | None = None) -> None:
+    """Recall the tail of the load, perhaps at another l."""
+    proof.define(theta, ANGLE.subs(at or {}), "half the angle of the contact, F20-tail")
+    proof.recall("F20-tail", T, TAIL, at=at)
+
+
 def _sums(proof: Proof) -> None:
     """State what every later theorem uses."""
-    _angle(proof)
-    proof.recall("F20-load", T, TAIL)
+    known(proof)
     proof.recall("F20-load", w, LOAD)
 
 
@@ -95,11 +100,10 @@ def _load() -> Derivation:
         + sp.Rational(3, 8) * (1 + l**2) ** 2 * sp.atan(y / EDGE)
         - l**3 * y
     )
-    closed = PI / 4 + l / 2 - l**3 / 2 + (1 + l**2) ** 2 * ANGLE / 2
-    proof.integral(w, strip, UNIT, primitive, "F21-load of each strip, both sides", value=closed)
-    _angle(proof)
-    proof.define(T, TAIL, "what vanishes at high velocity")
-    proof.equal(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
+    whole = sp.Integral(strip, UNIT)
+    known(proof)
+    proof.integral(whole, strip, UNIT, primitive, "F21-load of each strip, both sides", value=LOAD)
+    proof.define(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
     return proof.done(w, LOAD)
 
 
@@ -114,12 +118,12 @@ _STRIPS = (
 
 def _tail() -> Derivation:
     proof = _theorem("F20-tail", title="Ball: the closed form without cancellation", text=_POSITIVE)
+    _angle(proof)
     positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
     primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
-    closed = TAIL.subs(theta, ANGLE)
-    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=closed)
+    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=TAIL)
     proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
-    return proof.done(T, closed)
+    return proof.done(T, TAIL)
 
 
 _POSITIVE = (
@@ -134,12 +138,11 @@ def _loss() -> Derivation:
     )
     positive = y**2 * (1 - y**2) / (l**2 + y**2)
     primitive = -(y**3) / 3 + (1 + l**2) * y - l * (1 + l**2) * sp.atan(y / l)
-    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
+    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta
+    known(proof)
     proof.integral(D, positive, UNIT, primitive, "of a positive function", value=closed)
-    proof.define(T, TAIL.subs(theta, ANGLE), "F20-load")
     proof.equal(D, LOSS, "from the same tail")
-    proof.equal(sp.Derivative(TAIL.subs(theta, ANGLE), l), -8 * D, "so the tail falls",
-                left=r"\frac{d \tilde T}{d l}")  # fmt: skip
+    proof.equal(sp.Derivative(T, l), -8 * D, "so the tail falls")
     proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity", eps=1 / l)
     return proof.done(D, LOSS)
 
@@ -154,12 +157,12 @@ def _friction() -> Derivation:
     _sums(proof)
     depth = ball_depth
     proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
-    proof.define(
-        phi, l * (w - l * depth), r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
+    proof.define(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$")
+    proof.equal(
+        l * (w - l * depth), phi, r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
     )
-    proof.equal(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$")
-    proof.define(m, phi / w, r"$\mu R/a$")
-    proof.equal(m, COEFFICIENT, "friction coefficient")
+    proof.equal(phi / w, COEFFICIENT, "friction coefficient")
+    proof.define(m, COEFFICIENT, r"$\mu R/a$")
     return proof.done(m, COEFFICIENT)
 
 
@@ -176,18 +179,17 @@ _BALL = (
 def _energy() -> Derivation:
     proof = _theorem("F20-energy", title="Ball: energy dissipated inside the contact", text=_SHARE,
                      uses=("energy-any-shape", "F20-loss"))  # fmt: skip
-    left_behind = ball_behind
     primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
-    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
-    proof.integral(left_behind, (EDGE - l) ** 2, UNIT, primitive,
+    known(proof)
+    proof.recall("F20-loss", D, LOSS)
+    left_behind = (EDGE - l) ** 2
+    proof.integral(sp.Integral(left_behind, UNIT), left_behind, UNIT, primitive,
                    r"$u_{\mathrm{TE}}^2$ of each strip, in units of $(l_{\mathrm{r}} a/R)^2$",
-                   value=closed)  # fmt: skip
-    proof.define(D, closed, "F20-loss")
-    proof.equal(left_behind, D, "the same integral")
+                   value=D)  # fmt: skip
     proof.recall("F20", phi, FRICTION)
     share = 1 - 8 * l * D / (PI + T)
-    proof.define(ball_share, 1 - 2 * l**2 * D / phi, r"the rest of $F V$, which relaxes behind")
-    proof.equal(ball_share, share, "fraction inside")
+    proof.define(ball_share, share, "fraction inside")
+    proof.equal((1 - ball_share) * phi, 2 * l**2 * D, r"the rest of $F V$ relaxes behind")
     return proof.done(ball_share, share)
 
 
@@ -239,8 +241,7 @@ def _balance() -> Derivation:
     slope = 4 * s**2 * (PI * s**2 / 2 + s * lam + (s**2 + lam**2) * theta) / PI
     curve = 8 * s**2 * (PI * s**2 + 2 * s * lam + (2 * s**2 + lam**2) * theta) / PI
     proof.define(l, lam / s, r"$\lambda = V \tau/a_0$, $s = a/a_0$")
-    proof.define(theta, angle, "F20-load")
-    proof.define(T, tail, "F20-load")
+    known(proof, {l: lam / s})
     proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R_{\mathrm{y}}/R}$")
     proof.equal(ball_scaled, scaled, "a sum of positive terms")
     proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
@@ -251,9 +252,16 @@ def _balance() -> Derivation:
     of_slope = slope.subs(theta, angle)
     proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "once more",
                 left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
-    proof.define(D, LOSS.subs(l, lam / s), "F20-loss")
+    proof.recall("F20-loss", D, LOSS, at={l: lam / s})
     gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI
     proof.equal(ball_scaled_s - 3 * ball_scaled, gain, "more than the damper alone")
+    number = lam / s
+    less = 4 * s**3 * lam * (2 * number**2 / 3 + number * T / 2) / (1 + number**2) / PI
+    proof.equal(4 * ball_scaled - ball_scaled_s, less, "less than the spring alone")
+    for form in (gain, less):
+        proof.holds(form, ">", 0, "all terms are positive")
+    balance = ball_scaled + kappa * (s**2 - 1) - 1
+    proof.crossing(balance, (s, 0, sp.oo), "exactly once", slope=ball_scaled_s / s + 2 * kappa * s)
     return proof.done(ball_scaled, scaled)
 
 
@@ -287,9 +295,8 @@ def _slip() -> Derivation:
                      uses=("F20", "F20-loss"))  # fmt: skip
     tail = TAIL.subs(theta, ANGLE)
     load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
-    proof.define(theta, ANGLE, "F20-load")
-    proof.define(T, TAIL, "F20-load")
-    proof.define(D, LOSS, "F20-loss")
+    known(proof)
+    proof.recall("F20-loss", D, LOSS)
     proof.define(w, LOAD, "F20-load")
     proof.define(phi, FRICTION, "F20")
     gain = l * (sp.Rational(4, 3) - 2 * D)
@@ -298,10 +305,10 @@ def _slip() -> Derivation:
     proof.equal(l * sp.diff(friction, l), phi - 2 * l**2 * D, "and rubs more",
                 left=r"l \frac{d \tilde \varphi}{d l}")  # fmt: skip
     slip = (1 - 8 * l * D / (PI + T)) * w - sp.Rational(5, 4) * gain
-    proof.define(ball_slip, (phi - 2 * l**2 * D) * w / phi - sp.Rational(5, 4) * gain,
-                 r"$\tilde w \frac{d}{d \ln l} \ln (\tilde \varphi \tilde w^{-5/4})$, for $\mu = F/W$ "
-                 r"and $F \sim a^5 \tilde \varphi$")  # fmt: skip
-    proof.equal(ball_slip, slip, "has the sign of the slope of the friction coefficient")
+    proof.define(ball_slip, slip, "has the sign of the slope of the friction coefficient")
+    proof.equal(phi * slip, (phi - 2 * l**2 * D) * w - sp.Rational(5, 4) * gain * phi,
+                r"$\tilde \varphi \tilde w \frac{d}{d \ln l} \ln (\tilde \varphi \tilde w^{-5/4})$, for "
+                r"$\mu = F/W$ and $F \sim a^5 \tilde \varphi$")  # fmt: skip
     return proof.done(ball_slip, slip)
 
 
@@ -316,75 +323,86 @@ _PEAK = (
 def _unique() -> Derivation:
     proof = _theorem("F20-unique", title="Ball: one friction maximum", text=_UNIQUE,
                      uses=("F20-peak",))  # fmt: skip
-    arc = sp.atan(y / l)
+    arc, whole = sp.atan(y / l), 1 + l**2
     rest, kept, lost, g = ball_rest, ball_kept, ball_lost, ball_mean
-    square, bulge = y**2 * (1 - y**2), (1 + 3 * l**2) * ANGLE
-    fall = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
-    proof.integral(
-        rest, y**2 * square / (l**2 + y**2), UNIT,
-        y**3 / 3 - y**5 / 5 + l**2 * (y**3 / 3 - (1 + l**2) * y + l * (1 + l**2) * arc),
-        r"so that $l^2 \tilde D < \frac{2}{15}$", value=sp.Rational(2, 15) - l**2 * fall,
-    )  # fmt: skip
-    primitive = l**2 * (-y + (1 + 3 * l**2) * arc / (2 * l) - (1 + l**2) * y / (2 * (l**2 + y**2)))
-    proof.integral(
-        lost, l**2 * square / (l**2 + y**2) ** 2, UNIT, primitive,
-        r"less than $\tilde D$, for $l^2 < l^2 + \tilde \zeta^2$",
-        value=l * (bulge - 3 * l) / 2,
-    )  # fmt: skip
-    proof.equal(l * sp.Derivative(fall, l), -2 * lost, r"how $\tilde D$ falls")
-    proof.define(D, kept + lost, "what remains is positive as well")
-    proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$, whose slope is $- 2 \tilde D$")
+    square, wide = y**2 * (1 - y**2), l**2 + y**2
+    lose = y**3 / 3 - whole * y + l * whole * arc
+    forget = l * (-l * y + (1 + 3 * l**2) * arc / 2 - l * whole * y / (2 * wide))
+    known(proof)
+    proof.integral(rest, y**2 * square / wide, UNIT, y**3 / 3 - y**5 / 5 + l**2 * lose,
+                   r"$\frac{2}{15} - l^2 \tilde D$", value=REST)  # fmt: skip
+    for name, form, primitive, what in (
+        (lost, l**2 * square / wide**2, forget, r"$-\frac{l}{2}$ times the slope of $\tilde D$"),
+        (kept, y**2 * square / wide**2, -lose - forget, "what remains"),
+    ):
+        proof.integral(name, form, UNIT, primitive, what)
+    proof.recall("F20-loss", D, LOSS)
+    proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$")
     shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
     slip = (1 - 2 * l * D / g) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
-    proof.equal(slip / l, shape, r"$\tilde E/l$")
-    load, loss = (sp.Function(name, positive=True)(l) for name in "gD")
-    slopes = {sp.Derivative(load, l): -2 * D, sp.Derivative(loss, l): -2 * lost / l}
-    slope = sp.diff(shape.subs({g: load, D: loss}), l).subs(slopes).subs({load: g, loss: D})
-    steep = sp.expand(-(l**2) * g * slope)
+    proof.equal(slip / l, shape, r"$\tilde E/l$ of F20-peak")
     size = (
-        g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * (sp.Rational(2, 15) - l**2 * D)
+        g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * rest
         + l * g * (2 * D + lost) + sp.Rational(16, 3) * l**2 * (kept + l * D**2 / g)
     )  # fmt: skip
-    proof.define(ball_steep, steep, r"$- l^2 \tilde g$ times the slope of $\tilde E/l$")
-    proof.equal(ball_steep, size, "of which no term but one is negative, by the first line")
-    proof.holds(
-        g**2 - sp.Rational(16, 45), ">", 0, r"it is outweighed: $\frac{\pi^2}{16} > \frac{16}{45}$"
-    )
-    return proof.done(ball_steep, size)
+    fall = -(l**2) * g * sp.Derivative(shape, l)
+    proof.equal(fall, size, "how steeply it falls; no term but one is negative")
+    size = size.subs(g, (PI + T) / 4)
+    proof.holds(size, ">", 0, r"it is outweighed: $\frac{\pi^2}{16} > \frac{16}{45}$")
+    for place, sign in zip(PEAK, "><", strict=True):
+        proof.holds(sp.Subs(shape, l, place), sign, 0, "beside the root")
+    proof.crossing(shape, (l, 0, sp.oo), "exactly once", slope=-size / (l**2 * (PI + T) / 4))
+    return proof.done(shape, 0)
 
 
+PEAK = sp.Rational(1842344, 10**6), sp.Rational(1842346, 10**6)
+"""Between these l the friction coefficient of a dead weight is greatest."""
 _UNIQUE = (
-    r"With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from infinity "
-    r"to $- \frac{1}{3}$, it has one root: a ball under a dead weight has one friction maximum."
+    r"With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from "
+    r"infinity to $- \frac{1}{3}$, it has one root, $l = 1.842345$ within $10^{-6}$: a ball under a dead "
+    "weight has one friction maximum."
 )
 
 
 def _errors() -> tuple[Derivation, ...]:
+    """Prove the error of each asymptote, and that it grows with l or falls."""
     g, whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
-    rows: tuple[tuple[str, str, sp.Symbol, sp.Expr, sp.Expr, str], ...] = (
+    slower = 2 * (2 * l**2 / 3 + l * T / 2) / (1 + l**2)
+    """4/3 - 2 D, by which the load grows with l."""
+    rows: tuple[tuple[str, str, sp.Symbol, sp.Expr, sp.Expr, sp.Expr, str], ...] = (
         ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * g),
-         r"It grows with $l$, for $\tilde T$ falls"),
-        ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT,
-         HIGH / l - T / (PI + T),
-         r"It is positive and falls with $l$, for $\tilde T < \frac{16}{15 l}$ and $- \tilde T' = 8 \tilde D "
-         r"< \frac{16}{15 l^2}$, and $\frac{16}{15 \pi} < \frac{3 \pi}{16}$"),
+         sp.Rational(4, 3) * (g + 2 * l * D) / g**2, ">"),
+        ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT, HIGH / l - T / (PI + T),
+         (8 * PI * (sp.Rational(2, 15) - ball_rest) / (PI + T) ** 2 - HIGH) / l**2, "<"),
         ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
-         -(sp.Rational(16, 3) * l - (PI - T)) / whole, r"$\tilde w$ grows with $l$, so that it does, too"),
+         -(sp.Rational(16, 3) * l - (PI - T)) / whole, -8 * PI * slower / whole**2, "<"),
         ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
-         -(PI + T) / whole, r"It tends to zero, for $\tilde T$ falls"),
+         -(PI + T) / whole, (8 * D * whole + 4 * (PI + T) * slower) / whole**2, ">"),
         ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
-         PI / 2 * l / FRICTION, (PI - T) / (PI + T), r"It grows with $l$, for $\tilde T$ falls"),
+         PI / 2 * l / FRICTION, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
         ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
-         PI / 4 * l / FRICTION, -T / (PI + T), r"It tends to zero with $\tilde T$"),
+         PI / 4 * l / FRICTION, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
     )  # fmt: skip
     return tuple(_error(*row) for row in rows)
 
 
 def _error(
-    label: str, title: str, name: sp.Symbol, ratio: sp.Expr, error: sp.Expr, text: str
+    label: str,
+    title: str,
+    name: sp.Symbol,
+    ratio: sp.Expr,
+    error: sp.Expr,
+    slope: sp.Expr,
+    sign: str,
 ) -> Derivation:
     proof = _theorem(f"F20-error-{label}", title=f"Ball: relative error, {title}",
-                     text=f"{text}.", uses=("F20", "F20-loss"))  # fmt: skip
+                     text="It is monotonic in $l$.", uses=("F20",))  # fmt: skip
     proof.define(name, ratio - 1, "asymptote over the truth, less one")
     proof.equal(name, error, "without cancellation")
+    known(proof)
+    proof.recall("F20-loss", D, LOSS)
+    if slope.has(ball_rest):
+        proof.recall("F20-unique", ball_rest, REST)
+    proof.equal(sp.Derivative(error, l), slope, "its slope")
+    proof.holds(slope, sign, 0, "of one sign")
     return proof.done(name, error)

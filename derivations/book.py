@@ -3,9 +3,9 @@
 import re
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
+from sympy.printing.latex import LatexPrinter
 
 from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
 from .conditions import (
@@ -27,7 +28,7 @@ from .conditions import (
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
-from .premises import Fact, Premise, contradiction, merged, violates, weakest
+from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
 from .record import Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
 from .symbols import TEX, alpha
@@ -36,8 +37,27 @@ from .witness import has_witness
 _P = ParamSpec("_P")
 _Value = TypeVar("_Value")
 
-_finished: dict[str, "Book"] = {}
+
+@dataclass(frozen=True)
+class Finished:
+    """A derivation, and the equalities that later proofs may recall from it."""
+
+    derivation: Derivation
+    exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+
+
+_finished: dict[str, Finished] = {}
 """The finished proofs by label, for `Book.recall`."""
+
+
+def finished(labels: Iterable[str]) -> dict[str, Finished]:
+    """Return finished proofs by their labels."""
+    return {label: _finished[label] for label in labels}
+
+
+def restore(proofs: Mapping[str, Finished]) -> None:
+    """Let results be recalled that were proved before, from the same sources: see `store`."""
+    _finished.update(proofs)
 
 
 NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
@@ -123,13 +143,38 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
     return run
 
 
+_SHORT = 8
+"""The operations of a condition that is printed as it is; of a longer one, which letter is positive is."""
+
+_BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
+"""What has a variable of its own."""
+
 _ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
 """The checks that complex letters may enter."""
 
 
+class _Printer(LatexPrinter):
+    """SymPy's own, but for values at a place, whose brackets it leaves out."""
+
+    def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
+        inner = self._print(node.expr)
+        bracketed = any(part.is_Add for part in sp.Mul.make_args(node.expr))
+        bracketed = bracketed or node.expr.could_extract_minus_sign()
+        shown = rf"\left({inner}\right)" if bracketed else inner
+        pairs = zip(node.variables, node.point, strict=True)
+        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
+        return rf"\left. {shown} \right|_{{{places}}}"
+
+
 def tex(expr: sp.Expr) -> str:
-    """Print an expression in the notation of the paper."""
-    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
+    r"""Print an expression in the notation of the paper.
+
+    >>> x, y = sp.symbols("x y")
+    >>> tex(sp.Subs(x + y, x, 0))
+    '\\left. \\left(x + y\\right) \\right|_{x = 0}'
+    """
+    printer = _Printer({"symbol_names": TEX, "fold_frac_powers": True})
+    return str(printer.doprint(sp.sympify(expr)))
 
 
 def tex_interval(over: Interval) -> str:
@@ -137,16 +182,27 @@ def tex_interval(over: Interval) -> str:
 
     >>> x = sp.Symbol("x", real=True)
     >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
-    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\in \\mathbb{R}']
+    ['0 < x < 1', 'x > 0', 'x < 2', '-\\infty < x < \\infty']
     """
     variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
     if low == -sp.oo and high == sp.oo:
-        return rf"{variable} \in \mathbb{{R}}"
+        return rf"-\infty < {variable} < \infty"
     if high == sp.oo:
         return f"{variable} > {tex(low)}"
     if low == -sp.oo:
         return f"{variable} < {tex(high)}"
     return f"{tex(low)} < {variable} < {tex(high)}"
+
+
+def tex_within(over: Interval) -> str:
+    r"""Print that a variable lies in an open interval, in one formula without a chain.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> [tex_within((x, *ends)) for ends in ((0, 1), (0, sp.oo))]
+    ['x \\in (0, 1)', 'x \\in (0, \\infty)']
+    """
+    variable, low, high = (tex(sp.sympify(each)) for each in over)
+    return rf"{variable} \in ({low}, {high})"
 
 
 def tex_condition(gap: sp.Expr) -> str:
@@ -186,7 +242,7 @@ def tex_case(case: sp.Basic) -> str:
 
 def established(label: str, lhs: sp.Expr) -> sp.Expr:
     """Return the last form of `lhs` that the derivation with this label has established exactly."""
-    forms = [right for left, right in _source(label)._exact if left == lhs]
+    forms = [right for left, right in _source(label).exact if left == lhs]
     if not forms:
         raise StepError(f"{label} does not establish {lhs}")
     return forms[-1]
@@ -199,7 +255,7 @@ def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
     return Table(heads, tuple(tuple(told(cell, new) for cell in row) for row in table.rows))
 
 
-def _source(label: str) -> "Book":
+def _source(label: str) -> Finished:
     if label not in _finished:
         raise StepError(f"{label} has not been derived yet")
     return _finished[label]
@@ -244,7 +300,6 @@ class Book:
         """The rules that any step has used."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._steps: list[Step] = []
-        self._result: Derivation | None = None
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
@@ -300,7 +355,7 @@ class Book:
         Its premises and its domain come with it. With `at` it is used at one place: variables on
         which no premise depends get these values.
         """
-        fact = _source(label)._exact.get((sp.sympify(lhs), sp.sympify(rhs)))
+        fact = _source(label).exact.get((sp.sympify(lhs), sp.sympify(rhs)))
         if fact is None:
             raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
         step = fact.step
@@ -339,15 +394,23 @@ class Book:
             premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
         )
         before = _finished.get(self.label)
-        if before is self or (before is not None and before._result != found):
+        if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        self._result = found
-        _finished[self.label] = self
+        _finished[self.label] = Finished(found, dict(self._exact))
         return found
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
-        return Claim(check, sp.sympify(lhs), sp.sympify(rhs), arguments, rules)
+        known = self._conditions
+        return Claim(
+            check,
+            sp.sympify(lhs),
+            sp.sympify(rhs),
+            arguments,
+            rules,
+            known.positive,
+            known.intervals,
+        )
 
     def _stated(self) -> tuple[Step, ...]:
         """Return the steps without the premises that no check has used."""
@@ -375,13 +438,17 @@ class Book:
 
     def _lettered(self, step: Step) -> Step:
         """Return the step in the letters that this document prints; a recalled one in its source's."""
-        origin = _finished.get(step.source, self)
-        new, own = letters(origin.label, origin._section), letters(self.label, self._section)
+        own = letters(self.label, self._section)
+        new = own
+        if step.source:
+            origin = _finished[step.source].derivation
+            new = letters(origin.label, origin.section)
         return replace(
             step,
             left=printed(step.left, new),
             right=printed(step.right, new),
             domain=printed(step.domain, new),
+            note=told(step.note, new),
             reason=told(step.reason, own),
         )
 
@@ -406,10 +473,10 @@ class Book:
         return self.done(*key)
 
     def _status(self) -> str:
-        """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
-        used = (_finished[label]._status() for label in self._uses if label in _finished)
-        sampled = ["sampled" for status in used if status == "sampled"]
-        return weakest([*(step.status for step in self._steps), *sampled])
+        """Return the weakest status of the steps; what rests on a proof without proof is no better."""
+        used = (_finished[label].derivation.status for label in self._uses)
+        weak = [status for status in used if status in ("sampled", "argued")]
+        return weakest([*(step.status for step in self._steps), *weak])
 
     def _meant(self, argument: object, *, complex_too: bool = False) -> None:
         """Refuse what is no exact real value, and letters bound to places where they cannot be."""
@@ -531,11 +598,16 @@ class Book:
         roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
         gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
         if name.is_nonnegative or name.is_nonpositive:
-            signed = value if name.is_nonnegative else -value
-            strict = name.is_nonzero or not proves_nonnegative(signed, self._conditions)
-            gaps += open_factors(signed, self._conditions) if strict else []
+            forms = [
+                each if name.is_nonnegative else -each
+                for each in (sp.sympify(self._rules[name]), value)
+            ]
+            proves = proves_positive if name.is_nonzero else proves_nonnegative
+            if not any(proves(form, self._conditions) for form in forms):
+                gaps += open_factors(forms[1], self._conditions)
         for gap in gaps:
-            self._demand(gap, tex_condition(gap))
+            short = gap.count_ops() <= _SHORT or not name.is_Symbol
+            self._demand(gap, tex_condition(gap) if short else f"{tex(name)} > 0")
 
     def _demand(self, gap: sp.Expr, latex: str) -> None:
         """Let an expression be positive from here on."""
@@ -617,15 +689,55 @@ class Book:
 
     def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
         """Replace all that was defined or recalled, and carry out the derivatives."""
+        rules, places = self._rules, dict[sp.Expr, tuple[sp.Expr, sp.Expr]]()
         try:
-            found, used, derived = resolve(expr, self._rules, self._hidden())
+            found, used, derived = resolve(expr, rules, self._hidden())
+            while new := self._laws(found, rules):
+                places |= new
+                rules = {**rules, **{call: value for call, (_, value) in new.items()}}
+                found, used, derived = resolve(expr, rules, self._hidden())
         except HiddenError as error:
             raise StepError(f"{self.label}: {error}") from error
+        used = frozenset(places[each][0] if each in places else each for each in used)
         for each in derived:
             if not is_differentiable(each, self._conditions):
                 raise StepError(f"{self.label}: {each} is not known to exist everywhere")
         self._used |= used
         return found
+
+    def _laws(
+        self, expr: sp.Expr, rules: Mapping[sp.Expr, sp.Expr]
+    ) -> dict[sp.Expr, tuple[sp.Expr, sp.Expr]]:
+        """Return, for functions at other places than where their law was written, the law and the value.
+
+        A law is for all values of its letters: none of them has a value or a condition, and each can be
+        what stands at its place.
+        """
+        found = {}
+        laws = {
+            lhs.func: lhs for lhs, rhs in self._rules.items()
+            if isinstance(lhs, AppliedUndef) and is_general(lhs, rhs) and not rhs.has(*_BINDING)
+            and not any(self._is_bounded(letter) for letter in lhs.args)
+        }  # fmt: skip
+        bound = set().union(*(each.variables for each in expr.atoms(*_BINDING))) if laws else set()
+        for call in expr.atoms(AppliedUndef) if laws else ():
+            law = laws.get(call.func)
+            if law is None or call in rules or call.free_symbols & bound:
+                continue
+            places = dict(zip(law.args, call.args, strict=True))
+            if not any(self._open_admissions(*each) for each in places.items()):
+                found[call] = law, self._rules[law].subs(places, simultaneous=True)
+        return found
+
+    def _is_bounded(self, letter: sp.Symbol) -> bool:
+        """Tell whether a letter has a value or a condition here."""
+        conditions = (
+            *self._conditions.positive,
+            *(name for name, *_ in self._conditions.intervals),
+        )
+        premises = (side for fact in self._origins.values() for each in fact.premises
+                    if not isinstance(each.lhs, AppliedUndef) for side in (each.lhs, each.rhs))  # fmt: skip
+        return letter in self._rules or any(each.has(letter) for each in (*conditions, *premises))
 
     def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
@@ -658,7 +770,7 @@ class Book:
 
     def _means(self, known: Meaning, meaning: Meaning) -> bool:
         """Tell whether a name of the notation is what the symbol or function of that name is here."""
-        if known is meaning or getattr(known, "func", None) is meaning:
+        if known == meaning or getattr(known, "func", None) == meaning:
             return True
         if isinstance(meaning, sp.Lambda):
             given = known.args if isinstance(known, AppliedUndef) else meaning.variables
@@ -729,6 +841,7 @@ class Book:
         cases: tuple[Relational, ...] = (),
         trusted: bool = False,
         bound: bool = False,
+        note: str = "",
     ) -> Fact:
         """Keep a step; an exact one is an equality that later proofs may use as a rule.
 
@@ -751,7 +864,7 @@ class Book:
         domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)
-        step = Step(left, relation, right, reason, worth, domain=", ".join(own), claim=claim)
+        step = Step(left, relation, right, reason, worth, "", ", ".join(own), note, claim)
         fact = Fact(step, premises, conditions, domain)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
@@ -769,7 +882,7 @@ class Book:
         self._used = set()
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)
-        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim)
+        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
         placed = Fact(step, fact.premises, fact.conditions, fact.domain)

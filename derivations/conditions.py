@@ -97,7 +97,13 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     if expr.is_positive or expr.is_negative:
         return 1 if expr.is_positive else -1
     sign = 0
-    if expr.is_Mul:
+    if isinstance(expr, (sp.sin, sp.cos)):
+        sign = _sign_of_wave(expr, known)
+    elif isinstance(expr, (sp.Min, sp.Max)):
+        sign = _sign_of_extreme(expr, known)
+    elif expr.is_Add and known.positive:
+        sign = _outweighs(expr, known) - _outweighs(-expr, known)
+    elif expr.is_Mul:
         sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
     elif expr.is_Pow and expr.exp.is_Integer:
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
@@ -117,9 +123,27 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
             _by_ends(one, known, proves_positive)
             or _is_definite(one, known, strict=True)
             or _by_slope(one)
+            or _by_coefficients(one)
         ):
             return side
+    return _by_scale(expr)
+
+
+def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
+    """Decide the sign of a sine in (-pi, pi) and of a cosine in (-pi/2, pi/2)."""
+    (angle,) = expr.args
+    right = sp.pi / 2 if isinstance(expr, sp.cos) else sp.S.Zero
+    for side in (1, -1) if right == 0 else (1,):
+        phase = side * angle + right
+        if proves_positive(phase, known) and proves_positive(sp.pi - phase, known):
+            return side
     return 0
+
+
+def _sign_of_extreme(expr: sp.Expr, known: Conditions) -> int:
+    signs = [_sign(arg, known) for arg in expr.args]
+    decides = 1 if isinstance(expr, sp.Max) else -1
+    return decides if decides in signs else signs[0] if len(set(signs)) == 1 else 0
 
 
 def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> bool:
@@ -159,9 +183,16 @@ def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
     """
     from .algebra import is_continuous
 
+    exponents = {node.exp for node in expr.atoms(sp.exp)}
+    if len(expr.free_symbols) == 2 and len(exponents) == 1:  # it may depend on a product alone
+        (product,) = exponents
+        one = sp.Dummy(positive=True)
+        expr = expr.subs(product, one) if product.is_positive else expr
     if len(expr.free_symbols) != 1 or not left or expr.count_ops() > _LONGEST:
         return False
     (letter,) = expr.free_symbols
+    if letter.is_positive and expr.has(sp.atan) and _by_arc(expr, letter):
+        return True
     kinds = (sp.exp, sp.log, sp.sin, sp.cos, sp.atan)
     if not (letter.is_positive and expr.has(*kinds)) or letter.is_integer:
         return False
@@ -169,11 +200,54 @@ def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
     if slope == 0 or not is_continuous(expr, (letter, 0, sp.oo), NONE, smooth=True):
         return False
     start = expr.subs(letter, 0)
-    if start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1)):
-        return True
-    if not expr.has(sp.atan) or not (slope.is_nonpositive or _never_below(-slope, left - 1)):
+    return bool(
+        start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1))
+    ) or bool(
+        expr.has(sp.atan)
+        and (slope.is_nonpositive or _never_below(-slope, left - 1))
+        and sp.limit(expr, letter, sp.oo).is_nonnegative
+    )
+
+
+def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
+    """Decide a rational function and an arc tangent times a polynomial: over that, the slope is rational."""
+    arcs = sorted(expr.atoms(sp.atan), key=str)
+    if len(arcs) != 1 or expr.atoms(sp.Function) - {*arcs}:
         return False
-    return bool(sp.limit(expr, letter, sp.oo).is_nonnegative)
+    name = sp.Dummy()
+    constant, varying = sp.expand(expr).as_independent(letter, as_Add=True)
+    dropped = constant if constant.is_positive and not constant.is_Rational else 0
+    share = sp.Poly((varying + constant - dropped).xreplace({arcs[0]: name}), name)
+    size = next((each for each in (share.LC(), -share.LC()) if each.is_positive), None)
+    if share.degree() != 1 or size is None:
+        return False
+    whole = share.LC() / size * arcs[0] + sp.cancel(share.coeff_monomial(1) / size)
+    slope = sp.factor(sp.together(sp.diff(whole, letter)))
+    if not slope.is_rational_function(letter) or slope.is_number:
+        return False
+    end = {1: sp.S.Zero, -1: sp.oo}.get(_sign_by_roots(slope, NONE))
+    return end is not None and bool(sp.limit(whole, letter, end).is_nonnegative)
+
+
+def _by_scale(expr: sp.Expr) -> int:
+    """Decide what two positive letters enter by their ratio alone, but for a factor."""
+    letters = sorted(expr.free_symbols, key=str)
+    if len(letters) != 2 or not expr.has(sp.atan) or not all(each.is_positive for each in letters):
+        return 0
+    one, other = letters
+    scaled = sp.factor(sp.expand(expr.subs(one, one * other)))
+    scale, rest = scaled.as_independent(one, as_Add=False)
+    return _known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
+
+
+def _by_coefficients(expr: sp.Expr) -> bool:
+    """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
+    for letter in sorted(expr.free_symbols, key=str):
+        if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
+            found = sp.Poly(sp.expand(expr), letter).coeffs()
+            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found):
+                return True
+    return False
 
 
 def _never_below(slope: sp.Expr, left: int) -> bool:
@@ -318,20 +392,25 @@ def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
     sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
     if sign or not expanded.is_Add:
         return sign
-    if _outweighs(expanded):
+    if _outweighs(expanded, NONE):
         return 1
-    if _outweighs(-expanded):
+    if _outweighs(-expanded, NONE):
         return -1
     univariate = len(expanded.free_symbols) == 1 and expanded.is_polynomial()
     return _sign_by_roots(expanded, NONE) if univariate else 0
 
 
-def _outweighs(total: sp.Expr) -> bool:
+@lru_cache(maxsize=4096)
+def _outweighs(total: sp.Expr, known: Conditions) -> bool:
     """Tell whether each negative term of a sum has a positive one of its own that is larger.
 
-    Roots are compared by their squares, exponentials by their exponents.
+    Roots are compared by their squares, exponentials by their exponents; a root with all other terms too.
     """
     terms = sp.Add.make_args(sp.expand(total))
+    for root in (term for term in terms if term.is_Pow and term.is_positive and term.is_real):
+        rest = sp.expand(sum(terms) - root)
+        if rest.is_real and sp.expand(root**2 - rest**2).is_positive:
+            return True
     plus = [term for term in terms if term.is_positive]
     minus = [-term for term in terms if term.is_negative]
     if len(plus) + len(minus) < len(terms) or not minus:
@@ -340,13 +419,22 @@ def _outweighs(total: sp.Expr) -> bool:
         for large in plus:
             by_square = sp.expand(large**2 - small**2)
             by_exponent = sp.expand(sp.expand_log(sp.log(large) - sp.log(small)))
-            if by_square.is_positive or by_exponent.is_positive:
+            if by_square.is_positive or by_exponent.is_positive or _is_share(small / large, known):
                 plus.remove(large)
                 break
         else:
             rest = sp.expand(sum(plus) ** 2 - sum(minus) ** 2)
             return len(minus) == 1 and bool(rest.is_positive)
     return True
+
+
+def _is_share(ratio: sp.Expr, known: Conditions) -> bool:
+    """Tell whether a product is less than 1: of powers of letters of which the conditions say so."""
+    bound, powers = ratio.as_coeff_Mul()
+    factors = [factor.as_base_exp() for factor in sp.Mul.make_args(sp.powsimp(powers))]
+    below = all(base.is_positive and 1 - base in known.positive and exponent.is_positive
+                for base, exponent in factors)  # fmt: skip
+    return bool(known.positive and powers != 1 and 0 < bound <= 1 and below)
 
 
 def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
@@ -413,7 +501,9 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
         return []
     if len(unknown) != 1 or unknown[0].is_Pow:
         return [] if proves_positive(expr, known) else [expr]
-    return [sp.expand(sign * unknown[0])]
+    gap = sp.expand(sign * unknown[0])
+    base, exponent = sp.powsimp(1 - gap).as_base_exp()
+    return [1 - base if base.is_positive and exponent.is_positive and base.is_Symbol else gap]
 
 
 def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
@@ -431,6 +521,16 @@ def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
             nonnegative.add(node.args[0])
         elif isinstance(node, (sp.asin, sp.acos)):
             nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.acosh):
+            nonnegative.add(node.args[0] - 1)
+        elif isinstance(node, sp.atanh):
+            nonzero.add(1 - node.args[0] ** 2)
+            nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.gamma):  # more than it needs: the poles are at 0, -1, -2 and so on
+            nonzero.add(node.args[0])
+            nonnegative.add(node.args[0])
+        elif isinstance(node, (sp.coth, sp.csch)):
+            nonzero.add(node.args[0])
         elif isinstance(node, (sp.tan, sp.sec)):
             nonzero.add(sp.cos(node.args[0]))
         elif isinstance(node, (sp.cot, sp.csc)):

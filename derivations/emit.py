@@ -131,7 +131,7 @@ FORMS += (
 
 BALL = (l, sym.ball_tail)
 FORMS += (
-    Form("ball_tail", "F20-load", sym.ball_tail, (l, sym.ball_angle), "T from theta = arctan(1/l)"),
+    Form("ball_tail", "F20-tail", sym.ball_tail, (l, sym.ball_angle), "T from theta = arctan(1/l)"),
     Form("ball_load_factor", "F20-load", sym.ball_load, BALL, "W/(K delta a^2) of a ball"),
     Form("ball_friction_force_factor", "F20", sym.ball_friction, BALL, "F R/(K delta a^3)"),
     Form("ball_friction_coefficient_factor", "F20", sym.ball_coefficient, BALL, "mu R/a of a ball"),

@@ -1,21 +1,66 @@
 """Guards of a step: no interval for a fixed variable, no value outside its range, no zero divisor."""
 
+from typing import Unpack
+
 import sympy as sp
 
-from .algebra import normalise
-from .book import Book, StepError
+from .algebra import UndecidedError, in_one_angle, is_continuous, leading_term, normalise
+from .book import Book, Shown, StepError, asked
 from .conditions import (
+    Conditions,
     Interval,
     demands,
     fails_inside,
     proves_nonnegative,
     proves_nonzero,
+    proves_positive,
 )
 from .premises import fixed_value, violates
 
 
 class Guarded(Book):
     """A book that refuses variables, intervals and equalities which cannot be meant."""
+
+    @asked
+    def crossing(
+        self,
+        expr: sp.Expr,
+        over: Interval,
+        reason: str,
+        *,
+        slope: sp.Expr | None = None,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that a smooth expression vanishes exactly once in the interval: it rises or falls through 0.
+
+        `slope` is a form of its derivative with a sign that can be seen. The signs at the ends are those of
+        the leading terms there.
+        """
+        claim = f"{expr} = 0 once inside {over}"
+        self._interval(over)
+        whole = self._resolve_free(expr, over[0])
+        derivative = sp.Derivative(expr, over[0])
+        steep = derivative if slope is None else slope
+        found = self._resolve(steep)
+        if slope is not None:
+            self._vanish(self._resolve(derivative), found, f"{derivative} = {slope}")
+        inside = self._conditions.with_interval(over)
+        forms = (steep, found) if slope is not None else (found,)
+        signs = (sign for form in forms for sign in (1, -1) if proves_positive(sign * form, inside))
+        rises = next(signs, 0)
+        names = [name for name in sp.sympify(expr).free_symbols if name in self._rules]
+        calls = {each: sp.Function(each.name, **each.assumptions0)(over[0]) for each in names}
+        parts = (expr.subs(calls), *map(self._resolve, names))
+        if not rises or not all(_is_smooth_inside(part, over, self._conditions) for part in parts):
+            raise StepError(f"{self.label}: {claim}: slope {found}")
+        try:
+            ends = [sign * rises * _value_near(whole, over[0], sp.sympify(end), sign)
+                    for sign, end in ((-1, over[1]), (1, over[2]))]  # fmt: skip
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: {claim}: {error}") from error
+        if not all(proves_positive(end, self._conditions) for end in ends):
+            raise StepError(f"{self.label}: {claim}: the signs at the ends are not those of {ends}")
+        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
 
     def _free(self, variable: sp.Expr) -> None:
         """Refuse a variable that has been given a value: it cannot sweep over an interval."""
@@ -74,8 +119,13 @@ class Guarded(Book):
 
     def _undefined(self, raw: sp.Expr, resolved: sp.Expr) -> set[sp.Expr]:
         """Return what stands under a fraction bar in one form or the other."""
-        found = {self._resolve(base) for base in demands(raw)[0]} | demands(resolved)[0]
-        return {base for base in found if not base.is_nonzero}
+        named = {base: self._resolve(base) for base in demands(raw)[0]}
+        settled = {form for base, form in named.items() if proves_nonzero(base, self._conditions)}
+        return {
+            base
+            for base in {*named.values(), *demands(resolved)[0]} - settled
+            if not base.is_nonzero
+        }
 
     def _equally_defined(
         self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: str
@@ -85,7 +135,7 @@ class Guarded(Book):
             (0, proves_nonzero, "may vanish"),
             (1, proves_nonnegative, "may be negative"),
         ):
-            sides = []
+            sides: list[list[sp.Expr]] = []
             for raw, resolved in (left, right):
                 named = {base: self._resolve(base) for base in demands(sp.sympify(raw))[kind]}
                 settled = {
@@ -95,18 +145,44 @@ class Guarded(Book):
                 open_ones = {
                     base for base in map(normalise, bases) if not proves(base, self._conditions)
                 }
-                sides.append(open_ones if kind else set().union(*map(_parts, open_ones)))
-            for base in sides[0] ^ sides[1]:
+                sides.append(sorted(open_ones, key=str))
+            written = iter(in_one_angle(*sides[0], *sides[1]))
+            one, other = ({base for _, base in zip(each, written, strict=False)} for each in sides)
+            if kind == 0:
+                one, other = (set().union(*map(_parts, each)) for each in (one, other))
+            for base in one ^ other:
                 if not proves(base, self._conditions):
                     raise StepError(
                         f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
                     )
 
 
+def _is_smooth_inside(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
+    """Tell whether the expression is smooth in the interval without its ends."""
+    low, high, step = sp.sympify(over[1]), sp.sympify(over[2]), sp.Dummy(positive=True)
+    if low.is_finite and high.is_finite:
+        place = (low + high * step) / (1 + step)
+    elif low.is_finite or high.is_finite:
+        place = low + step if low.is_finite else high - step
+    else:
+        step = place = sp.Dummy(real=True)
+    return is_continuous(expr.subs(over[0], place), (step, -sp.oo, sp.oo), known, smooth=True)
+
+
+def _value_near(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr, sign: int) -> sp.Expr:
+    """Return what has the sign of the expression close to an end: its value or leading coefficient."""
+    value = expr.subs(variable, end) if end.is_finite else sp.nan
+    if value.is_finite and value.is_nonzero:
+        return value
+    return leading_term(expr, variable, end, side=-1 if end == sp.oo else -sign)[0]
+
+
 def _parts(base: sp.Expr) -> set[sp.Expr]:
     """Return the factors of an expression that may vanish."""
     found = set()
-    for part in sp.fraction(sp.together(base)):
+    for part in map(sp.powsimp, sp.fraction(sp.together(base))):
+        if not part.free_symbols:
+            continue
         _, factors = sp.factor_list(part)
         found |= {factor for factor, _ in factors if not factor.is_nonzero}
     return found

@@ -13,7 +13,7 @@ from functools import cache
 
 from .atoms import replaced
 
-_CIRCLE = {r"\varepsilon": r"\gamma", r"\xi": r"\hat x"}
+_CIRCLE = {r"\varepsilon": r"\gamma", r"\xi": r"\hat x", "t": r"\hat t"}
 _LIFTED = {"s": r"\hat a", "f": r"\hat f", "r": r"\hat r"}
 _STEP = {"h": r"\Delta s"}
 _PASSED = {r"\sigma": r"\bar\sigma", r"\eta": r"\bar\eta", "m": r"\bar m"}
@@ -36,7 +36,11 @@ BY_SECTION: dict[str, dict[str, str]] = {
     },
     "Any linear viscoelastic foundation": {
         "G_v": r"\breve G", **{f"G_{{v{n}}}": rf"\breve G_{n}" for n in (1, 2, 3, 4)},
-        "H_v": r"\breve H",
+        "H_v": r"\breve H", "H_w": r"\breve H_1", "C_v": r"\breve C", "k_v": r"\breve k", "n_v": r"\breve n",
+    },
+    "Rubber in transient sliding": {
+        r"\xi": r"\tilde \xi", "Y": r"X_{\mathrm{s}}", "v": r"V_{\mathrm{s}}",
+        "x_{LE}": r"x_{\mathrm{LE}}", "x_{TE}": r"x_{\mathrm{TE}}",
     },
     "True circle": _CIRCLE,
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
@@ -56,6 +60,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
 """By section: the letter as it is written, and as it is printed."""
 
 BY_LABEL: dict[str, dict[str, str]] = {
+    "F25": {"G": r"G_{\mathrm{r}}", "x_u": r"\breve u'"},
     "eq26": {"s": r"\bar s"},
     "one-contact": {"y": r"x_{\mathrm{b}}"},
     "F2": {letter: rf"\hat {letter}" for letter in "XYT"},

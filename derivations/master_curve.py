@@ -7,7 +7,8 @@ from functools import partial
 
 import sympy as sp
 
-from .record import Derivation
+from .book import established
+from .record import Derivation, Table
 from .step import Proof
 from .symbols import (
     C,
@@ -19,6 +20,7 @@ from .symbols import (
     R,
     T,
     V,
+    V_max,
     W,
     X,
     Y,
@@ -29,6 +31,7 @@ from .symbols import (
     l_r,
     m,
     mu,
+    mu_max,
     mu_peak,
     q,
     tau,
@@ -44,8 +47,15 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F2 to F5."""
-    return _master_curve(), _peak(), _peak_values(), *_series(), _intersections()
+    """Prove F2 to F5, and F26."""
+    return _master_curve(), _peak(), _peak_values(), _bell(), *_series(), _intersections()
+
+
+def state_at(cubed: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Return the polynomial of F2 with a number for the cube of the scaled velocity, and its root q."""
+    polynomial = sp.numer(sp.together(cubed - established("F2", X)))
+    (state,) = (root for root in sp.Poly(polynomial, q).real_roots() if 0 < root < 1)
+    return polynomial, state
 
 
 def _master_curve() -> Derivation:
@@ -60,6 +70,7 @@ def _master_curve() -> Derivation:
     )
     quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
     relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
+    proof.crossing(DRIVE_CUBED - X, UNIT, "one state for each velocity: this falls with $q$")
     proof.recall("scaling", l, NUMBER, RATIO)
     proof.recall("F1", w, LOAD)
     proof.recall("F1", m, FRICTION_COEFFICIENT)
@@ -69,7 +80,6 @@ def _master_curve() -> Derivation:
     proof.recall("eq28", delta, a**2 / (2 * R))
     proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
     proof.equal(X, DRIVE_CUBED, "scaled velocity")
-    proof.sign(sp.Derivative(DRIVE_CUBED, q), "<", 0, UNIT, "strictly decreasing")
     proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
     proof.leading_order(X, sp.Rational(3, 2) * (1 - q) ** 3, q, 1, "it comes to rest", eps=1 - q)
     proof.equal(quartic, sp.S.Zero, "the quartic")
@@ -114,6 +124,34 @@ def _peak_values() -> Derivation:
     proof.define(mu_peak, m * Lambda_peak / l, r"$\mu (K R^2/W)^{1/3}$")
     proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
     return proof.done(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third))
+
+
+def _bell() -> Derivation:
+    proof = _theorem("F26", title="Stiffness and retardation time from the friction maximum", text=_BELL,
+                     uses=("F3-values", "eq42"))  # fmt: skip
+    third = sp.cbrt(3 - sp.sqrt(3))
+    height, place = 3 * (sp.sqrt(3) - 1) / (4 * third), sp.sqrt(3) / third
+    proof.notation |= {r"\hat\mu_{\max}": height, r"\Lambda_{\max}": place}
+    stiffness, time = (height / mu_max) ** 3 * W / R**2, place * sp.cbrt(R * W / K) / V_max
+    known = r"$\mu_{\max} (K R^2/W)^{1/3}$ is known"
+    proof.root(mu_max * sp.cbrt(K * R**2 / W) - height, K, stiffness, known,
+               right=r"\left(\frac{\hat\mu_{\max}}{\mu_{\max}}\right)^3 \frac{W}{R^2}")  # fmt: skip
+    proof.root(V_max * tau * sp.cbrt(K / (R * W)) - place, tau, time, r"$V_{\max} \tau (K/(R W))^{1/3}$, too",
+               right=r"\frac{\Lambda_{\max}}{V_{\max}} \left(\frac{R W}{K}\right)^{1/3}")  # fmt: skip
+    numbers = {
+        r"\hat \mu_{\max}": height,
+        r"\hat \mu_{\max}^3": height**3,
+        r"\Lambda_{\max}": place,
+    }
+    rows = tuple((f"${name}$", str(sp.N(value, 9))) for name, value in numbers.items())
+    return proof.done(tau, time, table=Table(("Number", "Value"), rows))
+
+
+_BELL = (
+    r"The maximum of $\mu(V)$ of a dead weight, of the height $\mu_{\max}$ at the velocity $V_{\max}$, "
+    r"gives both constants of a Kelvin-Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, "
+    "on every linear foundation (F18-low)."
+)
 
 
 def _series() -> tuple[Derivation, ...]:

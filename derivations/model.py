@@ -59,7 +59,7 @@ def _surface() -> list[Derivation]:
     moving = _equation("eq2", 2, title="Surface of the movable indenter")
     moving.define(z(x), h(x) - delta_t, "the depth varies", right=r"h(x) - \delta(t)")
     shape = _equation("eq3", 3, title="Shape of the indenter")
-    shape.define(h(x), x**2 / (2 * R), "a cylinder of radius $R$ near its lowest line", left="h(x)")
+    shape.define(h(x), x**2 / (2 * R), "a cylinder of radius $R$, small slopes", left="h(x)")
     return [
         fixed.done(z(x), h(x) - delta),
         moving.done(z(x), h(x) - delta_t),
@@ -98,7 +98,7 @@ def _forces() -> list[Derivation]:
     force_tex = rf"k u_i + c {_RATE}"
     vertical = _equation("eq8", 8, title="Vertical balance of an element")
     vertical.define(
-        force, f_n * sp.cos(theta), "the tip of the element has no mass", left=force_tex
+        force, f_n * sp.cos(theta), "no mass at its tip, no force from neighbours", left=force_tex
     )
     across = _equation("eq9", 9, title="Horizontal balance of an element")
     across.define(f_c, f_n * sp.sin(theta), "the tip of the element has no mass")

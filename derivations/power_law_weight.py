@@ -260,9 +260,7 @@ def _maximum() -> Derivation:
     )
     proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
     proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
-    proof.equal(form.subs({q: 0, Q: 0, z: 1}), -excess / n**2, "negative in the fast limit",
-                )  # fmt: skip
-    proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest")
+    proof.crossing(of_q, (q, 0, 1), r"from $-\nu/n^2$ in the fast limit to 2 at rest", slope=slope)
     return proof.done(slip_scaled, T_n)
 
 

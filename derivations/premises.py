@@ -63,7 +63,7 @@ def contradiction(premises: tuple[Premise, ...]) -> str:
         if isinstance(call, AppliedUndef):
             by_function.setdefault(call.func, []).append(law)
     for function, group in by_function.items():
-        whole = [law for law in group if law.lhs.func == function and _is_general(law)]
+        whole = [law for law in group if law.lhs.func == function and is_general(law.lhs, law.rhs)]
         slopes = [law for law in group if isinstance(law.lhs, sp.Derivative)]
         values = [law for law in group if law.lhs.func == function and not law.lhs.free_symbols]
         pairs = [(one, other) for one in whole for other in group if one is not other]
@@ -82,18 +82,17 @@ def contradiction(premises: tuple[Premise, ...]) -> str:
     return ""
 
 
-def _is_general(law: Premise) -> bool:
+def is_general(call: sp.Expr, value: sp.Expr) -> bool:
     """Tell whether a function is given as an expression in its argument; else it is related at a place."""
-    return all(arg.is_Symbol and law.rhs.has(arg) for arg in law.lhs.args) and not law.rhs.atoms(
-        AppliedUndef
-    )
+    alone = all(arg.is_Symbol and value.has(arg) for arg in call.args)
+    return alone and not value.atoms(AppliedUndef)
 
 
 def _follows(law: Premise, other: Premise) -> bool:
     """Tell whether another premise about a function is what its law says; or is about a place."""
     value = sp.Lambda(law.lhs.args, law.rhs)
     place = other.lhs if other.lhs.func == law.lhs.func else None
-    if place is not None and place.free_symbols and not _is_general(other):
+    if place is not None and place.free_symbols and not is_general(other.lhs, other.rhs):
         return True
     sides = (side.replace(law.lhs.func, value).doit() for side in (other.lhs, other.rhs))
     return difference(*sides) == 0

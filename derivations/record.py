@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
+STATUSES = ("definition", "proved", "proved-leading-order", "sampled", "argued")
 """The status of an equality, strongest first."""
 
 
@@ -29,6 +29,10 @@ class Claim:
     """The input of the check, by name, except words and LaTeX."""
     rules: Mapping[sp.Expr, sp.Expr]
     """The rules in force when the check was made."""
+    positive: tuple[sp.Expr, ...] = ()
+    """Expressions that are positive under the conditions then in force."""
+    intervals: tuple[tuple[sp.Symbol, sp.Expr, sp.Expr], ...] = ()
+    """Intervals of variables under the conditions then in force."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,8 @@ class Step:
     """Label of the derivation that a recalled step comes from."""
     domain: str = ""
     """The values of its variable for which a sign or a root was proved, in LaTeX."""
+    note: str = ""
+    """What was checked besides the formula, in words: of which equation it is the only root, and where."""
     claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property

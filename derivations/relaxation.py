@@ -10,7 +10,7 @@ from functools import partial
 import sympy as sp
 
 from .record import Derivation
-from .step import Proof
+from .step import Proof, tex
 from .symbols import (
     K,
     R,
@@ -47,7 +47,7 @@ from .symbols import (
     spring_share,
     x_te,
 )  # fmt: skip
-from .viscoelastic import MOMENTS, SECTION, UNIT
+from .viscoelastic import MOMENTS, SECTION, UNIT, B, D, E, P, Q
 
 y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length
 G, (G_1, G_2, G_3, G_4) = memory, repeated
@@ -66,16 +66,16 @@ def derive() -> tuple[Derivation, ...]:
     )
 
 
-def _by_parts(proof: Proof, count: int) -> None:
+def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
     """Name repeated integrals of the relaxation function over the distance back."""
     for integral, part in zip(repeated[:count], (G, *repeated)[:count], strict=True):
-        proof.define(sp.Derivative(integral(y), y), part(y), "a repeated integral")
+        proof.define(sp.Derivative(integral(place), place), part(place), "a repeated integral")
         proof.define(integral(0), sp.S.Zero, "from the leading edge on")
 
 
 def _pressure() -> Derivation:
     proof = _theorem("F17-any", title="Any relaxation function: the pressure", text=_PRESSURE)
-    _by_parts(proof, 2)
+    name_integrals(proof, 2)
     rate = (a - X + y) / R
     value = PRESSURE(X)
     whole = sp.Integral(G(y) * rate, (y, 0, X))
@@ -95,7 +95,7 @@ _PRESSURE = (
 def _concave() -> Derivation:
     proof = _theorem("F17-concave", title="Any relaxation function: one trailing edge",
                      text=_CONCAVE, uses=("F17-any",))  # fmt: skip
-    _by_parts(proof, 2)
+    name_integrals(proof, 2)
     first = (a * G(y) - G_1(y)) / R
     proof.equal(sp.Derivative(PRESSURE(y), y), first, "slope of the pressure")
     proof.define(sp.Derivative(G(y), y), -fading(y), "G does not increase")
@@ -116,7 +116,7 @@ _CONCAVE = (
 def _forces() -> Derivation:
     proof = _theorem("F17-forces", title="Any relaxation function: load and friction force",
                      text=_FORCES, uses=("F17-any",))  # fmt: skip
-    _by_parts(proof, 4)
+    name_integrals(proof, 4)
     over = (y, 0, c)
     load = sp.Integral(PRESSURE(y), over)
     primitive = (a * G_2(y) - G_3(y)) / R
@@ -139,7 +139,7 @@ _FORCES = (
 def _moments() -> Derivation:
     proof = _theorem("F17-parts", title="Any relaxation function: the moments by parts", text=_PARTS,
                      uses=("F17-forces", "F17-load", "F17"))  # fmt: skip
-    _by_parts(proof, 4)
+    name_integrals(proof, 4)
     parts = (G_1(y), G_2(y), G_3(y), G_4(y))
     for name in (moment_ahead, moment_bulge, moment_twist):
         weight = sp.expand(MOMENTS[name][0].subs(w, y / c)) / c
@@ -168,27 +168,23 @@ _PARTS = (
 def _positive() -> Derivation:
     proof = _theorem("F17-sign", title="Any relaxation function: friction is positive", text=_SIGN,
                      uses=("F17-parts",))  # fmt: skip
-    falls = sp.Derivative(G(w), w)
-    for weight, bulge, what in (
-        ((1 - 2 * w) / 2, w * (1 - w) / 2,
-         r"of $\breve B$: it is $-\int \breve G' \breve w (1 - \breve w)/2$"),
-        (MOMENTS[moment_twist][0], w * (1 - w) ** 2 * (2 + w) / 24,
-         r"of $\breve E$: it is $-\int \breve G' \breve w (1 - \breve w)^2 (2 + \breve w)/24$"),
-    ):  # fmt: skip
-        whole = sp.Integral(weight * G(w) + bulge * falls, UNIT)
-        proof.integral(
-            whole, weight * G(w) + bulge * falls, UNIT, bulge * G(w), what, value=sp.S.Zero
-        )
-        proof.sign(bulge, ">", 0, UNIT, "and this is positive in the contact")
-    return proof.done(whole, sp.S.Zero)
+    proof.define(sp.Derivative(G(w), w), -fading(w), "the relaxation function does not rise")
+    for name in (P, Q, D, B, E):
+        weight = (1 - 2 * w) / 2 if name == B else MOMENTS[name][0]
+        gained = sp.factor(sp.integrate(sp.expand(weight), w))
+        inside, end = weight * G(w) - gained * fading(w), gained.subs(w, 1) * G(1)
+        proof.integral(sp.Integral(inside, UNIT), inside, UNIT, gained * G(w), rf"${tex(name)}$ by parts",
+                       value=end)  # fmt: skip
+        proof.holds(sp.Integral(gained * fading(w), UNIT), ">=", 0, "not negative in the contact")
+    return proof.done(sp.Integral(inside, UNIT), end)
 
 
 _SIGN = (
-    r"Integrals by parts over the contact. Where $G$ does not rise, $\breve B$ and $\breve E$ are "
-    r"therefore not negative, and $F = (\breve c^4/R^2)(\breve E + \breve \eta^2 \breve P)$ with $\breve "
-    r"\eta = \breve B/\breve A$ is positive unless $G$ is constant: convexity of $G$ is not needed. "
-    r"Not checked by machine: that integrals of non-negative functions are not negative, and that a "
-    r"springpot, infinite at $\breve w = 0$, gives no boundary term there, because $\breve w\, G$ vanishes."
+    r"Each moment is a multiple of $\breve G$ at the trailing edge and an integral of its fall $\breve "
+    r"H$, both with factors that are not negative. Where $G$ does not rise, $F = (\breve c^4/R^2)(\breve "
+    r"E + \breve \eta^2 \breve P)$ with $\breve \eta = \breve B/\breve A$ is therefore positive unless "
+    r"$G$ is constant: convexity of $G$ is not needed. A springpot, infinite at $\breve w = 0$, gives no "
+    r"boundary term there, because $\breve w\, G$ vanishes."
 )
 
 

@@ -1,5 +1,6 @@
 """Whether a value is the only root of an expression within the domain of the variable."""
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -7,6 +8,7 @@ import sympy as sp
 
 from .algebra import UndecidedError, difference, is_continuous, normalise, roots_between
 from .conditions import (
+    NONE,
     Conditions,
     Interval,
     proves_nonnegative,
@@ -80,6 +82,7 @@ def only_root(
     bottom = denominator.subs(x, value)
     if not proves_nonzero(bottom, known) and difference(bottom, sp.S.Zero) == 0:
         raise UndecidedError(f"{expr} is not defined there")
+    numerator = _without_bars(numerator, x)
     numerator, x, value, domain = _without_roots(sp.expand(numerator), x, value, domain)
     if not numerator.is_polynomial(x) and _by_monotony(numerator, x, value, domain, known):
         return
@@ -105,11 +108,52 @@ def _by_monotony(
     for factor in sp.Mul.make_args(sp.factor(expr).subs(x, there)):
         if not factor.has(there) or proves_nonzero(factor, known):
             continue
+        if isinstance(factor, (sp.sin, sp.cos)):
+            if _zeros_of_wave(factor, there, domain) not in ({value}, set()):
+                return False
+            continue
         rising = proves_nonzero(sp.diff(factor, there), known.with_interval(over))
         at_root = difference(factor.subs(there, value), sp.S.Zero) == 0
         if not (rising and at_root and is_continuous(factor, over, known)):
             return False
     return True
+
+
+def _without_bars(expr: sp.Expr, x: sp.Symbol) -> sp.Expr:
+    """Multiply what the expression is for each choice of signs of its absolute values.
+
+    The product has all its roots.
+    """
+    sizes = sorted((size for size in expr.atoms(sp.Abs) if size.has(x)), key=str)
+    if len(sizes) > _MOST_BARS or any(size.args[0].has(sp.Abs) for size in sizes):
+        return expr
+    for size in sizes:
+        expr = sp.Mul(*(expr.xreplace({size: sign * size.args[0]}) for sign in (1, -1)))
+    return expr
+
+
+_MOST_BARS = 2
+
+
+def _zeros_of_wave(wave: sp.Expr, x: sp.Symbol, domain: Domain) -> set[sp.Expr] | None:
+    """Return the zeros of a sine or cosine in a bounded domain, if its angle is affine; None if not."""
+    slope, start = wave.args[0].diff(x), wave.args[0].subs(x, 0)
+    numbers = slope, start, domain.low, domain.high
+    if (
+        not all(each.is_number and each.is_finite and each.is_real for each in numbers)
+        or slope == 0
+    ):
+        return None
+    first = sp.Rational(1, 2) if isinstance(wave, sp.cos) else sp.S.Zero
+    turns = sorted(float(wave.args[0].subs(x, end) / sp.pi) for end in (domain.low, domain.high))
+    if turns[1] - turns[0] > _MOST_ZEROS:
+        return None
+    counts = range(math.floor(turns[0]) - 1, math.ceil(turns[1]) + 2)
+    places = [((first + count) * sp.pi - start) / slope for count in counts]
+    return {place for place in places if not domain.excludes(place, NONE)}
+
+
+_MOST_ZEROS = 100
 
 
 def _without_roots(

@@ -21,9 +21,11 @@ from .symbols import (
     activation,
     age,
     arm_number,
+    behind,
     contact_length,
     delta,
     delta_swing,
+    edge_distance,
     excess_share,
     fading_depth,
     fading_drag,
@@ -32,6 +34,8 @@ from .symbols import (
     k_x,
     kernels,
     kernels_still,
+    memory_cold,
+    memory_warm,
     normal_per_depth,
     normal_per_drag,
     place,
@@ -42,10 +46,10 @@ from .symbols import (
     shifted_number,
     small,
     springpot,
+    stiffer,
+    strained,
     swing_rate,
     t,
-    tau,
-    tau_warm,
     temperature,
     time_back,
     total_normal_per_depth,
@@ -276,21 +280,25 @@ _VOIGT = (
 
 
 def _temperature() -> Derivation:
-    proof = _theorem("F25", title="Temperature is velocity", text=_SHIFT,
-                     uses=("F17-pressure", "F17-load", "F17"))  # fmt: skip
-    proof.define(tau_warm, shift_factor * tau, "all times are shifted alike")
-    number = c / (V * tau_warm)
-    proof.equal(number, c / ((V * shift_factor) * tau),
-                r"$\breve z$ of an arm is that at the velocity $V a_T$")  # fmt: skip
-    return proof.done(number, c / ((V * shift_factor) * tau))
+    proof = _theorem("F25", title="Temperature is velocity", text=_SHIFT)
+    y, X = edge_distance, behind
+    over, rate = (y, 0, X), strained(y)
+    proof.define(memory_warm((X - y) / V), stiffer * memory_cold((X - y) / (V * shift_factor)),
+                 r"$G_T(t) = b_T G(t/a_T)$: all times and all moduli are shifted alike")  # fmt: skip
+    warm = sp.Integral(memory_warm((X - y) / V) * rate, over)
+    cold = stiffer * sp.Integral(memory_cold((X - y) / (V * shift_factor)) * rate, over)
+    proof.equal(warm, cold, r"the pressure at $V$ is $b_T$ times that at the velocity $V a_T$")
+    return proof.done(warm, cold)
 
 
 _SHIFT = (
-    "The whole steady state follows from the relaxation at a distance behind the leading edge: for an arm "
-    r"from $\breve z$, for a springpot or a dashpot from $V \tau/\breve c$. If temperature multiplies all "
-    "times by $a_T$ and leaves the moduli, then steady sliding at the velocity $V$ is that at the "
-    "reference temperature and the velocity $V a_T$, for every shape and support. Moduli that change by a "
-    "factor change $K$ and $W$ by it."
+    r"The pressure at the distance $\breve X$ behind the leading edge is $\int G_T\, \mathrm{d}u$, for "
+    r"every shape and every relaxation function; $x_u(\breve y)$ is the slope of the compression, that of "
+    "the indenter, or behind the contact of the free surface, where it makes the pressure 0. If "
+    "temperature multiplies all times by $a_T$ and leaves the moduli, $b_T = 1$, then the steady state "
+    "at the velocity $V$ is that at the reference temperature and the velocity $V a_T$, for every shape "
+    "and support. Moduli that change by the factor $b_T$ change the forces by it at the same contact: "
+    "that is the steady state of the load $W/b_T$."
 )
 
 

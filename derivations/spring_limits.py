@@ -6,6 +6,7 @@ from functools import partial
 import sympy as sp
 
 from . import tables
+from .master_curve import state_at
 from .record import Derivation, Table
 from .spring_drive import LONGITUDINAL, QUARTIC, SECTION
 from .spring_stability import DEAD_WEIGHT_RISE, HURWITZ, PEELED, RISE, SQUARE, lay_down
@@ -47,7 +48,7 @@ from .symbols import (
     tau,
     uncoupled,
 )
-from .theorems import LOAD, UNIT, A
+from .theorems import LOAD, UNIT
 from .transient_rates import QUADRATIC, steady_sliding
 
 _theorem = partial(Proof, equation=None, section=SECTION)
@@ -71,8 +72,11 @@ def _flutter() -> Derivation:
     other = uncoupled / more
     form = (S_z - rise) ** 2 * (T_z - T_flutter) * (T_z - other)
     proof.equal(SQUARE, form, r"negative between the two: no frequency is real")
-    proof.define(onset_sum, bias - 2 * T_z * rise)
     product = 2 * uncoupled * sp.sqrt(S_z * rise)
+    apart = 2 * product / (S_z - rise) ** 2
+    proof.equal(T_flutter - other, apart, "the one is larger than the other")
+    proof.holds(apart, ">", 0, "all terms are positive")
+    proof.define(onset_sum, bias - 2 * T_z * rise)
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
                 r"$\check n > 0$ at the lower and below: no positive $\Omega$ either",
                 left=r"\left. \check n \right|_{\vartheta_z = \check h/(\sqrt{\varrho_z} "
@@ -173,11 +177,8 @@ def _standard() -> Derivation:
     for speed in VELOCITIES:
         at = {**tables.STANDARD, V: sp.Rational(speed, 1000)}
         cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(at)
-        quartic = sp.numer(
-            sp.together(sp.expand(2 * cubed * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)))
-        )
+        quartic, state = state_at(cubed)
         proof.unique_root(quartic, UNIT, f"F2 with the numbers of Table 1 at {speed} mm/s")
-        (state,) = (root for root in sp.Poly(quartic, q).real_roots() if 0 < root < 1)
         rows.append((str(speed), *_onset_at(sp.N(state, 40), at)))
     heads = ("$V$ [mm/s]", "$q$", r"$\check e$", "Critical stiffness [MN/m²]", "Frequency [Hz]")
     return proof.done(quartic, 0, table=Table(heads, tuple(rows)))

@@ -20,6 +20,7 @@ from .symbols import (
     T_z,
     a,
     bias,
+    constant,
     coupling,
     damper,
     damper_share,
@@ -30,6 +31,7 @@ from .symbols import (
     kappa_x,
     l,
     lag_plus,
+    linear,
     onset_square,
     onset_sum,
     own_rise,
@@ -71,7 +73,36 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove when steady sliding is stable."""
-    return _numbers(), _routh(), _onset(), _critical(), _forms()
+    return _quadratics(), _numbers(), _routh(), _onset(), _critical(), _forms()
+
+
+def _quadratics() -> Derivation:
+    proof = _theorem("hurwitz", title="Rates of a quartic: the condition of Routh and Hurwitz",
+                     text=_LEMMA)  # fmt: skip
+    (b_1, b_2), (c_1, c_2) = linear, constant
+    product = (sigma**2 + b_1 * sigma + c_1) * (sigma**2 + b_2 * sigma + c_2)
+    a_3, a_2, a_1, a_0 = b_1 + b_2, c_1 + c_2 + b_1 * b_2, b_1 * c_2 + b_2 * c_1, c_1 * c_2
+    proof.equal(product, sigma**4 + a_3 * sigma**3 + a_2 * sigma**2 + a_1 * sigma + a_0,
+                "two quadratic factors, real")  # fmt: skip
+    proof.equal(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0, b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3),
+                "the determinant of Hurwitz")  # fmt: skip
+    proof.where(sp.Gt(a_0, 0))
+    for total, parts, what in (
+        (c_1 + c_2, c_1**2 + a_0, "two numbers with positive sum and product are positive"),
+        (a_1, b_2 * c_1**2 + b_1 * a_0, "as they are if another sum is, with positive weights"),
+    ):
+        proof.equal(c_1 * total, parts, what)
+        proof.holds(parts, ">", 0, "so the first has the sign of the sum")
+    return proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0,
+                      b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))  # fmt: skip
+
+
+_LEMMA = (
+    "Every real quartic has two real quadratic factors, whose roots have negative real parts if and only "
+    "if their coefficients are positive; then those of the quartic and the determinant are positive. "
+    r"Conversely, where these are, $\check b_1 \check b_2$ and $\check b_1 + \check b_2$ are positive, "
+    r"and so both; and by the constant and the linear coefficient $\check c_1$ and $\check c_2$."
+)
 
 
 def _numbers() -> Derivation:
@@ -118,7 +149,7 @@ def lay_down(proof: Proof) -> None:
 
 def _routh() -> Derivation:
     proof = _theorem(
-        "F22-routh", title="Condition of stability", text=_ROUTH, uses=("F22-numbers",)
+        "F22-routh", title="Condition of stability", text=_ROUTH, uses=("F22-numbers", "hurwitz")
     )
     lay_down(proof)
     series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
@@ -185,6 +216,12 @@ def _critical() -> Derivation:
         proof.equal(ONSET.subs(Omega, each), sp.S.Zero, "a root of the quadratic of F22-onset")
     proof.equal(Omega_plus * Omega_minus, S_z * rise / T_z**2, "their product")
     high, low = ((T_z + T_x) * each - rise for each in (Omega_plus, Omega_minus))
+    between = (T_z + T_x) * spread / T_z**2
+    proof.equal(high - low, between, r"the stiffness at $\Omega_{+}$ is the larger")
+    proof.holds(between, ">", 0, "all terms are positive")
+    proof.holds(
+        S_z * rise / T_z**2, "<", 0, r"$\Omega_{-}$ does not exist", cases=(sp.Lt(rise, 0),)
+    )
     proof.define(hurwitz, HURWITZ)
     proof.equal(hurwitz, T_z**2 * (S_x - high) * (S_x - low), "F22-onset gives both roots")
     return proof.done(hurwitz, T_z**2 * (S_x - high) * (S_x - low))
@@ -211,7 +248,8 @@ def _forms() -> Derivation:
     proof.equal(
         lag_plus, 2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread), "likewise"
     )
-    proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega,
+    proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega, "positive")
+    proof.holds(uncoupled * Omega / lag_plus, ">", 0,
                 r"so $\check p_{+} < \check g \varrho_{\mathrm{c}} < \varrho_{\mathrm{c}}$")  # fmt: skip
     proof.define(S_x, (T_z + T_x) * Omega - rise)
     proof.equal(S_x, AT_ONSET, "the critical stiffness")

@@ -29,7 +29,7 @@ from .algebra import (
     sign_between,
     value_at,
 )
-from .book import Shown, StepError, asked, tex
+from .book import Shown, StepError, asked, tex, tex_interval, tex_within
 from .conditions import (
     Interval,
     demands,
@@ -137,7 +137,11 @@ class Proof(Guarded):
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
-        self._imply(lhs)
+        inside = self._conditions.with_interval((variable, low, high))
+        ordered = proves_positive(high - low, self._conditions)
+        sure = lhs.is_nonnegative and not lhs.is_integer
+        if not (sure and ordered and proves_positive(inner, inside)):
+            self._imply(lhs)
         self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
@@ -167,6 +171,7 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {value} depends on {variable} itself")
         whole = self._resolve_free(expr, variable)
         claim = f"root {variable} = {value} of {expr}"
+        where = tex_interval(over) if over else _reach(variable)
         if over is not None:
             self._interval(over, symbolic=True)
             over = (over[0], *(self._resolve(end) for end in over[1:]))
@@ -189,8 +194,9 @@ class Proof(Guarded):
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
         # The variable of a root with a name of its own is bound: its interval restricts nothing else.
+        note = rf"the only root of ${tex(sp.sympify(expr))} = 0$ for ${where}$"
         fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise,
-                            bound=called != variable)  # fmt: skip
+                            bound=called != variable, note=note)  # fmt: skip
         if called != variable:
             self._rule(called, value)
             self._origins[called] = fact
@@ -215,7 +221,10 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
         if odd != 1 or poles:
             raise StepError(f"{self.label}: {expr} does not change its sign at its root in {over}")
-        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
+        self._displayed(sp.sympify(expr), sp.S.Zero, shown)
+        given: Shown = {**shown, "right": rf"0 \quad\text{{for exactly one }} {tex_within(over)}"}
+        self._record(expr, "=", sp.S.Zero, reason, "proved", given, exact=False, over=over, trusted=True,
+                     note="where it changes its sign")  # fmt: skip
 
     @asked
     def sign(
@@ -411,15 +420,15 @@ class Proof(Guarded):
                     f"{self.label}: {claim}: {base} may vanish, and with it the leading term"
                 )
         self._displayed(expr, leading, shown)
+        self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
-        self._record(
-            expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
-        )
+        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True,
+                     note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
         return c, k
 
     @asked
@@ -437,6 +446,21 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
+    @asked
+    def argued(
+        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
+    ) -> None:
+        """Keep a relation for which only words speak; its result is "argued", and no proof can recall it."""
+        left, right = self._resolve(lhs), self._resolve(rhs)
+        if relation == "=" and (found := refutation(left, right, self._conditions.positive)):
+            raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
+        if relation in _RELATIONS and proves_positive(
+            (right - left) * (1 if ">" in relation else -1), self._conditions
+        ):
+            raise StepError(f"{self.label}: {lhs} {relation} {rhs} is wrong")
+        sign = _RELATIONS.get(relation, relation)
+        self._record(lhs, sign, rhs, reason, "argued", shown, exact=False)
+
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
         if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
@@ -448,6 +472,14 @@ class Proof(Guarded):
         )
         for one, other in pairs:
             self._vanish(self._resolve(one), self._resolve(other), f"{defined} = {evaluated}")
+
+
+def _reach(variable: sp.Expr) -> str:
+    """Print the values that a variable can have by its assumptions."""
+    domain = domain_of(variable, None)
+    if domain.low_included or domain.high_included:
+        return f"{tex(variable)} {_RELATIONS['>=' if domain.low_included else '<=']} 0"
+    return tex_interval((variable, domain.low, domain.high))
 
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:

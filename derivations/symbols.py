@@ -58,6 +58,7 @@ the ratio of the friction coefficient to its low-velocity asymptote."""
 mu_peak, Lambda_peak, Lambda_fixed, Lambda_weight = _positive(
     "mu_peak Lambda_peak Lambda_fixed Lambda_weight"
 )
+mu_max, V_max = _positive("mu_max V_max")
 
 # The balance of forces of a movable indenter, scaled by the static state.
 s, lam, r = _positive("s lambda r")
@@ -157,6 +158,11 @@ spare_1, spare_2, spare_3 = sp.symbols("omega_v1 omega_v2 omega_v3", nonnegative
 delay, spring_number = _positive("epsilon_v kappa_v")
 lack_mean, lack_ahead, lack_twist = sp.symbols("alpha_vA alpha_vP alpha_vE", nonnegative=True)
 haste, steepness, load_number, friction_number = _positive("omega_v chi_v Lambda_v m_v")
+slowing, other_fading, weight_at, part_at = (
+    sp.Function(name, nonnegative=True) for name in ("C_v", "H_w", "k_v", "n_v")
+)
+"""How fast the fall slows; that of another series, any weight, and where between two bounds it is."""
+relative = sp.Symbol("rho_v", positive=True)
 pressed, shift, slope_free, felt = sp.symbols("g_v h_v s_vf J_v", real=True)
 other_trailing = sp.Symbol("v_v", positive=True)
 
@@ -193,27 +199,41 @@ total_normal_per_depth = sp.Symbol("F_zd", positive=True)
 total_rubbing_per_depth, total_normal_per_drag, total_rubbing_per_drag = sp.symbols(
     "F_xd F_zX F_xX", real=True
 )
-shift_factor, tau_warm, temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = _positive(
-    "a_T tau_T T T_r C_1 C_2 E_A R_g"
+shift_factor, stiffer, temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = _positive(
+    "a_T b_T T T_r C_1 C_2 E_A R_g"
 )
+memory_warm, memory_cold, strained = (sp.Function(name, real=True) for name in ("G_T", "G", "x_u"))
 
 # A ball: place of a strip over its half width, arctan(1/l), and what its strips sum up to.
-aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _positive(
-    "y_b theta_b w_b phi_b m_b eta_b"
+aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_edges = _positive(
+    "y_b theta_b w_b phi_b m_b P_b"
 )
-ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
+ball_tail, ball_loss, ball_depth = _positive("T_b D_b I_b")
 ball_rest, ball_kept, ball_lost, ball_mean = _positive("K_b M_b N_b g_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
     "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
 )
 ball_friction_low, ball_friction_high = sp.symbols("e_b_F_low e_b_F_high", real=True)
-ball_edges, ball_cubes = _positive("P_b Q_b")
-ball_slip, ball_steep = sp.symbols("E_b S_b", real=True)
+ball_share, ball_cubes = sp.symbols("eta_b Q_b", real=True)
+ball_slip = sp.Symbol("E_b", real=True)
 ball_cross, ball_lam_cross = _positive("l_b lambda_b")
 
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
+
+# The transient on a Prony series (F23): what an arm remembers, its moments over the contact, free rates.
+K_i, tau_i, E_i = _positive("K_i tau_i E_i")
+t_1, t_in = sp.symbols("t_1 t_in", real=True)
+alpha_i, beta_i, stress_i = (sp.Function(name, real=True) for name in ("alpha_i", "beta_i", "s_i"))
+v_t, Y_t = (sp.Function(name, real=True)(t) for name in "vY")
+le_t, te_t = sp.Function("x_LE", negative=True), sp.Function("x_TE", real=True)
+S_i, T_i = (sp.Function(name, real=True)(t) for name in ("S_i", "T_i"))
+I_n = sp.symbols("I_0:3", real=True)
+linear, constant = _positive("b_h1:3"), sp.symbols("c_h1:3", real=True)
+"""Coefficients of two quadratic factors (hurwitz)."""
+glassy, *rates = _positive("K_g r_1 r_2")
+fading_rate = sp.Symbol("rho_r", real=True)
 
 TEX = {
     sp.Symbol("x_-", real=True): "x_{-}",
@@ -233,6 +253,8 @@ TEX = {
     F_elastic: r"F_{\mathrm{e}}",
     F_viscous: r"F_{\mathrm{v}}",
     mu_peak: r"\hat\mu_{\max}",
+    mu_max: r"\mu_{\max}",
+    V_max: r"V_{\max}",
     Lambda_peak: r"\Lambda_{\max}",
     Lambda_fixed: r"\Lambda^{*}_{\mathrm{FI}}",
     Lambda_weight: r"\Lambda^{*}_{\mathrm{MI}}",
@@ -351,6 +373,7 @@ TEX = {
     lack_twist: r"\breve \alpha_E",
     pressed: r"\breve g",
     felt: r"\breve J",
+    relative: r"\breve \rho",
     shift: r"\breve h",
     slope_free: r"\breve \chi_0",
     other_trailing: r"\breve v",
@@ -359,6 +382,11 @@ TEX = {
     friction_number: r"\breve m",
     steepness: r"\breve \chi",
     rate_number: r"\tilde \sigma",
+    t_in: r"t_{\mathrm{in}}",
+    fading_rate: r"\tilde \varrho",
+    **{symbol: rf"\check c_{n}" for n, symbol in enumerate(constant, 1)},
+    **{symbol: rf"\check b_{n}" for n, symbol in enumerate(linear, 1)},
+    glassy: r"K_{\mathrm{g}}",
     shifted_number: r"\tilde z",
     age: r"\tilde v",
     swing_rate: r"\tilde s",
@@ -425,10 +453,8 @@ TEX = {
     ball_depth: r"\tilde I",
     ball_rest: r"\tilde K",
     ball_mean: r"\tilde g",
-    ball_steep: r"\tilde S",
     ball_kept: r"\tilde M",
     ball_lost: r"\tilde N",
-    ball_behind: r"\tilde J",
     ball_edges: r"\tilde P",
     ball_cubes: r"\tilde Q",
     ball_angle: r"\tilde \theta",

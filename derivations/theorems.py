@@ -197,13 +197,14 @@ def _balance() -> Derivation:
         "balance",
         title="Balance of forces of a movable indenter",
         text=r"On a spring of support number $\kappa$ (none for a dead weight, $\kappa \to \infty$ for a "
-        r"fixed indenter) $G = f + \kappa (s^2 - 1) - 1$ vanishes. $G$ increases from $-(1 + \kappa)$ at "
-        r"$s = 0$ to a positive value at $s = 1$, so that it has one root, and there $s\,G' \ge 2 (1 + "
-        r"\kappa)$: the relative error of $\delta = s^2 \delta_0$ is, to first order, at most that with "
-        "which the two sides of the balance are computed.",
+        r"fixed indenter) $G = f + \kappa (s^2 - 1) - 1$ vanishes, once, between $s = 0$ and $s = 1$. There "
+        r"$s\,G' \ge 2 (1 + \kappa)$: the relative error of $\delta = s^2 \delta_0$ is, to first order, at "
+        "most that with which the two sides of the balance are computed.",
     )
     logarithmic = s * f_s / f
     proof.define(r, sp.sqrt(s**2 + lam**2), "a shorthand")
+    proof.crossing(SCALED_LOAD + kappa * (s**2 - 1) - 1, (s, 0, sp.oo), "the depth is unique",
+                   slope=3 * s * (s + r) / 2 + 2 * kappa * s)  # fmt: skip
     proof.define(lam, s * l, r"$l = V \tau/a$")
     proof.recall("scaling", l, NUMBER, RATIO)
     proof.recall("scaled-load", f, SCALED_LOAD)

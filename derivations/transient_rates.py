@@ -6,6 +6,7 @@ import sympy as sp
 
 from . import tables
 from .book import established
+from .master_curve import state_at
 from .record import Derivation, Table
 from .step import Proof
 from .symbols import (
@@ -197,9 +198,8 @@ def _standard() -> Derivation:
     proof = _theorem("F12-table1", title="Time constants under standard conditions", text=_STANDARD,
                      uses=("F12", "F12-boundary", "table1"))  # fmt: skip
     cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(tables.STANDARD)
-    quartic = sp.numer(sp.together(sp.expand(2 * cubed * q**2 * A - 3 * (1 - q) ** 3 * (1 + q))))
+    quartic, state = state_at(cubed)
     proof.unique_root(quartic, UNIT, "F2 with the numbers of Table 1")
-    state = next(root for root in sp.Poly(quartic, q).real_roots() if 0 < root < 1)
     half = sp.cbrt(4 / (3 * LOAD))
     inertia = (tables.static_depth / (g * tau**2)).subs(tables.STANDARD)
     known = {

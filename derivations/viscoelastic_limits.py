@@ -11,8 +11,10 @@ import sympy as sp
 from .record import Derivation
 from .step import Proof
 from .symbols import (
+    K,
     delay,
     excess_share,
+    fading,
     friction_number,
     half_share,
     haste,
@@ -21,14 +23,21 @@ from .symbols import (
     lack_mean,
     lack_twist,
     load_number,
+    memory,
+    other_trailing,
     q,
+    rates,
+    slowing,
     spare_1,
     spare_2,
     spare_3,
+    spring_1,
+    spring_2,
     spring_number,
     spring_share,
     springpot,
     steepness,
+    weight_at,
 )  # fmt: skip
 from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
 from .theorems import UNIT as RATIOS
@@ -59,15 +68,18 @@ def _lacks() -> Derivation:
     proof = _theorem("F18-lacks", title="Low velocity: moments near those of a dashpot", text=_LACKS,
                      uses=("F17-parts",))  # fmt: skip
     ahead, bulge, twist = (MOMENTS[name][0] for name in (P, D, E))
-    proof.equal(1 - ahead, w,
-                r"$\breve \alpha_P \le \breve \varepsilon$: beyond the contact, 1 is less than $\breve w$",
-                left=r"1 - (1 - \breve w)")  # fmt: skip
-    proof.sign(w / 2 - bulge, ">", 0, UNIT, r"$\breve \alpha_D \le \breve \varepsilon/2$")
-    proof.sign(twelfth - twist, ">", 0, UNIT, r"$\breve \alpha_E \ge 0$")
-    proof.sign(
-        w / 4 - (twelfth - twist), ">=", 0, UNIT, r"$\breve \alpha_E \le \breve \varepsilon/4$"
-    )
-    return proof.done(w / 4 - (twelfth - twist), 0)
+    felt, beyond = weight_at(w), (w, 1, 1 + spare_1)
+    for near, far, what in (
+        (w, 0, r"$\breve \alpha_P - \breve \alpha_A$"),
+        (w - (1 - ahead), w - 1, r"$\breve \varepsilon - \breve \alpha_P$"),
+        (w / 2 - bulge, w / 2, r"$\breve \varepsilon/2 - \breve \alpha_D$"),
+        (twelfth - twist, twelfth, r"$\breve \alpha_E$"),
+        (w / 4 - (twelfth - twist), w / 4 - twelfth, r"$\breve \varepsilon/4 - \breve \alpha_E$"),
+    ):
+        whole = sp.Integral(near * felt, UNIT) if near != 0 else 0
+        whole += sp.Integral(far * felt, beyond) if far != 0 else 0
+        proof.holds(whole, ">=", 0, what)
+    return proof.done(whole, 0)
 
 
 _LACKS = (
@@ -75,17 +87,15 @@ _LACKS = (
     r"relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. "
     r"Without the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and "
     r"$\breve E$ are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - "
-    r"\breve \alpha_E$; for a dashpot all four differences are 0. They are integrals of $G - K \ge "
-    r"0$ over all "
-    r"$\breve w > 0$ with the weights below, and those beyond $\breve w = 1$ are 1, 1, 0 and "
-    r"$\frac{1}{12}$. Hence $0 \le \breve \alpha_A \le \breve \alpha_P \le \breve \varepsilon$, and so "
-    r"on, for every $G \ge K$."
+    r"\breve \alpha_E$; for a dashpot all four differences are 0. They are integrals of $\breve k = (G - "
+    r"K)/(K \breve \zeta) \ge 0$ over all $\breve w > 0$, with weights that are 1, 1, 0 and "
+    r"$\frac{1}{12}$ beyond the contact, $\breve w = 1$; here to any distance $\breve \omega_1$ beyond it."
 )
 
 
 def _voigt() -> Derivation:
     proof = _theorem("F18-voigt", title="Low velocity: distance from Kelvin-Voigt",
-                     text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F19-monotonic"))  # fmt: skip
+                     text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F1"))  # fmt: skip
     for small, bound, spare in (
         (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
     ):  # fmt: skip
@@ -104,9 +114,25 @@ def _voigt() -> Derivation:
     proof.holds(
         plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most that on Kelvin-Voigt"
     )
-    load = kap / 12 + plain_ahead / (2 * plain_mean)
-    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo),
-               r"its load: $\breve \alpha_D$ adds less than the share $9 \breve \varepsilon/8$")  # fmt: skip
+    product = plain_ahead / (2 * plain_mean)  # of the excess and the moment P on Kelvin-Voigt
+    load, work = kap / 12 + product, twelfth + product / (2 * plain_mean)
+    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo), "load of Kelvin-Voigt")
+    proof.holds((1 + 9 * eps / 8) * load, ">=", kap / 12 + eps / 2 + product,
+                r"the load, at most: $\breve \alpha_D \le \breve \varepsilon/2$")  # fmt: skip
+    proof.where(eps < half)
+    less = (1 - eps) * (1 - 2 * eps)
+    proof.holds(kap / 12 + less * product, ">=", less * load, "and at least")
+    proof.holds(
+        work / ((1 - eps) * less * load), ">=",
+        (twelfth + product / (2 * plain_mean * (1 - eps))) / (kap / 12 + less * product),
+        r"$\mu$ at the same $\breve c$, at most",
+    )  # fmt: skip
+    for slope, relation, what in (
+        (FRICTION_COEFFICIENT, "<", r"$\mu_0 R/a$ grows with $l$"),
+        (FRICTION_COEFFICIENT / NUMBER, ">", "but less than in proportion"),
+        (LOAD / NUMBER, ">", r"and $W$ grows faster than $a^2$ at a given velocity"),
+    ):
+        proof.sign(sp.Derivative(slope, q), relation, 0, RATIOS, what)
     unit = (eps, 0, SMALL)
     lowest = (1 - 2 * eps) ** 2 * (1 - eps)
     proof.sign(
@@ -133,9 +159,9 @@ _VOIGT = (
     r"that of Kelvin-Voigt, the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 "
     r"+ 9 \breve \varepsilon/8$ times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve "
     r"\varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times. Then "
-    r"the contact on Kelvin-Voigt changes to the one on its own support. Not checked by machine: at "
+    r"the contact on Kelvin-Voigt changes to the one on its own support. At "
     r"a given velocity $W + k_s "
-    r"\delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion (F19-monotonic), so "
+    r"\delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so "
     r"that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on "
     "Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation."
 )
@@ -195,6 +221,20 @@ _WINDOW_WEIGHT = (
 def _glass() -> Derivation:
     proof = _theorem("F18-glass", title="High velocity: moments near those of a spring", text=_GLASS,
                      uses=("F17-sign",))  # fmt: skip
+    part, fall, slow = other_trailing, fading, slowing
+    proof.define(memory(part).diff(part), -fall(part), r"$G$ falls, at the rate $\breve H$")
+    proof.define(fall(part).diff(part), -slow(part), r"which slows, at the rate $\breve C$")
+    over = (part, 0, w)
+    rest = sp.Integral((w - part) * slow(part), over)
+    proof.holds(rest, ">=", 0, r"$G$ is convex")
+    proof.integral(rest, rest.function, over, memory(part) - (w - part) * fall(part),
+                   r"so $\breve G \ge \breve G(0) - \breve w \breve H(0)$",
+                   value=memory(w) - memory(0) + w * fall(0))  # fmt: skip
+    (r_1, r_2), glass = rates, K + spring_1 + spring_2
+    first, second = spring_1 * r_1 + spring_2 * r_2, spring_1 * r_1**2 + spring_2 * r_2**2
+    form = K * second + spring_1 * spring_2 * (r_1 - r_2) ** 2
+    proof.equal(glass * second - first**2, form, "of Cauchy and Schwarz, with two arms")
+    proof.holds(form, ">", 0, r"$\breve \omega > \breve \gamma$")
     bulge = w * (1 - w) ** 2 * (2 + w) / 24
     for integrand, value, what in (
         (bulge, sp.Rational(1, 120), r"$\breve E$ is at most $\breve \gamma$ times this"),
@@ -214,9 +254,8 @@ _GLASS = (
     r"In units of $G(0)$, with $\breve \gamma = -\breve c\, G'(0)/(V G(0))$ and $\breve \omega = -\breve "
     r"c\, G''(0)/(V G'(0))$, that is $\breve c/V$ times $\sum K_i \tau_i^{-2}/\sum K_i \tau_i^{-1}$. As "
     r"$G$ falls and is convex, and so is $-G'$ (a Prony series), $1 - \breve \gamma \breve w \le \breve G "
-    r"\le 1$ and $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$; and "
-    r"$\breve \gamma \le \breve \omega$ by Cauchy and Schwarz. The weights are those of F17-sign and "
-    "F17-moments."
+    r"\le 1$ and $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$. The "
+    "weights are those of F17-sign and F17-moments."
 )
 
 

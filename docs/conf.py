@@ -24,6 +24,7 @@ source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb", ".rst": "restructuredtex
 exclude_patterns = [
     "_build",
     "generated/scripts",
+    "generated/exercises",
     "generated/folders/*/*.md",
     "generated/gallery/**/*.ipynb",
     "generated/gallery/**/*.py",

@@ -49,11 +49,12 @@ def cached(entry: Callable[..., Any], **options: Any) -> Any:
     """Return an entry that is compiled when called, and cached on disk if there is a writable place."""
     from numba import njit
 
+    options |= {**OPTIONS, "nogil": True, "no_cfunc_wrapper": True}
     try:
-        compiled = njit(entry, cache=True, nogil=True, **OPTIONS, **options)
+        compiled = njit(entry, cache=True, **options)
     except RuntimeError:  # package and home are read-only
         compiling()
-        return njit(entry, nogil=True, **OPTIONS, **options)
+        return njit(entry, **options)
     disk: Any = compiled._cache  # type: ignore[attr-defined]
     load = disk.load_overload
 

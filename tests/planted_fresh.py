@@ -473,6 +473,68 @@ FALSE = {
         "exponential with two roots": (root(exp(x) - 2 * x - 1, x, 0), "one more near 1.26"),
         "root against a condition": (where(x < 0), root(x - 2, x, 2), "2 is not below 0"),
     },
+    "neighbours of what is true": {
+        "logarithm of a square of a ratio": (equal(log(((1 + x) / (1 - x)) ** 2), 4 * sp.atanh(x)), "x = 2"),
+        "twice too small": (where(q < 1), equal(log((1 + q) / (1 - q)), sp.atanh(q)), "q = 1/2"),
+        "inverse of an even function": (equal(sp.acosh(sp.cosh(x)), x), "x = -1"),
+        "other branch": (equal(sp.asinh(x), log(sqrt(x**2 + 1) - x)), "x = 1"),
+        "arc tangents below a bound": (where(x < 1), equal(atan(1 / x) + atan(x), pi / 2), "x = -1"),
+        "arc tangents below zero": (where(x < 0), equal(atan(1 / x) + atan(x), pi / 2), "x = -1"),
+        "arc tangents on two intervals":
+            (where(x**2 > 1), equal(atan(1 / x) + atan(x), pi / 2), "x = -2"),
+        "another angle of reflection":
+            (where(nu < 1), equal(sp.gamma(nu) * sp.gamma(1 - nu), pi / sin(2 * pi * nu)), "nu = 3/4"),
+        "gamma at its pole": (equal(sp.gamma(x + 1), x * sp.gamma(x)), "x = 0"),
+        "sine of two half turns": (where(nu < 1), holds(sin(2 * pi * nu)), "nu = 3/4"),
+        "cosine beyond a right angle": (where(q < 1), holds(cos(2 * q)), "q = 0.9"),
+        "sine of any angle": (holds(sin(y)), "y = 4"),
+        "the smaller term leads":
+            (where(nu < 1), order(h**nu + h, h, h, 0, h ** (1 - nu)), "h^nu leads"),
+        "small quantity that is large":
+            (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (nu - 1)), "it grows"),
+        "springpot at infinity":
+            (where(nu < 1), order(h**nu + h, h**nu, h, oo, h ** (1 - nu)), "h leads"),
+        "exponential that grows": (order(sp.coth(z), 1, z, oo, exp(2 * z)), "not small"),
+        "exponential at the wrong end": (order(sp.coth(z), 1, z, 0, exp(-2 * z)), "1/z"),
+        "power beside an exponential": (order(sp.coth(z) + 1 / z, 1, z, oo, exp(-2 * z)), "1/z leads"),
+        "half tangent beyond a half turn":
+            (integral(1 / (2 + cos(x)), (x, 0, 3 * pi / 2), 2 / sqrt(3) * atan(sp.tan(x / 2) / sqrt(3))),
+             "jumps at pi"),
+        "half tangent up to its pole":
+            (integral(1 / (1 + cos(x)), (x, 0, pi), sp.tan(x / 2)), "diverges"),
+        "half angle of the other sign": (equal(sin(x) / (1 - cos(x)), sp.tan(x / 2)), "x = 1"),
+        "half angle undefined on one side": (equal((1 - cos(x)) / sin(x), sp.tan(x / 2)), "x = 0"),
+        "double angle over a zero": (equal(sin(2 * x) / cos(x), 2 * sin(x)), "x = pi/2"),
+        "one of three zeros": (root(sin(x), x, pi, over=(x, 0, 4 * pi)), "2 pi"),
+        "one of two zeros of a cosine": (root(cos(x), x, pi / 2, over=(x, 0, 2 * pi)), "3 pi/2"),
+        "a zero of another factor": (root(sin(x) * (x - 1), x, pi, over=(x, 0, 2 * pi)), "1"),
+        "zero at an end that counts not": (root(sin(x), x, pi, over=(x, 0, pi)), "pi is outside"),
+        "distance with two roots": (root(Abs(y - 1) - half, y, 3 * half), "1/2"),
+        "distance of a real number": (root(Abs(x - 1) - 1, x, 2), "0"),
+        "distances with many roots": (root(Abs(y - 1) + Abs(y - 2) - 1, y, 1), "all up to 2"),
+        "real part alone": (equal(sp.re(w) ** 2, Abs(w) ** 2), "w = i"),
+        "square of a complex number": (equal(sp.re(w) ** 2 + sp.im(w) ** 2, w**2), "w = i"),
+        "law for positive numbers": (define(f(y), y**2), equal(f(u), u**2), "nothing is said for u < 0"),
+        "law for whole numbers": (define(f(n), n**2), equal(f(x), x**2), "nothing is said for x = 1/2"),
+        "law under a condition": (where(x > 2), define(f(x), x**2), equal(f(u), u**2), "u = 0"),
+        "law at one place": (define(x, 2), define(f(x), x**2), equal(f(u), u**2), "f(2) = 4 only"),
+        "law under an integral":
+            (define(f(y), y), where(u > 0), equal(Integral(f(u), (u, -1, 1)), Integral(u, (u, -1, 1))),
+             "nothing is said below 0"),
+        "letter of a law": (define(f(x), a * x), equal(f(a), a * x), "a^2"),
+        "arc tangent below its argument": (holds(atan(1 / l) - 1 / l), "l = 1"),
+        "arc tangent and a constant":
+            (holds(-3 * l**3 * atan(1 / l) + 3 * l**2 - 3 * l * atan(1 / l) + 2 - third), "tends to -1/3"),
+        "arc tangent of a ratio": (holds(atan(a / b) - a / b), "a = b"),
+        "smaller of two": (holds(sp.Min(x, 1)), "x = -1"),
+        "larger of two": (holds(sp.Max(x, u)), "both -1"),
+        "a coefficient that changes its sign":
+            (holds(a**2 * (exp(z) - 1 - z) + a * (exp(z) - 2 - z)), "z = 1/10, a small"),
+        "share of a power": (where(q < 1), holds(nu - 2 * q * q**nu), "nu small"),
+        "power of unknown sign": (where(q < 1), holds(1 - q * q**x), "x = -5"),
+        "negative power": (where(q < 1), holds(1 - q ** (-nu)), "q^-nu > 1"),
+        "power of a real number": (where(x < 1), holds(1 - x**2), "x = -3"),
+    },
 }  # fmt: skip
 
 TRUE = {
@@ -493,7 +555,7 @@ TRUE = {
         "root of a square": (where(q < 1), equal(sqrt(1 - 2 * q + q**2), 1 - q), "q < 1"),
         "quotient of roots":
             (where(q < 1), equal(sqrt((1 - q) / (1 + q)), (1 - q) / sqrt(1 - q**2)), "q < 1"),
-        "logarithm of a ratio": (where(q < 1), equal(log((1 + q) / (1 - q)), 2 * sp.atanh(q)), "q < 1", OPEN),
+        "logarithm of a ratio": (where(q < 1), equal(log((1 + q) / (1 - q)), 2 * sp.atanh(q)), "q < 1"),
         "factor of the friction force": (sign((1 - q) * (q**2 - q + 4), ">", UNIT), "friction is positive"),
         "edge from inside":
             (where(q < 1), order(Abs(1 - q) * (1 + q), 2 * (1 - q), q, 1, 1 - q),
@@ -520,10 +582,10 @@ TRUE = {
              "a weight that is positive in the contact"),
         "gamma of the next order": (equal(sp.gamma(nu + 1), nu * sp.gamma(nu)), "springpot"),
         "reflection of gamma":
-            (where(nu < 1), equal(sp.gamma(nu) * sp.gamma(1 - nu), pi / sin(pi * nu)), "springpot", OPEN),
+            (where(nu < 1), equal(sp.gamma(nu) * sp.gamma(1 - nu), pi / sin(pi * nu)), "springpot"),
         "three arms": (equal(Sum(G(k), (k, 1, 3)), G(1) + G(2) + G(3)), "a finite sum"),
         "springpot and spring":
-            (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "its dashpot is small", OPEN),
+            (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "its dashpot is small"),
         "half an arm": (root(exp(-x / y) - half, x, y * log(2)), "half-life"),
         "time of an e-fold": (root(log(y / z) - 1, y, sp.E * z), "by the logarithm"),
         "exponential above its tangent": (holds(exp(a) - 1 - a), "a > 0"),
@@ -537,23 +599,23 @@ TRUE = {
         "quadratic form": (holds(x**2 + x * u + u**2, ">="), "definite"),
         "cosine below 2, integrated":
             (integral(1 / (2 + cos(x)), (x, 0, pi / 2), 2 / sqrt(3) * atan(sp.tan(x / 2) / sqrt(3))),
-             "no jump up to pi/2", OPEN),
+             "no jump up to pi/2"),
         "derivative of x |x|": (equal(Derivative(x * Abs(x), x), 2 * Abs(x)), "smooth enough at 0"),
         "derivative with respect to an end":
             (equal(Derivative(Integral(exp(-(u**2)), (u, 0, x)), x), exp(-(x**2))), "fundamental theorem"),
         "limit": (equal(sp.Limit(sin(x) / x, x, 0), 1), "known", OPEN),
-        "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi", OPEN),
-        "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch", OPEN),
+        "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi"),
+        "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch"),
         "larger less smaller": (equal(sp.Max(x, u) - sp.Min(x, u), Abs(x - u)), "distance"),
         "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers"),
         "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
-        "order at infinity": (order(sp.coth(z), 1, z, oo, exp(-2 * z)), "exponentially small", OPEN),
-        "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval", OPEN),
+        "order at infinity": (order(sp.coth(z), 1, z, oo, exp(-2 * z)), "exponentially small"),
+        "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval"),
         "root of a logarithm": (root(y * log(y), y, 1), "y > 0"),
         "between ends in order":
             (where(a < b), root(x - (a + b) / 2, x, (a + b) / 2, over=(x, a, b)), "midpoint"),
-        "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded", OPEN),
-        "real and imaginary part": (equal(sp.re(w) ** 2 + sp.im(w) ** 2, Abs(w) ** 2), "complex rates", OPEN),
+        "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded"),
+        "real and imaginary part": (equal(sp.re(w) ** 2 + sp.im(w) ** 2, Abs(w) ** 2), "complex rates"),
     },
     "premises and displays": {
         "recalled at a place of its domain":
@@ -562,8 +624,8 @@ TRUE = {
         "recalled under a stronger condition":
             (where(x > 2), recalled(*CANCELLED, given=[where(x > 1)]), equal(CANCELLED[0] + 1, x + 2),
              "x > 2"),
-        "function of another letter": (define(f(x), x**2), equal(f(u), u**2), "a law for every x", OPEN),
-        "function with a value": (define(f(x), exp(x)), equal(f(sp.S(0)), 1), "consistent", OPEN),
+        "function of another letter": (define(f(x), x**2), equal(f(u), u**2), "a law for every x"),
+        "function with a value": (define(f(x), exp(x)), equal(f(sp.S(0)), 1), "consistent"),
         "derivative of a bracket":
             (equal(Derivative(x**2 + x, x), 2 * x + 1, left=r"\frac{d}{dx} (x^2 + x)"), "unambiguous"),
         "exponent in braces": (equal(y**23, y**23, left="y^{23}"), "unambiguous"),

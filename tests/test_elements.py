@@ -121,7 +121,7 @@ def test_memory_does_not_grow_with_time(monkeypatch):
 
     def recorded(elements, *arguments):
         move(elements, *arguments)
-        sizes.append(elements.stored.u.size)
+        sizes.append(elements.stored.rows[0].size)
 
     monkeypatch.setattr(ElementRow, "_move", recorded)
     swing = kv.Drive(function=lambda t: 0.05 + 0.1 * math.cos(50.0 * t))
@@ -354,12 +354,9 @@ def test_kernels_know_the_shapes_of_the_scene(shape):
     for body in (shape, kv.Revolved(shape)):
         surface = surface_of(body)
         where = (x,) if body is shape else (x, 0.001)
-        np.testing.assert_allclose(
-            kernels.height_at(surface, None, x, 0.001), body.height(*where), rtol=1e-13
-        )
-        np.testing.assert_allclose(
-            kernels.slope_at(surface, None, x, 0.001), body.slope(*where), rtol=1e-12, atol=1e-15
-        )
+        height, slope = kernels.surface_at(surface, None, x, 0.001)
+        np.testing.assert_allclose(height, body.height(*where), rtol=1e-13)
+        np.testing.assert_allclose(slope, body.slope(*where), rtol=1e-12, atol=1e-15)
     depth = 0.4 * float(shape.height(0.005))
     reached = kernels.extent(surface_of(shape), None, depth, 1.0)
     assert shape.height(reached) == pytest.approx(depth, rel=1e-13)

@@ -108,6 +108,20 @@ def ball(seed):
     }, scene  # fmt: skip
 
 
+def tipped(seed):
+    """Return a run on arms of a wedge or power law, and one with five times as many elements.
+
+    Under a wedge arms remember the tip, which may have moved by less than the distance of two elements.
+    """
+    scene, times, density = drawn(seed)
+    arms = kv.GeneralizedMaxwell(0.75, arms=[(1.5, 0.3)])
+    shapes = kv.Wedge(0.3), kv.PowerLaw(1.0, 4.0), kv.Wedge(1.0)
+    scene, density = replace(scene, foundation=arms, indenter=shapes[seed % 3]), min(density, 25.0)
+    run = kv.elements(scene, per_length=density, at=times[-6:])
+    fine = kv.elements(scene, per_length=5.3 * density, at=times[-6:], certify=False)
+    return run, {name: getattr(fine, name) for name in run.certificate.relative_error}, scene
+
+
 def errors(run, truth, scene):
     """Return the largest error of each quantity by its scale, the edges from left to right."""
     scale = scales(Model.of(scene, 1.0 / run.per_length).at_rest)
@@ -124,7 +138,7 @@ def errors(run, truth, scene):
     }
 
 
-KINDS = {plain: 40, swinging: 12, on_arms: 9, on_spring: 4, ball: 4}
+KINDS = {plain: 40, swinging: 12, on_arms: 9, tipped: 6, on_spring: 4, ball: 4}
 """How many scenes of each kind."""
 
 

@@ -9,7 +9,9 @@ from scipy.linalg import expm
 
 import kvtheory as kv
 from kvtheory.charts.stability import growth
+from kvtheory.models.elements import kernels
 from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import ElementRow
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import amplification, lengths, limit_at
 from kvtheory.results.table import scales
@@ -81,7 +83,7 @@ def test_an_element_on_a_ramp_is_that_of_its_equations():
         s_0 = K_i * rng.uniform(-1.0, 1.0, K_i.size)
         truth = solve_ivp(
             lambda t, s, K_i=K_i, tau=tau, rate=rise / h: K_i * rate - s / tau,
-            (0.0, h), s_0, "Radau", rtol=1e-10, atol=1e-12, dense_output=True,
+            (0.0, h), s_0, "LSODA", rtol=1e-9, atol=1e-12, dense_output=True,
         )  # fmt: skip
         step = law.step(h)
         assert step.held * s_0 + step.ramp * rise == pytest.approx(
@@ -114,6 +116,27 @@ def test_kelvin_voigt_is_the_limit_of_a_stiff_and_fast_arm_in_first_order(h):
         off.append(abs(left_alone(law, state, h)[0] - plain.fall[0]))
         assert arm.damping == pytest.approx(plain.damping, rel=10 * tau / h)
     assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+
+
+@pytest.mark.parametrize("share", [1e-3, 0.3, 1.0])
+def test_an_element_met_within_a_step_presses_as_its_equations_say(share):
+    """At the end of the step, and on average over it: s_i and u integrated from where it is met."""
+    h, rise, depth = 3e-3, 2e-6, 1e-4
+    model = Model.of(kv.Scene(foundation=RUBBER, support=kv.Fixed(depth)), 5e-6)
+    row = ElementRow(model, model.path(kv.Scene()))
+    edge = int(row.stored.begun[0, 2]) + 3
+    x = model.spacing * row.stored.numbers[edge]
+    missing = rise * (1.0 / share - 1.0)  # it falls towards the element at a constant rate
+    end, mean = kernels.enter(row.stored, h, 0, edge, (0.0, float(model.height(x)) - missing), rise)
+    K_i, tau = np.transpose(ARMS)
+    rate = rise / (share * h)
+    truth = solve_ivp(
+        lambda t, s: K_i * rate - s / tau, (0.0, share * h), np.zeros(2), rtol=1e-10, atol=1e-3,
+        dense_output=True,
+    )  # fmt: skip
+    assert end * rise == pytest.approx(1e10 * rise + truth.y[:, -1].sum(), rel=1e-6)
+    impulse = quad(lambda t: 1e10 * rate * t + truth.sol(t).sum(), 0.0, share * h, epsrel=1e-9)[0]
+    assert mean * rise == pytest.approx(impulse / h, rel=1e-6)
 
 
 # Schemes

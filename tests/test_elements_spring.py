@@ -87,9 +87,7 @@ def energies(row, state, h, count):
         moving = model.mass * state.rate**2 if math.isfinite(model.mass) else 0.0
         moving += model.mass_along * state.along_rate**2 + model.spring_along * state.along**2
         lifted = model.weight * risen if math.isfinite(model.mass) else 0.0
-        springs = (
-            model.law.stiffness * model.spacing * float(np.square(row.states(state.time)[0]).sum())
-        )
+        springs = model.law.stiffness * model.spacing * float(np.square(row.states()[0]).sum())
         found.append(0.5 * (moving + model.spring * risen**2 + springs) + lifted)
         state = row.step(state, h)
     return np.array(found)
@@ -117,13 +115,13 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
     rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=arms)
     scene = kv.Scene(shape, rubber, drive=drive, run=kv.Run(0.04))
     lacking = []
-    for density in (2e4, 4e4, 8e4):
+    for density in (1e4, 2e4, 4e4):
         model = Model.of(scene, 1.0 / density)
         row, h = ElementRow(model, model.path(scene), SCHEMES["exponential"]), 4.0 / density
         state, rows = IndenterState(0.0, model.depth, 0.0), []
         K_i, tau = model.law.arm_stiffness[:, None], model.law.arm_time[:, None]
         for _ in range(round(0.04 / h) + 1):
-            u, s = (each[..., 0, :] for each in row.states(state.time))
+            u, s = (each[..., 0, :] for each in row.states())
             springs = model.law.stiffness * u @ u + (s * s / K_i).sum()
             moving = model.mass * state.rate**2 + model.mass_along * state.along_rate**2
             held = 1e6 * state.along + 1e3 * state.along_rate

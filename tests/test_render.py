@@ -157,6 +157,29 @@ def test_the_pages_of_the_site_have_each_derivation_once(everything, site):
 # JSON
 
 
+def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(everything):
+    book, records = edition(everything), {each.label: each for each in everything}
+    roots = [
+        step for each in everything for step in each.steps
+        if step.claim and step.claim.check == "root" and not step.source
+    ]  # fmt: skip
+    assert len(roots) > 35
+    assert all(step.note.startswith("the only root of $") for step in roots)
+    (crossing,) = [
+        step.latex for step in records["F12-table1"].steps if step.claim.check == "unique_root"
+    ]
+    assert crossing.endswith(r"= 0 \quad\text{for exactly one } q \in (0, 1)")
+    assert book.domain(records["F22-dampers"]).endswith(r"assumed, not proved: $\check \Pi > 0$.")
+    for each in everything:
+        said = {part for step in each.steps for part in (step.latex, step.domain)}
+        assert all(part in book.domain(each) for part in each.domain if part not in said)
+
+
+def test_few_records_assume_a_sign_that_they_do_not_prove(everything):
+    book = edition(everything)
+    assert len([each for each in everything if "assumed" in book.domain(each)]) <= 20
+
+
 def test_json_keeps_the_contract(everything, tmp_path):
     write(everything, tmp_path, ["json"])
     entries = json.loads((tmp_path / "derivations.json").read_text(encoding="utf-8"))

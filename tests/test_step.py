@@ -36,6 +36,37 @@ def test_true_steps_are_accepted(proof, name):
     planted.TRUE[name](proof)
 
 
+s_any = sp.Symbol("s_any", positive=True)
+CROSSINGS = {
+    "falls from infinity": (1 / y - sp.atan(y), (y, 0, sp.oo), None, True),
+    "rises through zero": (sp.exp(x) - 2, (x, 0, 1), None, True),
+    "with a letter": (x**3 + s_any * x - s_any, (x, 0, 1), None, True),
+    "its slope in another form": (x**2 - 2, (x, 0, 2), 2 * x, True),
+    "no zero inside": (sp.exp(x) - 3, (x, 0, 1), None, False),
+    "the zero is the end": (x - 1, (x, 0, 1), None, False),
+    "the other end": (sp.exp(x) - 1, (x, 0, 1), None, False),
+    "zero only in the limit": (1 / y, (y, 0, sp.oo), None, False),
+    "an asymptote above zero": (1 + 1 / x, (x, 0, sp.oo), None, False),
+    "a jump through a pole": (1 / x, (x, -1, 1), None, False),
+    "three zeros": (x**3 - x, (x, -2, 2), None, False),
+    "a kink": (sp.Abs(x) + x - 1, (x, -1, 2), None, False),
+    "beyond the interval for some letters": (x - s_any, (x, 0, 1), None, False),
+    "a slope that is not its own": (x**2 - 3 * x + 1, (x, 0, 2), 2 * x, False),
+    "undefined in between": (sp.log(x - 1), (x, 0, 3), None, False),
+}
+"""Expression, interval, a form of the slope, and whether it vanishes exactly once there."""
+
+
+@pytest.mark.parametrize("name", CROSSINGS)
+def test_one_crossing_is_proved_where_there_is_one(proof, name):
+    expr, over, slope, true = CROSSINGS[name]
+    if true:
+        proof.crossing(expr, over, "once", slope=slope)
+    else:
+        with pytest.raises(StepError):
+            proof.crossing(expr, over, "once", slope=slope)
+
+
 SHOWN = {
     "true for integers only": "left - right = ",
     "almost the same by a factor": "left - right = ",
@@ -207,3 +238,18 @@ def test_the_interval_of_a_named_root_restricts_nothing_else():
     later.recall("edge", a, sp.sqrt(y))
     with pytest.raises(StepError):
         later.holds(x, ">", 0, "x is any place here")
+
+
+def test_what_words_say_is_argued_and_nothing_better():
+    first = Proof("words", None, section="Trial", title="Trial")
+    first.argued(sp.sqrt(y), ">", sp.log(y), "a root grows faster")
+    first.equal(2 * y, y + y, "twice")
+    assert first.done(2 * y, y + y).status == "argued"
+    second = Proof("resting", None, section="Trial", title="Trial", uses=("words",))
+    second.equal(3 * y, y + y + y, "thrice")
+    assert second.done(3 * y, y + y + y).status == "argued"
+    with pytest.raises(StepError, match="does not establish"):
+        second.recall("words", sp.sqrt(y), sp.log(y))
+    for relation, wrong in (("=", sp.sqrt(y) + 1), (">", sp.sqrt(y) + 1)):
+        with pytest.raises(StepError, match=r"fails|is wrong"):
+            second.argued(sp.sqrt(y), relation, wrong, "a planted error")

@@ -1,10 +1,9 @@
-"""Where a result holds: the signs of its symbols, and the intervals over which it was checked."""
-
-from collections.abc import Iterator
+"""Where a result holds: the signs of its letters, and the conditions under which it was proved."""
 
 import sympy as sp
 
 from ..book import tex
+from ..letters import letters, printed
 from ..record import Claim, Derivation
 
 _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", "< 0"))
@@ -13,37 +12,32 @@ _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", 
 def domain(derivation: Derivation) -> str:
     """Return a sentence, or nothing if a result has no conditions.
 
-    A symbol without a sign is a real number.
+    A letter without a sign is a real number. What is assumed of a letter that is defined here, because
+    it does not follow from the other conditions, is said apart.
     """
-    claims = [step.claim for step in derivation.steps if step.claim]
-    ranges = [_interval(*over) for claim in claims for over in _intervals(claim)]
-    ranged = {over[0] for claim in claims for over in _intervals(claim)}
-    symbols = {symbol for claim in claims for symbol in _symbols(claim)} - ranged
-    signs = []
+    own = [step for step in derivation.steps if step.claim and not step.source]
+    claims = [step.claim for step in own if step.claim]
+    symbols = {symbol for claim in claims for symbol in _symbols(claim)}
+    new, signs = letters(derivation.label, derivation.section), []
+    assumed = [each for each in symbols if f"{printed(tex(each), new)} > 0" in derivation.domain]
+    symbols -= {*assumed}
     for sign, relation in _SIGNS:
         having = sorted((s for s in symbols if getattr(s, sign)), key=str)
         symbols -= set(having)
         if having:
-            signs.append(f"${', '.join(map(tex, having))} {relation}$")
-    holds = [*signs, *dict.fromkeys(ranges)]
-    return f"It holds for {' and '.join(holds)}." if holds else ""
+            signs.append(f"${', '.join(printed(tex(each), new) for each in having)} {relation}$")
+    said = {step.latex for step in own} | {
+        step.domain for step in own if step.latex == derivation.latex
+    }
+    apart = [f"{printed(tex(each), new)} > 0" for each in sorted(assumed, key=str)]
+    holds = [*signs, *(f"${each}$" for each in derivation.domain if each not in {*said, *apart})]
+    parts = [f"It holds for {', '.join(holds)}"] if holds else []
+    parts += [f"assumed, not proved: {', '.join(f'${each}$' for each in apart)}"] if apart else []
+    return f"{'; '.join(parts)}." if parts else ""
 
 
 def _symbols(claim: Claim) -> set[sp.Symbol]:
+    """Return the letters of a claim but for those that sweep over an interval of their own."""
+    over = claim.arguments.get("over")
     found = claim.lhs.free_symbols | claim.rhs.free_symbols
-    return {symbol for symbol in found if isinstance(symbol, sp.Symbol)}
-
-
-def _intervals(claim: Claim) -> Iterator[tuple[sp.Symbol, sp.Expr, sp.Expr]]:
-    """Yield the intervals inside which a sign, a root or samples were checked."""
-    if claim.check in {"sign", "unique_root"}:
-        yield claim.arguments["over"]
-    if claim.check == "sampled":
-        yield from claim.arguments["ranges"]
-
-
-def _interval(variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> str:
-    low, high = sp.sympify(low), sp.sympify(high)
-    if high.is_infinite:
-        return f"${tex(variable)} > {tex(low)}$" if low.is_finite else f"real ${tex(variable)}$"
-    return f"${tex(low)} < {tex(variable)} < {tex(high)}$"
+    return {each for each in found if isinstance(each, sp.Symbol)} - ({over[0]} if over else set())

@@ -121,6 +121,7 @@ def _in_letters(derivation: Derivation, new: Letters) -> Derivation:
         title=_words(derivation.title, new),
         text=_words(derivation.text, new),
         latex=replaced(derivation.latex, new),
+        domain=tuple(replaced(each, new) for each in derivation.domain),
         steps=tuple(_step_in_letters(step, new) for step in derivation.steps),
         table=table,
         numbers=tuple(
@@ -141,6 +142,8 @@ def _step_in_letters(step: Step, new: Letters) -> Step:
         left=replaced(step.left, new),
         right=replaced(step.right, new),
         reason=_words(step.reason, new),
+        note=_words(step.note, new),
+        domain=replaced(step.domain, new),
     )
 
 

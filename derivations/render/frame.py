@@ -28,6 +28,7 @@ VOCABULARY = {
     "proved-leading-order": "an asymptote, proved with the coefficient and the order of its "
     "remainder",
     "sampled": "compared at many random admissible points with 50 digits, not proved",
+    "argued": "follows by the words beside it, which no machine checked; the formula alone does not say it",
 }
 """The meaning of each `record.STATUSES`."""
 

@@ -75,7 +75,7 @@ def document(edition: Edition) -> str:
             _table(edition.table(), labels),
             "</section>",
             *(
-                _section(index, section, members, derivations)
+                _section(index, section, members, edition)
                 for index, (section, members) in enumerate(sections.items(), start=1)
             ),
             "</main>",
@@ -149,17 +149,15 @@ def _contents(sections: dict[str, list[Derivation]]) -> str:
     return f'<nav aria-label="Contents"><h2>Contents</h2><ul>{"".join(entries)}</ul></nav>'
 
 
-def _section(
-    index: int, section: str, members: Sequence[Derivation], everything: Sequence[Derivation]
-) -> str:
-    articles = [_article(each, everything) for each in members]
+def _section(index: int, section: str, members: Sequence[Derivation], edition: Edition) -> str:
+    articles = [_article(each, edition) for each in members]
     heading = f'<section id="section-{index}"><h2>{_text(section, ())}</h2>'
     return "\n".join([heading, *articles, "</section>"])
 
 
-def _article(derivation: Derivation, everything: Sequence[Derivation]) -> str:
-    labels = {each.label for each in everything}
-    users = [each.label for each in everything if derivation.label in each.uses]
+def _article(derivation: Derivation, edition: Edition) -> str:
+    labels = edition.labels
+    users = [each.label for each in edition.derivations if derivation.label in each.uses]
     parts = [
         f'<article id="{derivation.label}">',
         f'<h3><a href="#{derivation.label}">({number(derivation.label)})</a> '
@@ -168,6 +166,9 @@ def _article(derivation: Derivation, everything: Sequence[Derivation]) -> str:
         '<ol class="steps">',
         *(_block(block, labels) for block in blocks(derivation)),
         "</ol>",
+        f'<p class="domain">{_text(holds, labels)}</p>'
+        if (holds := edition.domain(derivation))
+        else "",
         _numbers(derivation.numbers, labels),
         _table(derivation.table, labels) if derivation.table else "",
         _related({"Rests on": derivation.uses, "Used by": users}, labels),

@@ -113,7 +113,7 @@ def article(edition: Edition) -> str:
     ]
     for section, members in by_section(edition.derivations).items():
         body.append(rf"\section{{{_heading(section)}}}")
-        body.extend(_derivation(member, labels) for member in members)
+        body.extend(_derivation(member, edition) for member in members)
     body += [
         r"\begin{thebibliography}{1}",
         rf"\bibitem{{paper}} {escape(frame.SOURCE)}",
@@ -124,13 +124,16 @@ def article(edition: Edition) -> str:
     return "\n".join(body) + "\n"
 
 
-def _derivation(derivation: Derivation, labels: Collection[str]) -> str:
+def _derivation(derivation: Derivation, edition: Edition) -> str:
+    labels = edition.labels
     shown = f"({number(derivation.label)}) {_heading(derivation.title)}"
     parts = [
         rf"\subsection[{{{shown}}}]{{{shown}}}",
         words(derivation.text, labels),
         *(_block(block, derivation.label, labels) for block in blocks(derivation)),
     ]
+    if holds := edition.domain(derivation):
+        parts.append(rf"\nopagebreak{{\small\raggedright {words(holds, labels)}\par}}")
     if derivation.table:
         columns = len(derivation.table.heads)
         width = (1 - _GAP * (columns - 1)) / columns

@@ -47,6 +47,9 @@ class _Code(StrPrinter):
     def _print_Rank(self, expr: sp.Expr) -> str:  # noqa: N802
         return f"S({self._print(expr.args[0])}.rank())"
 
+    def _print_Determinant(self, expr: sp.Expr) -> str:  # noqa: N802
+        return f"({self._print(expr.args[0])}).det(method='berkowitz')"
+
 
 def document(edition: Edition) -> str:
     """Return the notebook; running its cells from top to bottom checks every step."""
@@ -62,6 +65,11 @@ def document(edition: Edition) -> str:
     cells.append(_code(f"from sympy import {_IMPORTED}\n{_ALSO}"))
     for derivation in edition.derivations:
         cells += [_markdown(_words(derivation)), _code(_steps(derivation))]
+    return assembled(cells)
+
+
+def assembled(cells: list[dict[str, Any]]) -> str:
+    """Return the notebook of some cells."""
     for index, cell in enumerate(cells):
         cell["id"] = f"cell-{index}"
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
@@ -88,13 +96,18 @@ def _code(text: str) -> dict[str, Any]:
 def _words(derivation: Derivation) -> str:
     lines = [f"### ({number(derivation.label)}) {derivation.title}", derivation.text]
     for step in derivation.steps:
-        source = f" ({number(step.source)})" if step.source else ""
-        reason = f" — {step.reason}" if step.reason else ""
-        lines.append(f"- ${step.latex}${source}{reason}")
+        lines.append(f"- {shown(step)}")
     if derivation.numbers:
         lines += ["", frame.WITH_NUMBERS, ""]
         lines += [f"- ${calculation(each)}$ {each.note}".rstrip() for each in derivation.numbers]
     return "\n\n".join(line for line in lines[:2] if line) + "\n\n" + "\n".join(lines[2:])
+
+
+def shown(step: Step) -> str:
+    """Return a step with its source and its reason."""
+    source = f" ({number(step.source)})" if step.source else ""
+    reason = f" — {step.reason}" if step.reason else ""
+    return f"${step.latex}${source}{reason}"
 
 
 def _steps(derivation: Derivation) -> str:
@@ -124,6 +137,7 @@ _PARAMETERS: dict[str, tuple[str, ...]] = {
     "integral": ("lhs", "integrand", "over", "antiderivative", "value"),
     "root": ("expr", "variable", "value", "name"),
     "unique_root": ("expr", "over"),
+    "crossing": ("expr", "over"),
     "sign": ("expr", "relation", "bound", "over"),
     "where": ("condition",),
     "holds": ("lhs", "relation", "rhs", "cases"),

@@ -7,6 +7,7 @@ by algebra where that is quick, else at random points with 50 digits; so are sig
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
@@ -17,6 +18,8 @@ Over = tuple[Any, Any, Any]
 """A SymPy expression; a variable with its bounds."""
 
 POINTS, TRIES, DIGITS, CLOSE = 12, 500, 50, sp.Float("1e-35")
+NEAR = sp.Rational(1, 10**4)
+"""From the ends of an interval, over its length, or the reciprocal of a place far out."""
 DISTANCES = [sp.Rational(1, 10**6), sp.Rational(1, 10**9)]
 """From the point of a limit: the remainder must fall by more than half from one to the next."""
 
@@ -103,6 +106,20 @@ class Steps:
         ]
         self._report(len(inside) == 1, f"{expr} has one root in {over[1:]}", "roots with 30 digits")
 
+    def crossing(self, expr: Expr, over: Over) -> None:
+        """Check that the expression rises or falls at all points, and changes its sign between the bounds."""
+        variable, low, high = over[0], *map(sp.sympify, over[1:])
+        whole = self._masked(self._put(expr))
+        point = self._point(whole)
+        span = high - low if high.is_finite else sp.S.One
+        places = sorted(self._inside(low, high) for _ in range(POINTS))
+        last = high - span * NEAR if high.is_finite else 1 / NEAR
+        places = [low + span * NEAR, *places, last]
+        values = [self._value(whole, {**point, variable: place}) for place in sorted(places)]
+        rises = [one < other for one, other in pairwise(values)]
+        fine = (all(rises) or not any(rises)) and values[0] * values[-1] < 0
+        self._report(fine, f"{expr} = 0 once in {over[1:]}", f"{POINTS} points")
+
     def sign(self, expr: Expr, relation: str, bound: Expr, over: Over) -> None:
         """Check that the expression stays on its side of the bound."""
         gap = self._put(expr) - self._put(bound)
@@ -175,7 +192,14 @@ class Steps:
             for lhs, rhs in self.rules.items()
             if isinstance(lhs, (AppliedUndef, sp.Derivative))
         }
-        return expr.xreplace(exact).subs({k: v for k, v in self.rules.items() if k not in exact})
+        expr = expr.xreplace(exact)
+        slopes = {  # `subs` would hold constant what the names in a derivative stand for
+            each: sp.Derivative(each.expr.xreplace(self.rules), *each.variable_count)
+            for each in expr.atoms(sp.Derivative)
+            if not any(variable in self.rules for variable in each.variables)
+        }
+        rest = {k: v for k, v in self.rules.items() if k not in exact}
+        return expr.xreplace(slopes) if slopes.keys() - slopes.values() else expr.subs(rest)
 
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
         masked = self._masked(expr)

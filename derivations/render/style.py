@@ -61,7 +61,7 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
   font: 0.72rem/1.5 system-ui, sans-serif; color: var(--definition); white-space: nowrap; }
 .status.proved { color: var(--proved); }
 .status.proved-leading-order { color: var(--leading); border-style: dashed; }
-.status.sampled { color: var(--sampled); border-style: dotted; }
+.status.sampled, .status.argued { color: var(--sampled); border-style: dotted; }
 /* A shade at the side says that there is more to scroll to; at an end its cover hides it. */
 .scroll { overflow-x: auto; padding: 0.45rem 0; background:
   linear-gradient(to right, var(--paper) 40%, transparent) left / 2rem 100% no-repeat local,
@@ -74,6 +74,7 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .line .scroll math:first-child { margin-left: -1.5rem; }
 .unbroken { white-space: nowrap; }
 td math { math-style: normal; }
+.domain { margin: 0.2rem 0; font-size: 0.9rem; }
 .related { display: flex; flex-wrap: wrap; column-gap: 1.5rem; margin: 0.2rem 0;
   color: var(--faint); font-size: 0.9rem; }
 table { border-collapse: collapse; font-size: 0.95rem; }
@@ -85,6 +86,8 @@ footer { font-size: 0.95rem; }
 @media (max-width: 30rem) {
   .vocabulary { grid-template-columns: 1fr; gap: 0.1rem; }
   .vocabulary dd { margin-bottom: 0.5rem; }
+  .reason { max-width: 100%; }
+  .reason > span:first-child, .domain { min-width: 0; overflow-x: auto; padding: 0.2rem 0; }
   .steps { padding-left: 0.5rem; }
   .steps li.result { margin-left: -0.5rem; padding-left: 0.8rem; }
   .steps li.step { padding-right: 0; }

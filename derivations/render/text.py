@@ -173,7 +173,9 @@ def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
     if step.source:
         yield from (citation(step.source, labels), Piece("words", " "))
     yield from pieces(step.reason, labels)
-    if step.domain:
+    if step.note:
+        yield from (Piece("words", ", " if step.reason else ""), *pieces(step.note, labels))
+    elif step.domain:
         yield from (Piece("words", " (for "), Piece("math", step.domain), Piece("words", ")"))
 
 

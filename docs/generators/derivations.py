@@ -1,16 +1,19 @@
 """The derivations as pages: one for each section, linked with the functions that compute them."""
 
 import re
+from json import loads
 from pathlib import Path
 
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.emit import FORMS
-from kvtheory.derivations.render import edition, markdown
+from kvtheory.derivations.recheck.report import counts, having, recheck
+from kvtheory.derivations.render import edition, json, markdown
 from kvtheory.derivations.render.text import by_section
 
+from generators import exercises, premises
 from generators.equations import place_of, users
 from generators.files import put
-from generators.labels import anchor_of
+from generators.labels import anchor_of, page_of
 from kvtheory import __version__
 
 MOST = 6
@@ -18,8 +21,11 @@ MOST = 6
 
 
 def write(directory: Path) -> None:
-    """Derive everything and write the pages."""
-    for path, text in pages().items():
+    """Derive everything and write the pages, and what other pages include."""
+    derived = catalogue()
+    made = {**pages(), **premises.pages(derived), **exercises.pages(derived)}
+    made["theory/second-opinion.txt"] = second_opinion(json.document(edition(derived)))
+    for path, text in made.items():
         put(directory / path, text)
 
 
@@ -32,7 +38,7 @@ def pages() -> dict[str, str]:
     texts, names = {}, []
     for section in sections:
         title, _, body = section.partition("\n")
-        name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+        name = page_of(title)
         names.append(name)
         labels = [
             each.label for each in next((m for s, m in members.items() if _same(s, title)), ())
@@ -41,6 +47,34 @@ def pages() -> dict[str, str]:
     tree = "\n".join(names)
     texts["theory/index.md"] = f"{head}\n```{{toctree}}\n:maxdepth: 2\n\n{tree}\n```\n"
     return texts
+
+
+def second_opinion(document: str) -> str:
+    """Return how many claims of `derivations.json` were confirmed, and how; part of a page."""
+    verdicts = recheck(loads(document))
+    found = [each for record in verdicts.values() for each in record.values()]
+    rows = [("kind", "confirmed", "supported", "unconfirmed", "how")]
+    kinds = dict.fromkeys(each.kind for each in found if each.kind != "recalled")
+    for kind in kinds:
+        mine = [each for each in found if each.kind == kind]
+        numbers = (str(sum(each.status == status for each in mine)) for status in rows[0][1:-1])
+        ways = dict.fromkeys(way for each in mine for way in each.how.split("; "))
+        rows.append((kind, *numbers, ", ".join(ways)))
+    count = counts(verdicts)
+    total = sum(count.values()) - count["recalled"]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    lines.insert(1, "|---" * len(rows[0]) + "|")
+    open_ones: dict[str, list[str]] = {}
+    for name, each in having(verdicts, "unconfirmed").items():
+        open_ones.setdefault(each.how, []).append(f"`{name}`")
+    reasons = "; ".join(f"{how}: {', '.join(names)}" for how, names in open_ones.items())
+    told = [
+        f"Of {total} claims it confirms {count['confirmed']}, supports {count['supported']}, leaves "
+        f"{count['unconfirmed']} unconfirmed and refutes {count['refuted']}.",
+        f"{count['recalled']} recalled relations stand in their sources under the same conditions.",
+    ]
+    rest = f"\nUnconfirmed: {reasons}.\n" if reasons else ""
+    return " ".join(told) + "\n\n" + "\n".join(lines) + "\n" + rest
 
 
 def _same(section: str, title: str) -> bool:

@@ -35,5 +35,14 @@ def anchor_of(label: str) -> str:
     return label.lower()
 
 
+def page_of(section: str) -> str:
+    """Return the name of the page of a section.
+
+    >>> page_of("Transient: theorems")
+    'transient-theorems'
+    """
+    return re.sub(r"[^a-z0-9]+", "-", section.lower()).strip("-")
+
+
 def _label(match: re.Match[str]) -> str:
     return f"eq{match[1]}" if match[1] else match[2]

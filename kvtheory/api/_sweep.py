@@ -63,7 +63,7 @@ def sweep(
         neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the indenter
         along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with ``.cycle_max``
         and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the steady value.
-        Elements simulate other shapes and Prony series, in some seconds per scene: series, ``NAME.end``,
+        Elements simulate other shapes and Prony series, within seconds each: series, ``NAME.end``,
         ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
     at, method, rtol
         As in `transient` and `steady`; with `at`, the times of the series.

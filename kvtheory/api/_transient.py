@@ -34,12 +34,13 @@ def transient(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
-        parabola, or a ball at constant depth that does not re-enter its own trace (`elements` simulates any
-        ball). At t < 0 it rests at its static depth. With `drive.stiffness` it is held along x by a spring
-        that is then relaxed; the mass that moves along x must be above zero. A drive that is a function of
-        time is replaced by polynomials within its tolerance, which the certificate adds to the errors of the
-        velocities, the pressure and the surface, but not of the other quantities.
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola,
+        or a ball at constant depth that does not re-enter its own trace (`elements` simulates any ball). On a
+        Prony series it must slide one way: no edge may return to ground that it left. At t < 0 it rests at
+        its static depth. With `drive.stiffness` it is held along x by a spring that is then relaxed; the mass
+        that moves along x must be above zero. A drive that is a function of time is replaced by polynomials
+        within its tolerance, which the certificate adds to the errors of the velocities, the pressure and the
+        surface, but not of the other quantities.
     at
         Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or ``"0 ms:200 ms:201"``
         (START:STOP:COUNT, both ends included); without it, the steps of the solver, subdivided.
@@ -65,8 +66,9 @@ def transient(
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is neither a parabola nor such a ball, an argument is out of range, or a function
-        that drives the foundation fails, is not finite, or is not smooth between its breaks.
+        If the indenter is neither a parabola nor such a ball, if an edge returns to ground that it left on a
+        Prony series, if an argument is out of range, or a function that drives the foundation fails, is not
+        finite, or is not smooth between its breaks.
     ArithmeticError
         If the motion cannot be computed to its end; the message says when and why.
 
@@ -90,8 +92,9 @@ def transient(
             from kvtheory.models.strips import held
 
             return held.transient(scene, times_of(scene, at), certify=certify)
-        from kvtheory.models.continuum import solved_scene
+        from kvtheory.models.continuum import prony, solved_scene
 
-        return solved_scene.transient(
+        solver = prony.solved_scene if scene.foundation.arms else solved_scene
+        return solver.transient(
             scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )

@@ -6,13 +6,15 @@ import re
 import shlex
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from kvtheory.cli import console
-from kvtheory.cli.group import main
+from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import check_output
 
 if TYPE_CHECKING:
@@ -61,18 +63,26 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
     "--symbols", is_flag=True, help="List the names of the symbols for --notation, and stop."
 )
 @click.option(
-    "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
-)
+    "--recheck", is_flag=True,
+    help="Check the claims again by python-flint, without SymPy; write nothing.",
+)  # fmt: skip
+@click.option(
+    "--json", "as_json", is_flag=True,
+    help="Print one JSON object about what was written or rechecked.",
+)  # fmt: skip
 @console.overwrite_option
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
-    as_json: bool,
+    recheck: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Derive the equations, check every step, and print them.
 
     LaTeX, HTML, PDF, Markdown, a notebook, JSON and BibTeX. Each derivation uses earlier ones, so all up to
-    the last of --only are derived. Without --only all are, which takes a minute or two.
+    the last of --only are derived. Without --only all are, which takes a minute the first time.
+
+    With --recheck a second program, which shares nothing with the first, checks the claims of
+    derivations.json again, and a table tells how. Exit status 1 if a claim is refuted.
     """
     from kvtheory.derivations.contents import CONTENTS
     from kvtheory.derivations.labels import find
@@ -93,6 +103,12 @@ def derive(
     if shape is not None and (only or numbers or closure):
         told = "it does not go with --only, --closure or --numbers"
         raise ValueError(f"--shape derives a separate chapter; {told}")
+    if recheck:
+        placed = click.get_current_context().get_parameter_source("output")
+        if formats or shape or numbers or notation or closure or placed != ParameterSource.DEFAULT:
+            raise ValueError("--recheck writes nothing; it goes with --only and --json alone")
+        _recheck(find(console.split(only), CONTENTS), as_json)
+        return
     wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
     letters = read_notation(notation) if notation else {}
     if not (labels or shape):  # all symbols are shown
@@ -107,6 +123,38 @@ def derive(
         edition = _edition(labels, closure, shape, letters, given, deriving)
         paths = write_edition(edition, output, wanted, writing)
     _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
+
+
+def _recheck(labels: list[str], as_json: bool) -> None:
+    """Derive, check the claims again, and print what was found."""
+    import json
+
+    from kvtheory.derivations.catalogue import catalogue
+    from kvtheory.derivations.render import edition
+    from kvtheory.derivations.render.json import document
+
+    try:
+        from kvtheory.derivations.recheck import report as second
+    except ModuleNotFoundError:
+        how = 'pip install ".[recheck]" in the checkout'
+        raise ValueError(f"--recheck needs python-flint: {how}") from None
+    with console.progress_bar("derive") as report:
+        derived = catalogue(labels, report)
+    verdicts = second.recheck(json.loads(document(edition(derived))), labels)
+    counts = second.counts(verdicts)
+    if as_json:
+        records = {
+            label: {name: asdict(each) for name, each in found.items()}
+            for label, found in verdicts.items()
+        }
+        console.print_json({**counts, "records": records})
+    else:
+        console.print_table(second.HEADS, second.rows(verdicts))
+        click.echo("Checked again: " + ", ".join(f"{status} {n}" for status, n in counts.items()))
+        for name, verdict in second.having(verdicts, "refuted", "unconfirmed").items():
+            click.echo(f"  {name} {verdict.status}: {verdict.how}")
+    if counts["refuted"]:
+        click.get_current_context().exit(DISAGREES)
 
 
 def _formats(formats: str | None) -> list[str]:

@@ -179,7 +179,7 @@ function onset_stiffness(T_x, S_c, Omega, p_p) {
   return Omega * (T_x + (S_c - p_p) / (Omega + S_c * p_p));
 }
 
-/** T from theta = arctan(1/l); theorem F20-load. */
+/** T from theta = arctan(1/l); theorem F20-tail. */
 function ball_tail(l, theta_b) {
   return -2 * l * l * l - 10 * l / 3 + 2 * theta_b * (l * l + 1) * (l * l + 1);
 }

@@ -157,7 +157,7 @@ def _strips(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _parabola(models: Models, scene: Scene, request: Request) -> Offer:
-    need(lacks_paper_model(scene))
+    need(lacks_parabola(scene), lacks_arms(scene))
     return Offer(math.nan, lambda: _continuum(models, scene, request))
 
 

@@ -194,7 +194,7 @@ def onset_stiffness(T_x: Value, S_c: Value, Omega: Value, p_p: Value) -> Value:
 
 
 def ball_tail(l: Value, theta_b: Value) -> Value:
-    """Return T from theta = arctan(1/l); theorem F20-load."""
+    """Return T from theta = arctan(1/l); theorem F20-tail."""
     return -2 * l * l * l - 10 * l / 3 + 2 * theta_b * (l * l + 1) * (l * l + 1)
 
 

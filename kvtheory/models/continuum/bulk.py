@@ -1,4 +1,4 @@
-"""One entry point for every task of the kernels, and the task that solves many transients in one call."""
+"""The one entry point for every task of the kernels, to solve many transients in one call among them."""
 
 from typing import Any, NamedTuple
 
@@ -61,7 +61,7 @@ class Results(NamedTuple):
 
 
 class Bulk(NamedTuple):
-    """Everything that `follow` needs besides two runs."""
+    """Everything that the task `FOLLOW` needs besides two runs."""
 
     scenes: Scenes
     request: Request
@@ -69,53 +69,20 @@ class Bulk(NamedTuple):
     results: Results
 
 
-def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
-    """Solve the scenes by two methods, in the records `fine` and `other`, and measure the solutions.
-
-    The status of a scene tells if it did not reach its end in `steps` steps, or ran out of room.
-    """
-    scenes, request, room, results = bulk.scenes, bulk.request, bulk.workspace, bulk.results
-    for i in range(len(scenes.eps)):
-        pieces = scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
-        one = Run(*fine[:3], pieces, *fine[4:])
-        two = Run(*other[:3], pieces, *other[4:])
-        for run in (one, two):
-            run.given.eps, run.given.kappa = scenes.eps[i], scenes.kappa[i]
-            run.given.end, run.now.nodes = scenes.end[i], 0
-        results.status[i] = walk(one, steps)
-        if results.status[i] != DONE:
-            continue
-        results.other[i] = walk(two, steps)
-        if results.other[i] == DONE:
-            count = e_.natural(one, room.natural, room.states)
-            times, states = room.natural[:count], room.states[:count]
-            d_.deviations(times, states, one, two, room.rows, results.deviations[i])
-        times, states, row = room.times, room.samples, room.rows[0]
-        count = m_.sample(one, times, states)
-        for k in range(len(request.columns)):
-            column, sense, found = request.columns[k], request.senses[k], results.largest[i][k]
-            found[0], found[1] = m_.largest(one, times, states, count, column, sense, row)
-        results.settled[i] = m_.settled(
-            one, times, states, count, scenes.friction[i], request.share, row
-        )
-        e_.states(request.times[i], results.states[i], one)
-        e_.state_at(one, one.now.steps - 1, one.now.s, results.last[i])
-        for k in range(one.now.events):
-            if one.events[k].kind == TAKE_OFF:
-                results.take_offs[i] += 1
-
-
 WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 """Tasks of `perform`."""
 
 
-def perform(
+def perform(  # noqa: PLR0912  # a branch for each task
     task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any,
     count: int, bulk: Bulk,
 ) -> int:  # fmt: skip
     """Perform a task: the only entry to the kernels, so that each of them is compiled once.
 
-    Arguments that a task does not need are blank. `values` is both input and output.
+    Arguments that a task does not need are blank. `values` is both input and output. The last task is to
+    solve the scenes of `bulk` by the methods of both runs, in at most `count` steps each, and to measure the
+    solutions; the status of a scene tells if it did not reach its end, or ran out of room. It stands here
+    because numba would generate the code of all kernels once more for a function of its own.
     """
     one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
     two = Run(second.given[0], second.method[0], second.now[0], *second[3:])
@@ -135,8 +102,37 @@ def perform(
             values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
-    elif task == FOLLOW:
-        follow(bulk, one, two, count)
+    if task != FOLLOW:
+        return 0
+
+    scenes, request, room, results = bulk.scenes, bulk.request, bulk.workspace, bulk.results
+    for i in range(len(scenes.eps)):
+        pieces = scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
+        one, two = Run(*one[:3], pieces, *one[4:]), Run(*two[:3], pieces, *two[4:])
+        for run in (one, two):
+            run.given.eps, run.given.kappa = scenes.eps[i], scenes.kappa[i]
+            run.given.end, run.now.nodes = scenes.end[i], 0
+        results.status[i] = walk(one, count)
+        if results.status[i] != DONE:
+            continue
+        results.other[i] = walk(two, count)
+        if results.other[i] == DONE:
+            found = e_.natural(one, room.natural, room.states)
+            natural, of_them = room.natural[:found], room.states[:found]
+            d_.deviations(natural, of_them, one, two, room.rows, results.deviations[i])
+        times, states, row = room.times, room.samples, room.rows[0]
+        found = m_.sample(one, times, states)
+        for k in range(len(request.columns)):
+            column, sense, extreme = request.columns[k], request.senses[k], results.largest[i][k]
+            extreme[0], extreme[1] = m_.largest(one, times, states, found, column, sense, row)
+        results.settled[i] = m_.settled(
+            one, times, states, found, scenes.friction[i], request.share, row
+        )
+        e_.states(request.times[i], results.states[i], one)
+        e_.state_at(one, one.now.steps - 1, one.now.s, results.last[i])
+        for k in range(one.now.events):
+            if one.events[k].kind == TAKE_OFF:
+                results.take_offs[i] += 1
     return 0
 
 

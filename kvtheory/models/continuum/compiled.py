@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -83,18 +83,14 @@ def kernel() -> Any:
         inlined = [*vars(module)] if module in INLINED else SHORT
         compilation.register(module, inlined, **OPTIONS, no_cfunc_wrapper=True)
 
-    def entry(
-        task: int, one: Any, two: Any, times: Any, states: Any, rows: Any, values: Any,
-        count: int, all_of: Any,
-    ) -> int:  # fmt: skip
-        return bulk.perform(task, one, two, times, states, rows, values, count, all_of)
-
+    perform = bulk.perform
+    entry = FunctionType(perform.__code__, perform.__globals__, perform.__name__)
     entry.__qualname__ = f"perform_{sources()}"
     return compilation.cached(entry, **OPTIONS)
 
 
 def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
-    """Solve many scenes with compiled kernels, see `bulk.follow`."""
+    """Solve many scenes with compiled kernels, see `bulk.perform`."""
     room = all_of.workspace
     kernel()(
         bulk.FOLLOW, fine, other, room.times, room.samples, room.rows, np.zeros(2), steps, all_of

@@ -171,11 +171,11 @@ class Model:
 
     def height(self, x: Any, y: Any = 0.0) -> Any:
         """Return h(x, y), huge where the indenter has no surface."""
-        return kernels.height_at(self.surface, self.profile, x, y)
+        return kernels.surface_at(self.surface, self.profile, x, y)[0]
 
     def slope(self, x: Any, y: Any = 0.0) -> Any:
         """Return dh/dx, zero where the indenter has no surface."""
-        return kernels.slope_at(self.surface, self.profile, x, y)
+        return kernels.surface_at(self.surface, self.profile, x, y)[1]
 
     def strips(self, depth: float) -> int:
         """Return the number of strips that can be in contact at this depth."""
@@ -194,7 +194,7 @@ class Model:
             overlap = depth - self.height(x, j * self.across)
             pressed = overlap > 0.0
             sums = float(overlap[pressed].sum())
-            for i in kernels.changed(pressed, 1, x.size) if self.parts else ():
+            for i in kernels.crossing(overlap, 0.0, 1, x.size) if self.parts else ():
                 out = overlap[i : i + 3] if pressed[i - 1] else overlap[i - 3 : i][::-1]
                 sums += kernels.kink_area(out)[0]
             area += weight * sums
@@ -257,10 +257,11 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
             x = min(max(secant, math.nextafter(low, high)), math.nextafter(high, low))
         value, before = function(x), rising
         rising = value > 0.0
+        kept = 0.5 if before is rising else 1.0
         if rising:
-            high, above, below = x, value, below * (0.5 if before is True else 1.0)
+            high, above, below = x, value, below * kept
         else:
-            low, below, above = x, value, above * (0.5 if before is False else 1.0)
+            low, below, above = x, value, above * kept
     return high
 
 
@@ -272,7 +273,7 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
     (1.0, 1.0, 0.5)
     """
     line: Any = getattr(indenter, "profile", indenter)
-    size, exponent, steep, across, stretch = 1.0, 2.0, 1.0, 0.0, 1.0
+    size, exponent, steep, across, stretch = 1.0, -1.0, 1.0, 0.0, 1.0
     if isinstance(line, Wedge):
         exponent, steep = 1.0, line.inclination
     elif isinstance(line, PowerLaw):
@@ -281,6 +282,8 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
         size, exponent = line.radius, 0.0 if isinstance(line, Circle) else 2.0
     if isinstance(indenter, Sphere):
         across, stretch = 0.5 / (indenter.radius_across or indenter.radius), indenter.stretch
+    elif isinstance(indenter, Revolved) and exponent == 2.0:
+        across = 0.5 / size
     inside = math.nextafter(indenter.reach, 0.0) if math.isfinite(indenter.reach) else math.inf
     return kernels.Surface(
         float(size), float(exponent), float(steep), inside, float(across),

@@ -74,52 +74,59 @@ class ElementRow:
             law = law._replace(rates=0.0 * law.rates)
         self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
         self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
-        names = ("spacing", "across", "mass", "weight", "spring", "depth", "half_length",
-                 "mass_along", "spring_along", "damping_along")  # fmt: skip
-        self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
-            "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
+        shared = ((name, getattr(model, name, None)) for name in Elements._fields)
+        self.constants: dict[str, Any] = {
+            name: float(x) if isinstance(x, float) else x for name, x in shared if x is not None
+        } | {
             "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
-            "rest_velocity": model.at_rest.velocity,
+            "rest_velocity": model.at_rest.velocity, "profile": model.profile,
+            "faded": np.ones(law.rates.size),
             "kinks": np.array(model.indenter.kinks, dtype=float),
         }  # fmt: skip
         self.stored = self._empty(0, 1, 1)
         depth = model.start * model.depth
-        self.lay(max(depth, model.depth), lambda x, y: np.maximum(depth - model.height(x, y), 0.0))
-        self.state[kernels.DEPTH] = depth
+        self.lay(depth, lambda x, y: np.maximum(depth - model.height(x, y), 0.0))
+        self.state[kernels.DEPTH], self.state[kernels.FORCES] = depth, model.weight
 
     def compile(self, steps: int) -> None:
         """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
-        work = steps * self.stored.u.shape[0]
+        work = steps * self.stored.low.size
         pays = Tally.steps + work > WORTHWHILE and compilation.available()
         Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
         self.compiled = pays and self.model.profile is None
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
-        """Compress the elements that an indenter of this depth meets at Y = 0 by `surface`(x, y).
+        """Press the indenter to a depth into elements at Y = 0 that are compressed by `surface`(x, y).
 
         In contact are those where `contact`(x) or, without it, those that are compressed.
         """
-        while kernels.update_window(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
+        while kernels.set_window(self.stored, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row = self.stored
-        for each in (row.u, row.arms, row.touched):
+        for each in (row.modes, row.rows, row.flags):
             each[...] = 0
-        for j in range(row.u.shape[0]):
+        for j in range(int(row.counts[kernels.STRIPS])):
             part = slice(row.low[j], row.high[j])
             x = row.spacing * row.numbers[part]
-            row.u[j, part] = surface(x, j * row.across)
-            row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
+            u = surface(x, j * row.across)
+            row.rows[kernels.U, j, part] = u
+            row.flags[kernels.TOUCHED, j, part] = contact(x) if contact else u > 0.0
+            if not row.law.arm_time.size:
+                row.modes[0, j, part] = u
         self._begin()
+        kernels.approach(row, np.ones_like(row.faded), 0.0, 0.0, depth)
+        kernels.add_kinks(row, row.law.step(1.0), 0.0)
+        kernels.begin(row)
 
     def run(
-        self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
+        self, course: Course, found: Array, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
         """Take steps up to `until` or a failure; return the status, and the steps and reports done."""
         advance = compiled_advance() if self.compiled else kernels.advance
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
             status, step, reported = advance(
-                self.stored, self.state, course, balances, found, step, reported, until
+                self.stored, self.state, course, found, step, reported, until
             )
             if status == kernels.LACKING:
                 self._move(float(course.times[step]))
@@ -136,71 +143,69 @@ class ElementRow:
         self.state[:4] = state[1:]
         times = state.time + np.array([0.0, h])
         course = course_of(self.path, self.stored.law, times, np.array([h]))
-        if self.run(course, np.zeros((0, 1)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]:
+        if self.run(course, np.zeros((0, 1)), (0, 0), 1)[0]:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))
 
-    def states(self, t: float) -> tuple[Array, Array]:
-        """Return u of all stored elements at a time, and the forces of their arms."""
+    def states(self) -> tuple[Array, Array]:
+        """Return u of all stored elements, and the forces of their arms."""
         row, law = self.stored, self.stored.law
-        past = t - row.since
-        for j in range(past.shape[0]):
-            past[j, row.low[j] : row.high[j]] = 0.0
-        if not row.arms.size:
-            return row.u * np.exp(-law.rates[0] * past), row.arms
-        modes = row.arms * np.exp(-law.rates[:, None, None] * past)
-        u = np.where(row.touched, row.u, np.tensordot(law.shares, modes, 1))
+        modes = row.modes * row.faded[:, None, None]
+        u = np.tensordot(law.shares, modes, 1)
+        if not law.arm_time.size:
+            return u, modes[:0]
+        touched = row.flags[kernels.TOUCHED]
+        u = np.where(touched, row.rows[kernels.U], u)
         free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
-        return u, np.where(row.touched, row.arms, free)
+        return u, np.where(touched, row.modes, free)
 
     def _empty(self, first: int, width: int, strips: int, runs: int = 0) -> Elements:
         """Return elements that are undisturbed."""
-        size, runs = self.model.law.arm_stiffness.size, max(runs, 2 * strips)
-        state, flags = np.zeros((6, strips, width)), np.zeros((3, strips, width), dtype=bool)
+        law, runs = self.model.law, max(runs, 2 * strips)
         low, high, counts = (np.zeros(n, np.int64) for n in (strips, strips, kernels.UPDATES + 1))
         counts[kernels.FIRST], (begun, ended) = first, np.zeros((2, runs, 3), dtype=np.int64)
         return Elements(
-            u=state[0], arms=np.zeros((size, strips, width)), since=state[1], touched=flags[0], low=low,
-            high=high, counts=counts, numbers=np.arange(float(first), first + width) + self.model.shift,
-            ones=np.ones(width), height=state[2], meets=state[3], slope=state[4], before=state[5],
-            pressed=flags[1], late=flags[2], falling=np.zeros((strips, 2), dtype=bool),
-            weights=np.ones(strips), begun=begun, ended=ended, relaxed=np.zeros((runs, 2)),
-            modes=np.zeros(size), stages=np.zeros((6, 4)), **self.constants,
+            modes=np.zeros((law.rates.size, strips, width)), rows=np.zeros((5, strips, width)),
+            flags=np.zeros((2, strips, width), dtype=bool), low=low, high=high, counts=counts,
+            numbers=np.arange(float(first), first + width) + self.model.shift, begun=begun, ended=ended,
+            edges=np.zeros((runs, 2, 3)), weights=np.ones(strips), ramps=np.zeros(law.arm_time.size),
+            stages=np.zeros((7, max(4, law.rates.size))), **self.constants,
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
-        (first, low, high, strips, runs, *_), (rows, width) = old.counts.tolist(), old.u.shape
+        first, low, high, strips, runs, *_ = old.counts.tolist()
+        rows, width = old.flags.shape[1:]
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows), 2 * runs)
-        new.counts[kernels.STRIPS] = strips
+        new = self._empty(start, stop - start, max(strips, rows), max(2 * runs, len(old.edges)))
         new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
+        new.counts[kernels.STRIPS] = rows
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
-            for name in ("u", "arms", "since", "touched"):
-                getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
-            for name in ("low", "high"):
-                moved = getattr(old, name) + first - start
-                getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
+            for name in ("modes", "rows", "flags"):
+                getattr(new, name)[:, :rows, to] = getattr(old, name)[..., of]
+        new.low[:rows], new.high[:rows] = 0, stop - start
+        new.edges[: len(old.edges)] = old.edges[..., [kernels.OLD, kernels.OLD, kernels.FALLS]]
         self.stored = new
         self._begin()
 
     def _begin(self) -> None:
         """Find the runs of elements in contact."""
-        self.stored.pressed[...] = self.stored.touched
-        kernels.find_runs(self.stored)
-        kernels.begin(self.stored)
+        row = self.stored
+        row.rows[kernels.HEIGHT] = np.where(row.flags[kernels.TOUCHED], -1.0, 1.0)
+        kernels.find_runs(row, kernels.HEIGHT, 0.0)
+        kernels.begin(row)
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
         dx, row = self.model.spacing, self.stored
         if self.model.sprung:
-            compressed = np.abs(self.states(t)[0]) > FORGOTTEN * self.model.depth
-            known = np.flatnonzero((compressed | row.touched).any(axis=0))
+            compressed = np.abs(self.states()[0]) > FORGOTTEN * self.model.depth
+            known = np.flatnonzero((compressed | row.flags[kernels.TOUCHED]).any(axis=0))
             first = int(row.counts[kernels.FIRST])
             return first + int(known.min(initial=0)), first + int(known.max(initial=-1)) + 1
         back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
@@ -226,5 +231,5 @@ def course_of(
     reports = np.array(about, dtype=float).reshape(len(after), 5)
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
-    return Course(times, steps, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
+    return Course(times, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
                   np.array(limits), over, which)  # fmt: skip

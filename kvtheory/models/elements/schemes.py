@@ -1,42 +1,34 @@
 """The schemes by name: how each moves the indenter and then its elements by one step in time.
 
 The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt), and on a spring in the drive
-M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how
-F_z is summed over the elements and over the step; what is known of each is in `results.schemes`.
+M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how F_z is
+summed over the elements and over the step; what is known of each is in `results.schemes`.
 
-Explicit schemes are Runge-Kutta methods on F_z = dx Σ (K g + C g'), with the paper's rules of contact.
-They are stable up to dt C L/M = 2.785 (the paper's) or 2 (Euler), L the length of the contact; on arms, up to
+Explicit schemes are Runge-Kutta methods on F_z = dx Σ (K g + C g'), with the paper's rules of contact. They
+are stable up to dt C L/M = 2.785 (the paper's) or 2 (Euler), L the length of the contact; on arms, up to
 where the matrix of a step (`stability.amplification`) begins to grow.
 
-Implicit schemes use the exact memory of an element (F8 for Kelvin-Voigt), and need no rules of contact.
-The force, averaged over the step, is k Σ dx max(g - r, 0), r being where the mean pressure of an element
-would vanish; for Kelvin-Voigt, with the weight e^(t/τ),
+Implicit schemes use the exact memory of an element (F8) and need no rules of contact. The force, averaged
+over the step, is k Σ dx max(g - r, 0), r being where the mean pressure of an element would vanish; for
+Kelvin-Voigt, with the weight e^(t/τ), F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0). It is never
+negative, independent of detached elements, and convex in the depth at the end of the step, which therefore
+is the one root of a monotone function. The depth advances with the mean velocity (1-θ) v_0 + θ v_1: θ = 1
+has the damping of the backward Euler method; the exponential fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M,
+lets the velocity fall by e^(-z), and the order is two. Both are stable at any step, since θ >= 1/2
+(derivation `element-stability`).
 
-    F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0).
-
-It is never negative, independent of detached elements, and convex in the depth at the end of the step,
-which therefore is the one root of a monotone function. The depth advances with the mean velocity
-(1-θ) v_0 + θ v_1. With θ = 1 the damping is that of the backward Euler method; with the exponential
-fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M, the velocity falls by e^(-z) exactly as it should, and the
-order is two. Both are stable at any step, since θ >= 1/2 (derivations, `element-stability`).
-
-On a spring the place along x is found in the same way, with M_x, k_x and c_x and the force of an element
-times its slope halfway through the step. The work of these forces on both motions is what elements of a
-parabola store and lose, so that no step gains energy, whatever comes into contact or leaves it in the step.
-
-On arms, an element in contact is a true element under a surface that moves along a straight line: its mean
-pressure times its way is the work done on it, what its springs store and its dampers lose. With θ = 1/2 the
-same holds of mass and spring, so that the energy of a step with the contact held can only fall, and more with
-θ > 1/2: every step is stable. C is here the damper which, beside a spring, does to a ramp as the arms do in a
+On a spring the place along x is found likewise, with the force of an element times its slope halfway
+through the step. The work of these forces is what elements of a parabola store and lose, so that no step
+gains energy. On arms, an element in contact is a true element under a surface that moves along a straight
+line, and the same holds. C is here the damper which, beside a spring, does to a ramp as the arms do in a
 step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones; so θ - 1/2 is of the third
-order in h, and the scheme of the second (derivation `element-arms`). It is so in the spacing as well: the
-pressure of arms is continuous, and there is no sawtooth but that of arms faster than a step.
+order in h, and the scheme of the second (derivation `element-arms`).
 
-Sums over whole elements carry the sawtooth of theorem F15-sawtooth: on Table 1 at the paper's density
-2e-3 of the force at the start, 1e-3 in steady sliding, halved with the spacing. With the kinks of the
-surface at edges between two elements (`parts` of the model), it is 1e-4 and 1e-6, and quartered; the
-depth is within 1e-5 of theory. Only at the very instant of a jump of the drive, where pressure is left
-on an edge, is the order one too.
+Sums over whole elements carry the sawtooth of theorem F15-sawtooth: on Table 1 at the paper's density 2e-3
+of the force at the start, 1e-3 in steady sliding, halved with the spacing. With the kinks of the surface at
+edges between two elements (`parts` of the model), it is 1e-4 and 1e-6, and quartered; the depth is within
+1e-5 of theory. Only at the very instant of a jump of the drive, where pressure is left on an edge, is the
+order one.
 """
 
 import math

@@ -55,7 +55,7 @@ MORE_ROOM = 16.0
 PAUSE = {True: 3e7, False: 1e5}
 """Elements times steps between two reports of progress, compiled and interpreted."""
 MOST_OF_ALL = 2e9
-"""Upper bound on elements in the contact at rest times steps: so many take from minutes to hours."""
+"""Upper bound on elements in the contact at rest times steps: so many take seconds to hours."""
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
@@ -69,7 +69,9 @@ are seldom both small by chance."""
 KNOWN = 0.5
 """Uncertainty of an edge, in elements, after a change of the drive, if a damper leaves pressure on it."""
 KINKED = 0.05
-"""Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere."""
+"""Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere, and on
+arms, where pressure is extrapolated to it; and of the forces, in elements at the peak pressure, where arms
+remember a kink that moved by less than an element."""
 ROUNDING = 1e-12
 """Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
@@ -259,14 +261,13 @@ def _run(
     while True:
         row = ElementRow(model, path, scheme, kept)
         course = course_of(path, row.stored.law, *table, stability.limits(model, path))
-        balances = np.zeros((2, kernels.WINDOW))
         found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
-        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
+        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
         status, done, reported, until = kernels.DONE, 0, 0, -1
         while status == kernels.DONE and until < len(steps):
             until = min(done + pause, len(steps))
-            status, done, reported = row.run(course, found, balances, (done, reported), until)
+            status, done, reported = row.run(course, found, (done, reported), until)
             if done:
                 progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
         if status == kernels.DONE:
@@ -275,7 +276,7 @@ def _run(
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, float(steps.max()), times[done], row.state, balances, deepest
+                status, scheme, model, path, float(steps.max()), times[done], row.state, deepest
             )  # fmt: skip
             error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
             raise error
@@ -301,9 +302,11 @@ def _estimate(
     known = KNOWN if (model.law.damping > 0.0 or (model.law.arm_time < h).any()) else 0.0
     jump = known if changes else 0.0
     # On a spring, edges stop and turn without a jump of the pressure.
-    edge = (known if changes or model.sprung else 0.0) + (KINKED if model.indenter.kinks else 0.0)
+    kinks, arms = bool(model.indenter.kinks), bool(model.law.arm_time.size)
+    edge = (known if changes or model.sprung else 0.0) + KINKED * (kinks or arms)
     width = 1.0 if model.indenter.per_width else 2.0 * model.half_width(model.depth)
-    force = jump * model.spacing * width * float(rows["peak_pressure"].max())
+    one = model.spacing * width * float(rows["peak_pressure"].max())
+    force = (jump + KINKED * (kinks and arms)) * one
     doubt = float(rows["peak_doubt"].max() + jump * rows["edge_doubt"].max())
     for name, more in {
         "leading_edge": edge * model.spacing, "trailing_edge": edge * model.spacing, "normal_force": force,

@@ -143,7 +143,7 @@ def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
 
 def divergence(
     status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, state: Array,
-    balances: Array, deepest: float,
+    deepest: float,
 ) -> DivergenceError:  # fmt: skip
     """Return the error about a run that was found to be unstable, or sank to `deepest` static depths."""
     up, along = -state[kernels.RATE], abs(state[kernels.ALONG_RATE])
@@ -152,7 +152,7 @@ def divergence(
         kernels.THROWN_UP: f"the indenter is thrown upward with {up:.3g} m/s",
         kernels.THROWN_ALONG: f"the indenter is thrown along x with {along:.3g} m/s",
         kernels.UNBALANCED: "the forces fail to balance the motion by "
-        f"{balances[0].sum() / balances[1].sum():.0%}",
+        f"{state[kernels.IMBALANCE] / state[kernels.FORCES]:.0%}",
     }[status]
     return DivergenceError(
         f"the run diverged at t = {time:.6g} s, where {sign}: {describe(scheme, model, path, h)}"

@@ -1,0 +1,143 @@
+"""A solved transient on a Prony series; its kernels are interpreted, or compiled by numba where it pays."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kvtheory import compilation
+from kvtheory.models.continuum import compiled
+from kvtheory.models.continuum.prony import contact, evaluation, step, walk
+from kvtheory.models.continuum.prony.records import STEP, Run, begin, with_more_room
+from kvtheory.models.continuum.run import Spring, StepControl, readable, structured
+from kvtheory.results.errors import TransientError
+from kvtheory.scene import base_motion as b_
+from kvtheory.scene.base_motion import BaseMotion
+
+Array = NDArray[np.float64]
+
+STEP_LIMIT = 100_000
+ATTEMPTS = 200
+"""Attempted steps between two reports of progress."""
+WORTHWHILE = 1000
+"""Interpreted steps, times arms, after which compiling pays: about a second."""
+SUBDIVISIONS = 4
+"""Points shown for each step."""
+ONE_WAY = {
+    walk.RETOUCHES: "the trailing edge returns to ground that it left",
+    walk.RECEDES: "the leading edge leaves the ground",
+    walk.STUCK: "an edge turns back at once, or the contact closes",
+}
+"""How a motion ceases to slide one way."""
+
+
+class Tally:
+    """Number of steps interpreted in this process, times arms."""
+
+    steps = 0
+
+
+@cache
+def kernel() -> Any:
+    """Return the compiled entry of the kernels; it needs numba."""
+    modules = b_, contact, step, walk, evaluation
+    for module in modules:
+        compilation.register(module, _nrt=False, no_cfunc_wrapper=True)
+
+    def entry(task: int, run: Any, attempts: int, times: Any, found: Any) -> int:
+        return evaluation.perform(task, run, attempts, times, found)
+
+    entry.__qualname__ = f"perform_{compiled.sources(modules)}"
+    return compilation.cached(entry, _nrt=False)
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A solved transient: evaluate it anywhere in [0, end] with `states`."""
+
+    run: Run
+
+    @cached_property
+    def counts(self) -> Any:
+        """The state at the end, with the numbers of steps and evaluations, see `records.NOW`."""
+        return readable(self.run.now[0])
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the kernels were compiled."""
+        return isinstance(self.run.steps, np.ndarray)
+
+    @cached_property
+    def natural(self) -> Array:
+        """Times at which to show the motion: those of the steps, subdivided."""
+        starts = structured(self.run.steps[: self.counts.steps], STEP)["start"]
+        ends = np.append(starts, self.counts.s)
+        times = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(SUBDIVISIONS) / SUBDIVISIONS)
+        return np.append(times.reshape(-1), ends[-1])
+
+    def states(self, s: ArrayLike) -> Array:
+        """Return the states at an array of times: a column for each, with the rows of `evaluation`."""
+        times = np.ascontiguousarray(s, dtype=float)
+        return self._perform(evaluation.STATES, times, np.empty((times.size, evaluation.SIZE))).T
+
+    def pressure(self, xi: Array, s: float) -> Array:
+        """Return the pressure at places in the contact."""
+        found = np.empty((1 + xi.size, evaluation.SIZE))
+        found[0] = self.states([s])[:, 0]
+        return self._perform(evaluation.PRESSURE, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
+
+    def _perform(self, task: int, times: Array, found: Array) -> Array:
+        if self.compiled:
+            kernel()(task, self.run, 0, times, found)
+            return found
+        evaluation.perform(task, self.run, 0, times, found)
+        return found
+
+
+def solve(
+    drive: BaseMotion, arms: Any, numbers: tuple[float, float], end: float, rtol: float,
+    *, spring: Spring | None = None, fast: bool | None = None,
+    control: StepControl = StepControl(),  # noqa: B008 - immutable
+    progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
+) -> Trajectory:  # fmt: skip
+    """Solve the transient of `drive`, V >= 0, from rest until `end`, in scaled form.
+
+    `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `numbers` eps and kappa, which is infinite for a fixed
+    indenter. The rest is as in `continuum.solver.solve`.
+
+    Raises
+    ------
+    ValueError
+        If the sliding is not one-way: an edge returns to ground that it left.
+    TransientError
+        If too many steps are needed.
+
+    >>> motion = solve(BaseMotion.constant(1.0, end=2.0), [(5.0, 1.0)], (0.04, 0.0), 2.0, 1e-9)
+    >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
+    0.417162
+    """
+    tally = len(arms)
+    fast = compilation.available() and Tally.steps >= WORTHWHILE if fast is None else fast
+    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=fast)
+    left, status = max_steps, walk.PAUSED
+    nothing = np.zeros(1), np.zeros((1, 1))
+    while status != walk.DONE:
+        if fast:
+            status = kernel()(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
+        else:
+            status = evaluation.perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
+        now = readable(run.now[0])
+        left = max_steps - now.steps - now.rejected
+        if status in ONE_WAY:
+            raise ValueError(ONE_WAY[status], now.s)
+        if status == walk.FULL:
+            run = with_more_room(run)
+        if left <= 0 and status != walk.DONE:
+            raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
+        if progress is not None:
+            progress(now.s)
+    Tally.steps += 0 if fast else tally * (max_steps - left)
+    return Trajectory(run)

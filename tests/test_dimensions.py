@@ -1,0 +1,41 @@
+"""Both sides of every relation have the same dimension, and a wrong one is found."""
+
+from dataclasses import replace
+
+import pytest
+from kvtheory.derivations.dimensions import BASE, EXEMPT, DimensionError, faults, of_unit
+from kvtheory.derivations.symbols import K, W, tau
+
+
+def test_every_relation_of_the_catalogue_has_one_dimension(by_label):
+    assert [each for record in by_label.values() for each in faults(record, by_label)] == []
+    assert all(reason and label in by_label for label, reason in EXEMPT.items())
+
+
+@pytest.mark.parametrize("factor", [K, 1 / tau, W**2])
+def test_a_wrong_dimension_is_found_in_every_relation(by_label, factor):
+    planted = missed = 0
+    for record in by_label.values():
+        steps = [
+            step
+            for step in record.steps
+            if step.claim and 0 not in (step.claim.lhs, step.claim.rhs)
+        ]
+        for step in steps if record.label not in EXEMPT else ():
+            wrong = replace(step, claim=replace(step.claim, rhs=step.claim.rhs * factor))
+            planted += 1
+            missed += len(faults(replace(record, steps=(wrong,)), by_label)) != 1
+    assert planted > 1500
+    assert missed == 0
+
+
+def test_units_are_read():
+    units = {
+        "J/(mol K)": {"N": 1, "m": 1, "mol": -1, "K": -1},
+        "kg/m²": {"N": 1, "s": 2, "m": -3},
+        "1/s": {"s": -1},
+    }
+    for unit, powers in units.items():
+        assert of_unit(unit) == tuple(powers.get(base, 0) for base in BASE)
+    with pytest.raises(DimensionError, match="furlong"):
+        of_unit("furlong")
