@@ -82,7 +82,7 @@ def solved(scene, keys, data, seed=0):
     return friction.solve(problem, seed)
 
 
-@pytest.mark.parametrize(("name", "few"), [("line", 24), ("springpot", 6)])
+@pytest.mark.parametrize(("name", "few"), [("line", 15), ("springpot", 3)])
 def test_the_true_values_are_within_two_standard_errors(name, few):
     """Of 95 % of the fits; KVTHEORY_TEST_SCENES=1000 makes 400 of them."""
     scene, keys, how = CASES[name]
@@ -167,6 +167,13 @@ def test_other_columns_are_conditions(tmp_path):
     assert found.data["conditions"]["foundation.temperature"][0] == 293.15
 
 
+def test_a_shape_that_is_integrated_can_be_fitted():
+    circle = kv.Scene(indenter=kv.Circle("10 mm"))
+    few = np.array([1e-2, 0.3])
+    found = kv.fit(circle, table(circle, velocity=few), free=["foundation.stiffness"])
+    assert found.parameters["foundation.stiffness"].value == pytest.approx(1e10, rel=1e-4)
+
+
 def test_both_directions_and_rest_count():
     there_and_back = np.concatenate([-V[::-2], [0.0], V[::2]])
     data = {"V [m/s]": there_and_back, "mu": measured(TABLE1, velocity=there_and_back)}
@@ -192,9 +199,9 @@ def test_models_are_weighed_and_no_more_is_taken_than_needed():
 
 
 def test_models_with_more_unknowns_than_values_are_left_out():
-    found = kv.fit(TABLE1, table(TABLE1, 0.01, 4, V[::5]), models=True)
+    found = kv.fit(TABLE1, table(TABLE1, 0.01, 4, V[::10]), models=True)
     assert found.model == "kelvin-voigt"
-    assert [model.name for model in found.models] == ["kelvin-voigt", "springpot", "1 arm"]
+    assert [model.name for model in found.models] == ["kelvin-voigt"]
 
 
 MU = "V [mm/s],mu\n1,0.01\n10,0.05\n100,0.08\n1000,0.04\n"

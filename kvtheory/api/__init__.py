@@ -3,6 +3,7 @@
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
 from kvtheory.api._elements import elements
+from kvtheory.api._fewer_arms import fewer_arms
 from kvtheory.api._fit import fit
 from kvtheory.api._fit_foundation import fit_foundation
 from kvtheory.api._solve import solve
@@ -12,6 +13,6 @@ from kvtheory.api._sweep import sweep
 from kvtheory.api._transient import transient
 
 __all__ = [
-    "asymptotes", "compare", "elements", "fit", "fit_foundation", "footprint", "solve", "stability", "steady",
-    "sweep", "transient",
+    "asymptotes", "compare", "elements", "fewer_arms", "fit", "fit_foundation", "footprint", "solve",
+    "stability", "steady", "sweep", "transient",
 ]  # fmt: skip

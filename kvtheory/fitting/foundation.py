@@ -16,6 +16,8 @@ SYSTEMATIC = 2.0
 """Ratio of the least misfit of any series to the scatter from which the data violate Kramers-Kronig."""
 VISIBLE = 0.01
 """Least misfit below which they are never said to."""
+UNRELAXED = 1e-6
+"""Sum of the arms over the relaxed modulus below which there are none."""
 UNSEEN = 1e-3
 """Relaxed modulus over the least storage or relaxation modulus below which the data do not show it."""
 WINDOW = 5
@@ -68,6 +70,9 @@ def fit(
         )
     start, least = best(thin)
     series = arms_of(thin, start, arms, _target(thin, start, least, rtol))
+    if series.modulus.sum() <= UNRELAXED * series.relaxed:
+        told = "the moduli do not relax: no series with arms above 0 is closer than a constant"
+        raise ValueError(f"{measured.source}: {told}")
     if _no_plateau(thin, series):
         series = _with_plateau(thin, series, measured.source)
         notes.append("The data show no relaxed modulus: the slowest arm was taken as the spring.")
@@ -106,10 +111,9 @@ def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
     while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
         found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
     if _no_plateau(data, found) or not found.time.size:
-        told = (
-            "the moduli relax to zero within the data; a foundation needs a relaxed modulus above 0"
-        )
-        raise ValueError(f"{source}: {told}. Measure down to the rubber plateau")
+        told = "the moduli relax to zero within the data, or stiffen as they relax"
+        expected = "expected data that show a relaxed modulus above 0, such as the rubber plateau"
+        raise ValueError(f"{source}: {told}; {expected}")
     return found
 
 

@@ -57,8 +57,8 @@ FREE = 1e3
 """Factor beyond these ranges to which an unknown may go."""
 ORDER = 0.05, 1.0
 """Range of the order of a springpot."""
-TRIED, SOME = 10, 16
-"""Points that are tried (as a power of two), on about so many rows of the data."""
+TRIED, SOME = (6, 8, 10), 16
+"""Points that are tried for one, two and more unknowns (as powers of two), and rows of the data at most."""
 ROUNDS = (32, 6), (12, 10), (4, 15), (1, 200)
 """How many of the best points are refined, and by how many steps, in each round."""
 SETTLED, MOST_DAMPING, LONGEST = 1e-10, 1e8, 2.0
@@ -231,25 +231,29 @@ class Problem:
         """Return the stiffness (or modulus) of the foundation and the times of the data, by fact F26."""
         scene, measured = self.scene, self.data.measured
         key = STIFF[0] if scene.foundation.modulus is None else STIFF[1]
-        still = {**self.data.conditions, "drive.velocity": 0.0}
+        still = {**self.some.data.conditions, "drive.velocity": 0.0}
         first = float(scene.values()[key])
         if key in self.keys:
-            tried = np.logspace(*DECADES, 8 * (DECADES[1] - DECADES[0]) + 1)
-            at_rest = self.solve(scene.replace({**still, key: tried[:, None]}))
-            slope = np.broadcast_to(
-                at_rest.depth / at_rest.half_length, (tried.size, self.data.size)
-            )
-            load = np.broadcast_to(at_rest.load, slope.shape)
-            mu = PEAK * slope
-            kinds = {"load": load, "friction_force": mu * load, "friction_coefficient": mu}
-            name = next(name for name in kinds if name in measured)
-            off = np.log(kinds[name].mean(axis=1) / np.abs(measured[name]).max())
-            if np.ptp(off) > 1.0:  # else it does not depend on the stiffness
-                first = float(tried[np.abs(off).argmin()])
+            name = next(name for name in ("load", *reversed(MEASURED)) if name in measured)
+            tried = np.logspace(*DECADES, 2 * (DECADES[1] - DECADES[0]) + 1)
+            off = [self._expected(name, {**still, key: K}) for K in tried]
+            off = np.log(np.array(off) / np.abs(measured[name]).max())
+            if np.nanmax(off) - np.nanmin(off) > 1.0:  # else it does not depend on the stiffness
+                first = float(tried[np.nanargmin(np.abs(off))])
         a = np.mean(self.solve(scene.replace({**still, key: first})).half_length)
         V = np.abs(self.data.conditions["drive.velocity"])
         moving = V[V > 0.0]
         return first, a / np.array([moving.max(), moving.min()])
+
+    def _expected(self, name: str, still: Mapping[str, Any]) -> float:
+        """Return the load at rest, or an estimate of the largest friction; NaN where there is no contact."""
+        try:
+            state = self.solve(self.scene.replace(still))
+        except (ValueError, ArithmeticError, RuntimeError):
+            return math.nan
+        mu = PEAK * state.depth / state.half_length
+        kinds = {"load": state.load, "friction_force": mu * state.load, "friction_coefficient": mu}
+        return float(np.mean(kinds[name]))
 
 
 class Solved(NamedTuple):
@@ -293,12 +297,14 @@ class Solved(NamedTuple):
 def solve(problem: Problem, seed: int = 0) -> Solved:
     """Return the minimum of the sum of squares over the whole range."""
     low, high = problem.ranges.T
-    points = qmc.scale(qmc.Sobol(low.size, seed=seed).random_base2(TRIED), low, high)
+    points = qmc.scale(
+        qmc.Sobol(low.size, seed=seed).random_base2(TRIED[min(low.size, len(TRIED)) - 1]), low, high
+    )
     score = np.sum(np.arctan(problem.some.residuals(points)) ** 2, axis=1)
     beyond = math.log(FREE)
     most = np.where([key.endswith(".order") for key in problem.keys], 0.0, high + beyond)
     for count, steps in ROUNDS:
-        best = points[np.argsort(score)[:count]]
+        best = points[np.argsort(score)[: min(count, 4 * low.size**2)]]
         points, score = _descended(problem, best, low - beyond, most, steps)
     point = _sorted(points, problem.keys)
     r = problem.residuals(point)[0]

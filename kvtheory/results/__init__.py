@@ -8,7 +8,7 @@ from kvtheory.results.errors import (
     ToleranceError,
     TransientError,
 )
-from kvtheory.results.fits import FoundationFit, FrictionFit
+from kvtheory.results.fits import FewerArms, FoundationFit, FrictionFit
 from kvtheory.results.solution import ClimbStep, Solution
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, Stability, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
@@ -32,9 +32,9 @@ from kvtheory.results.transient import (
 
 __all__ = [
     "AT_REST", "QUANTITIES", "SERIES_UNITS", "SHOWN_UNITS", "SPRING_UNITS", "STABILITY_UNITS",
-    "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis", "Certificate",
-    "Check", "ClimbStep", "Comparison", "DivergenceError", "Event", "Explanation", "Failure",
-    "FoundationFit", "FrictionFit", "QuadratureError", "Simulation", "Solution", "SprungSimulation",
-    "SprungTransient", "Stability", "SteadyState", "Sweep", "ToleranceError", "Transient", "TransientError",
-    "record", "units_for",
+    "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis",
+    "Certificate", "Check", "ClimbStep", "Comparison", "DivergenceError", "Event",
+    "Explanation", "Failure", "FewerArms", "FoundationFit", "FrictionFit", "QuadratureError",
+    "Simulation", "Solution", "SprungSimulation", "SprungTransient", "Stability", "SteadyState",
+    "Sweep", "ToleranceError", "Transient", "TransientError", "record", "units_for",
 ]  # fmt: skip

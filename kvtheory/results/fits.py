@@ -6,6 +6,7 @@ from textwrap import wrap
 from typing import Any, NamedTuple
 
 from kvtheory.export import Columns
+from kvtheory.results.certificate import Recorded
 from kvtheory.results.presented import Exported, above, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
@@ -64,9 +65,10 @@ class FoundationFit(Exported):
     def remarks(self) -> list[str]:
         """What should be known about the fit, a line each."""
         low, high = self.frequencies
+        count = f"{len(self.arms)} arm{'s' * (len(self.arms) > 1)}"
         lines = [
-            f"Fitted to {self.source}: {len(self.arms)} arms, misfit {self.misfit:.3g} (largest "
-            f"{self.largest_misfit:.3g});",
+            f"Fitted to {self.source}: {count}, misfit {self.misfit:.3g} "
+            f"(largest {self.largest_misfit:.3g});",
             f"no series with non-negative arms has a misfit below {self.least_misfit:.3g}.",
             f"The data cover {low:.3g} to {high:.3g} Hz.",
         ]
@@ -196,6 +198,22 @@ class FrictionFit(Exported):
     def plot(self) -> Any:
         """Draw data and fit over velocity, and the residuals, and return the figure."""
         return above("plots").plot_result(self)
+
+
+@dataclass(frozen=True)
+class FewerArms(Recorded):
+    """A Prony series with fewer arms, pairs of stiffness (N/m^3) and relaxation time (s).
+
+    `difference` is the largest relative change of the friction coefficient at the velocities, from the
+    first to the last in m/s; `bound` is proved to be no less, NaN where none is known. `scene` is the scene
+    with these arms.
+    """
+
+    arms: tuple[tuple[float, float], ...]
+    bound: float
+    difference: float
+    velocities: tuple[float, float]
+    scene: Scene = field(repr=False)
 
 
 def commented(scene: Scene, heading: str, section: str, remarks: Sequence[str]) -> str:
