@@ -342,6 +342,12 @@ def test_a_measured_curve_is_judged_with_its_scatter():
         first_of(kv.compare(scene, data), name)
     late = kv.compare(scene, {"velocity": 1.3 * V, "friction_coefficient": mu})
     assert first_of(late, "wrong tau").factor == pytest.approx(1 / 1.3, rel=0.01)
+    rough = {
+        "velocity": V[::4],
+        "friction_coefficient": np.abs(mu + 0.05 * (-1.0) ** np.arange(25))[::4],
+    }
+    rough["friction_coefficient"][1::2] += 0.1
+    assert kv.compare(scene, rough).verdict == "cannot tell"
     with pytest.raises(ValueError, match="3 velocities; at least 5"):
         kv.compare(scene, {"velocity": V[:3], "friction_coefficient": mu[:3]})
 

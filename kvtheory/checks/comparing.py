@@ -47,8 +47,11 @@ SHOWN = 4
 """Largest number of explanations that are kept."""
 MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
+SCATTER = "scatter"
+"""The check of the scatter of a measured curve."""
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
+    SCATTER: "The points scatter too much to test the curve",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""

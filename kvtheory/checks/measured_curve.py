@@ -23,6 +23,8 @@ NAMES = ("friction_coefficient", "friction_force", "normal_force", "depth", "lea
 """The columns that are compared."""
 SMOOTH = 1e-3
 """Error allowed beside the scatter, relative to a value: no experiment and few simulations are better."""
+LARGEST_SCATTER = 0.2
+"""Scatter, relative to the curve, beyond which the points cannot test it."""
 STEADY_ONLY = (
     " Steady sliding tests neither the inertia nor the memory of the free surface: the problems heavy-mass "
     "and "
@@ -80,7 +82,12 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
 
 
 def _checks(case: Case) -> Iterator[Check]:
-    """Yield for each column the largest difference, the root mean square, and the mean."""
+    """Yield the scatter, and for each column the largest difference, the root mean square and the mean."""
+    loud = max(rms(case.bands[name].noise) / rms(case.now[name]) for name in case.names)
+    most = case.tolerance * LARGEST_SCATTER
+    yield Check(
+        comparing.SCATTER, loud, most, loud <= most, "F1", "root mean square, relative to the curve"
+    )
     for name in case.names:
         title, equation = (
             name.replace("_", " "),
