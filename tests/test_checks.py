@@ -15,6 +15,7 @@ from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.noise import noise, rounded, time_rounding
 from kvtheory.checks.reading import read
 from kvtheory.checks.theory import Rates, Theory
+from kvtheory.checks.trial_elements import Rule, simulate
 from tests.test_compare import BALL
 
 DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
@@ -115,3 +116,21 @@ def test_the_time_constants_of_fast_sliding_do_not_cancel(l):
         A, B = K * (root + a), C * (root - l_r + a)
         slow = (B + mp.sqrt(B**2 - 4 * M * A)) / (2 * A)
     assert theory.rates.slow == pytest.approx(complex(slow), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "foundation", [kv.Foundation(1e10, 0.1), kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)])]
+)
+@pytest.mark.parametrize("ball", [False, True])
+def test_the_simulation_of_mistakes_is_right_without_one(foundation, ball):
+    """With a reversal, so that columns come back into sight: each kind of memory is used."""
+    indenter, mass = (kv.Sphere(0.01), 1.0) if ball else (kv.Parabola(0.01), 1e3)
+    drive = kv.Drive(history=[(0.0, 0.1), (0.04, 0.1), (0.04, -0.1)])
+    scene = kv.Scene(indenter, foundation, kv.DeadWeight(mass), drive, kv.Run(0.06))
+    theory = Theory(scene, METHODS)
+    times, found = simulate(theory, [Rule()], 0.06)
+    at, rows = np.unique(times, return_index=True)
+    exact = theory.at(at, 1e-6)
+    for name in ("depth", "normal_force", "friction_force"):
+        off = np.abs(found[name][rows, 0] - exact[name]) / theory.scales[name]
+        assert np.quantile(off, 0.9) < 0.02, name

@@ -299,10 +299,10 @@ def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, 
 
     forward, now, rows = motion.forward(float(times[-1])), 0.0, []
     for time, following in zip(times.tolist(), [*times[1:].tolist(), math.inf], strict=True):
-        h, now = time - now, time
+        last, h, now = now, time - now, time
         base, V = motion.displacement(now), motion.velocity(now, before=following == time)
         near = elements.near(base - along, reach)
-        elements.relax(now - h, near)
+        elements.relax(last, near)
 
         def at(h: float) -> tuple[Array, Array, Pressed]:
             sunk = depth + h * ((1.0 - LATE) * before + LATE * rate)  # noqa: B023
