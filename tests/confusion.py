@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.charts.naive import stale_elements
 from kvtheory.checks.fitting import scaled_scene
 from tests.faulty_simulator import simulate
 
@@ -86,12 +85,6 @@ def rules(where, names):
         yield Plant(f"rule: {rule}", where, data, RULES[rule])
 
 
-def still():
-    """Return the depth by surfaces that stand still within a step, of which it depends how long that is."""
-    time, depth = stale_elements(SCENES["Table 1"], 200e3)
-    return {"time": time[::5], "depth": depth[::5]}
-
-
 def others():
     """Plants in Table 1 that are neither a parameter nor a rule, and those of steps and of the drive."""
     scene, edit = SCENES["Table 1"], partial(edited, SCENES["Table 1"])
@@ -108,7 +101,6 @@ def others():
         ("time in s for ms", "Table 1", partial(edit, time=1e3), "unit of time", 1e3, {}),
         ("starts 5 ms late", "Table 1", partial(edit, 5e-3), "time offset", 5e-3, {}),
         ("starts 2 ms early", "Table 1", partial(edit, -2e-3), "time offset", -2e-3, {}),
-        ("rule: still, depth alone", "Table 1", still, "contact lost while rising", None, {}),
         ("10 elements/mm", "Table 1", coarse, "too few elements", None, {}),
         ("10 elements/mm, known", "Table 1", coarse, "too few elements", None, {"per_length": "10 /mm"}),
         ("dt = 2 dx/V at 10 mm/s", "10 mm/s", unstable, named, None, {}),

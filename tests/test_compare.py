@@ -119,7 +119,6 @@ def test_theory_agrees_with_itself_noisy_and_rounded_too(name):
     curves = [ratio for check, ratio in worst.items() if check.endswith(("RMS", "largest"))]
     assert len(curves) >= 14
     assert max(curves) < 1e-3
-    assert name in SPRINGS or worst["slow time constant"] < 1e-3
     if (
         name in SPRINGS
     ):  # which friction loads suddenly, so that its error overshoots that of friction
@@ -258,7 +257,9 @@ def test_noise_in_proportion_to_the_value_and_two_digits_agree(given, seeds, way
 def test_agreement_says_where_the_memory_was_not_tested(given, untested):
     found = kv.compare(given, kv.transient(given, at="0 ms:200 ms:201"))
     assert found.verdict == "agrees"
-    assert ("memory of the free surface was not tested" in found.diagnosis) == untested
+    assert (
+        "the memory of the free surface, as the sliding never reverses" in found.diagnosis
+    ) == untested
 
 
 def test_where_the_phase_is_lost_agreement_says_nothing():
@@ -281,7 +282,6 @@ def test_on_a_spring_steady_sliding_is_the_limit_where_it_is_stable():
     )
     assert still["phase of the cycle"].ok is None
     assert "unstable" in cycle["steady limit"].note
-    assert "rigid drive" in cycle["slow time constant"].note
     assert cycle["phase of the cycle"].ok
     assert end["steady limit"].ok
 

@@ -123,3 +123,24 @@ def test_a_point_contact_is_found_to_disagree(folders):
     found = kv.compare(kv.problem("point-contact"), data=series)
     assert found.verdict == "disagrees"
     assert "depth, largest" in {check.name for check in found.checks if check.ok is False}
+
+
+def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path):
+    folder = tmp_path / "problem"
+    given = ["scene", "--problem", "springpot", "-o", str(folder)]
+    assert CliRunner().invoke(main, given).exit_code == 0
+    assert {"scene.toml", "reference.csv", "criteria.json", "judge.py"} <= {
+        f.name for f in folder.iterdir()
+    }
+    state = kv.steady(kv.problem("springpot"), over={"drive.velocity": np.geomspace(1e-3, 1e-1, 7)})
+    columns = np.geomspace(1.0, 100.0, 7), np.asarray(state.friction_force) * 1e-3
+    for factor, status in ((1.0, 0), (1.2, 1)):
+        rows = [
+            f"{v!r};{factor * f!r}" for v, f in zip(*(c.tolist() for c in columns), strict=True)
+        ]
+        (folder / "mine.csv").write_text("\n".join(["V [mm/s];F_x [N/mm]", *rows]))
+        assert run(folder / "judge.py", folder / "mine.csv").returncode == status
+    again = CliRunner().invoke(main, given)
+    assert (again.exit_code, "is not an empty folder" in again.output) == (2, True)
+    nothing = CliRunner().invoke(main, ["scene", "-o", str(tmp_path / "other")])
+    assert (nothing.exit_code, "--problem NAME" in nothing.output) == (2, True)

@@ -5,15 +5,15 @@ import shutil
 from pathlib import Path
 
 import kvtheory as kv
-from figures.reference_problems import write as write_folder
 from generators.files import put
+from kvtheory.api._problem_folder import write_problem
 from kvtheory.explorer import save_explorer
 
 
 def write(directory: Path, name: str) -> None:
     """Write the folder of a problem, its archive and its page."""
     folder, archive = directory / "folders" / name, directory / "extra" / "problems" / f"{name}.zip"
-    write_folder(name, folder.parent)
+    write_problem(name, folder)
     archive.parent.mkdir(parents=True, exist_ok=True)
     shutil.make_archive(str(archive.with_suffix("")), "zip", folder.parent, name)
     page = (folder / "README.md").read_text(encoding="utf-8")
@@ -45,5 +45,5 @@ _HEAD = """# Reference problems
 Named scenes for testing a method or your own simulator: one for each regime, support,
 shape, foundation and drive. Each folder has the scene, a reference solution with its certificate, acceptance
 criteria, a picture and a short test script; copy it into your repository. `kvtheory scene --problem NAME`
-prints a scene, `kv.problem("NAME")` loads it.
+prints a scene, with `-o FOLDER` it writes the folder; `kv.problem("NAME")` loads it.
 """

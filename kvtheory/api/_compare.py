@@ -54,26 +54,14 @@ def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, A
         return solved_scene.certified(scene, times, rtol, certify=False)[0].series(times)
 
 
-def _faulty_simulation(
-    scene: Scene, spacing: float, time_step: float, times: Sequence[float], does: Mapping[str, Any]
-) -> Mapping[str, Any]:
-    """Simulate a scene by the paper's scheme with a fault in the contact rule or the initial state."""
-    from kvtheory.models.elements.schemes import SCHEMES, ContactRule
-    from kvtheory.models.elements.simulation import simulate
-
-    rule = ContactRule(**{name: value for name, value in does.items() if name != "start"})
-    how = {"time_step": time_step, "rule": rule, "start": does.get("start", 1.0)}
-    return vars(simulate(scene, spacing, SCHEMES["paper"], at=times, certify=False, **how))
-
-
 def _rates(scene: Scene) -> NDArray[np.complex128]:
     """Return the rates of small motions about steady sliding (F22), in 1/s."""
     pairs = stability(scene, quantity="rates").rates
     return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
 
 
-METHODS = Methods(_theory, steady, _rates, _faulty_simulation)
-"""The functions that compute theory and simulate a fault."""
+METHODS = Methods(_theory, steady, _rates)
+"""The functions that compute theory."""
 
 
 @checked(
@@ -96,12 +84,14 @@ def compare(
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola
         or a ball. For a ball, and on a Prony series, theory is a simulation with many elements, and `steady`
-        at the end; wrong contact rules and wrong times are then not tried, and a diagnosis takes about ten
-        seconds. With a spring in the drive the data may also hold ``sliding_velocity`` and ``spring_force``.
+        at the end; a diagnosis then takes seconds. With a spring in the drive the data may also hold
+        ``sliding_velocity`` and ``spring_force``.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a result
         with the names of `transient`, or a mapping of arrays (by those names in SI, or with a bracketed
-        unit). Without it, `elements` simulates the scene.
+        unit). Without it, `elements` simulates the scene. Data with the columns velocity and friction
+        coefficient, forces or depth, but no time, are steady states: each is compared with steady sliding at
+        its velocity.
     per_length
         Elements per unit length of the simulation, in 1/m or as text such as ``"200 /mm"``, if known.
     scheme
@@ -144,6 +134,7 @@ def compare(
     require(lacks_quadratic_on_arms, scene, "the theory of the transient")
     from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as compare_series
+    from kvtheory.checks.measured_curve import compare as compare_curve
     from kvtheory.checks.reading import read
 
     report = progress or METHODS.tell
@@ -158,8 +149,10 @@ def compare(
         found = _own_simulation(scene, per_length, scheme, begun) if data is None else data
     except DivergenceError as error:
         return broken_off(theory, error, scheme, tolerance)
-    units = units_for(scene.indenter, SERIES_UNITS)
-    return compare_series(theory, read(found, units), per_length, scheme, tolerance)
+    series = read(found, units_for(scene.indenter, SERIES_UNITS))
+    if series.curve:
+        return compare_curve(theory, series, tolerance)
+    return compare_series(theory, series, per_length, scheme, tolerance)
 
 
 def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:

@@ -39,6 +39,11 @@ STEPS_SMEARED = 2.0
 """Steps by which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
 ELEMENTS_AT_AN_EDGE = 2.0
 """Error of an edge in elements: two enter in a step of the paper's scheme, and edges lie on elements."""
+EDGES, COARSEST_EDGE, NEARLY_ALL = ("leading_edge", "trailing_edge"), 0.12, 0.97
+"""Columns that jump by an element, where the spacing is not known; the largest one in half lengths; and the
+quantile of the changes that is one element."""
+BALL_EDGE = 0.02
+"""Element of a ball in half lengths, if none is known: few elements are enough for its forces."""
 LARGEST_NOISE = 0.1
 """Upper bound of the noise that is allowed for, as a fraction of the curve or its scale."""
 WHOLE_EDGE = 2.0
@@ -110,7 +115,7 @@ def allowance(
     theory: Theory, series: Series, fine: Resolution, rtol: float
 ) -> tuple[Curves, dict[str, Band], Array]:
     """Return theory at the times of the series, the band of each curve, and the force b at the edge."""
-    time, support, C = series.time, theory.scene.support, theory.scene.foundation.damping
+    time, support, C = series.time, theory.scene.support, theory.damping(fine.time_step)
     scheme = SCHEME_ROWS.get(series.scheme or "")
     first_order = scheme is None or scheme.order_in_time <= 1
     now, before, after, low, high = _bands(theory, time, fine.time_step, rtol)
@@ -138,8 +143,20 @@ def allowance(
             rounding = rounded(values, EXACT.get(name, 0))
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
+            if name in EDGES and not fine.spacing_known:
+                most = COARSEST_EDGE * theory.static.half_length
+                jumps = min(edge_jumps(values - now[name]), most) - fine.spacing
+                if not theory.scene.indenter.per_width:
+                    jumps = max(jumps, BALL_EDGE * theory.static.half_length)
+                smooth[name] = smooth[name] + ELEMENTS_AT_AN_EDGE * max(jumps, 0.0)
         bands[name] = Band(low[name], high[name], smooth[name] + rounding, sigma, rounding)
     return now, bands, force
+
+
+def edge_jumps(residual: Array) -> float:
+    """Return how far an edge jumps to the next element: nearly the largest change between samples."""
+    changes = np.abs(np.diff(residual[np.isfinite(residual)]))
+    return float(np.quantile(changes, NEARLY_ALL)) if changes.size else 0.0
 
 
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
@@ -184,16 +201,20 @@ def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
 def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     """Return b = p dx/2 at the edge of larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
-    For a ball it is that of the middle plane times the mean width, an upper bound, if all strips agree. At
+    On arms the pressure grows while an element enters. For a ball it is that of the middle plane times the
+    mean
+    width, an upper bound, if all strips agree. At
     rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
     """
     R, foundation = theory.radius, theory.scene.foundation
     p = np.zeros_like(curves["depth"])
+    speed = np.abs(curves["sliding_velocity"])
+    damping = theory.damping(spacing / np.maximum(speed, spacing / theory.static.time))
     for name in ("leading_edge", "trailing_edge"):
         x = curves[name]
         rate = curves["depth_rate"] - x / R * curves["sliding_velocity"]
         overlap = curves["depth"] - x * x / (2.0 * R)
-        p = np.fmax(p, foundation.stiffness * overlap + foundation.damping * rate)
+        p = np.fmax(p, foundation.stiffness * overlap + damping * rate)
     at_rest = foundation.stiffness * spacing**2 * theory.static.half_length / R
     return np.asarray(theory.width(curves["depth"]) * (0.5 * p * spacing + at_rest))
 

@@ -10,7 +10,7 @@ import numpy as np
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks.comparison_case import COARSE, Case, NotMade, rms
 from kvtheory.checks.noise import SURE, extreme
-from kvtheory.checks.settling import PHASE, fast_constant, phase, slow_constant, steady_limit
+from kvtheory.checks.settling import PHASE, phase, steady_limit
 from kvtheory.checks.theory import Array, Curves
 from kvtheory.results.comparison import Check
 from kvtheory.scene.model import Support
@@ -186,9 +186,6 @@ def rows_of(case: Case) -> Iterator[Row]:
         title, equation = name.replace("_", " "), EQUATIONS[name]
         yield Row(f"{title}, largest", equation, RELATIVE, partial(largest, name=name))
         yield Row(f"{title}, RMS", equation, RELATIVE, partial(root_mean_square, name=name))
-    fits = "relative difference of the fits"
-    yield Row("fast time constant", "F12", fits, fast_constant, ("normal_force",))
-    yield Row("slow time constant", "F12", fits, slow_constant, ("depth",))
     limit = "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
     yield Row("steady limit", limit, RELATIVE, steady_limit)
     if not scene.drive.rigid:

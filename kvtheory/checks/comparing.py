@@ -1,7 +1,9 @@
 """A series compared with theory: the checks, the verdict, and the fault that explains a disagreement best."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from time import process_time
 
 import numpy as np
 
@@ -19,35 +21,71 @@ from kvtheory.results.comparison import Check, Comparison, Explanation
 
 Family = Callable[[Bench], Iterator[Hypothesis]]
 
-FAMILIES: tuple[tuple[Family, float], ...] = (
-    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.97), (faults.time_units, 0.5),
-    (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.damper, 0.9),
-    (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
+Families = Sequence[tuple[str, Family]]
+
+FAMILIES: Families = (
+    ("signs and units", faults.signs_and_units), ("scales and offsets", faults.scales_and_offsets),
+    ("other foundations and drives", faults.other_scenes), ("contact rules", mistakes),
+    ("parameters", faults.parameters), ("delays and filters", faults.delays),
+    ("units of the time", faults.time_units),
 )  # fmt: skip
-"""Families in the order in which they are tried, and the part of the difference that a fault must explain to
-end the search: signs and units are not fitted, so that a small part suffices."""
-BY_ELEMENTS: tuple[tuple[Family, float], ...] = (
-    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.9), (faults.scales_and_offsets, 0.97),
-    (faults.parameters, 0.9),
-)  # fmt: skip
-"""The families that are tried where each theory is a run of many elements."""
-NOT_TRIED = (
-    "; units and offsets of the time, and contact rules, are not tried where theory is by elements"
-)
+"""The faults that are tried, in their order."""
+STEADY = {"signs and units", "scales and offsets", "other foundations and drives", "parameters"}
+"""The families that are tried for steady sliding."""
+EXACT, BUDGET = 0.999, 8.0
+"""Part of the difference that a wrong sign or unit must explain to end the search at once, and the processor
+time in s after which no other family is begun."""
+TIE = 3.0
+"""Factor on the remaining difference of the best explanation up to which another is as likely."""
+REFINED, FLEXIBLE = 3, 0.1
+"""Most remote starts that are followed; and the part of the remaining difference by which a fault with an
+unknown
+must fit better than one without. A parameter has to fit the better, the further it is from its value."""
 NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Largest number of explanations that are kept."""
 MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
+SCATTER = "scatter"
+"""The check of the scatter of a measured curve."""
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
+    SCATTER: "The points scatter too much to test the curve",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
-MEMORY_UNUSED = (
-    " The sliding never reverses, so that the memory of the free surface was not tested."
-)
+SLOW, FAST, LIGHT = 0.03, 30.0, 0.02
+"""Retardation length over half length, below which the damper, and above which the stiffness, hardly counts;
+and
+the time constant of the inertia over that of the foundation, below which the motion is without inertia."""
+
+
+def _untested(case: Case) -> str:
+    """Say what the scene and the data cannot test, and the reference problem that does."""
+    theory, scene, columns = case.theory, case.theory.scene, case.columns
+    length = (
+        abs(theory.motion.highest_speed * scene.foundation.retardation_time)
+        / theory.static.half_length
+    )
+    one_way = scene.drive.constant and scene.drive.rigid
+    flies = bool(np.isnan(case.now["leading_edge"]).any())
+    fast = theory.rates is not None and abs(theory.rates.fast) < LIGHT * abs(theory.rates.slow)
+    missing = [
+        n.replace("_", " ") for n in ("depth", "normal_force", "friction_force") if n not in columns
+    ]
+    parts = (
+        ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
+        ("the damper, as the drive is slow", "high-velocity", length < SLOW),
+        ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
+        ("the inertia, as the indenter is fixed", "paper-dead-weight", scene.held),
+        ("the inertia, which hardly counts", "heavy-mass", not scene.held and fast),
+        ("a flight and a landing", "take-off", not scene.held and not flies),
+        (f"the {' and the '.join(missing)}, which the data do not hold", "", bool(missing)),
+    )
+    told = [f"{what} ({name})" if name else what for what, name, untested in parts if untested]
+    problems = " (in brackets, the reference problem that does)" if told else ""
+    return f" Not tested{problems}: {'; '.join(told)}." if told else ""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared
@@ -68,15 +106,19 @@ def compare(
         case = make_case(theory, series, per_length, tolerance, case_of.LARGEST_SAWTOOTH)
         checks = judge(case)
     text, explanations = diagnose(case, checks)
-    if series.ignored:
-        unnamed = len(series.ignored) - MOST_NAMED
-        more = f" and {unnamed} more" if unnamed > 0 else ""
-        text += f" Columns that were not used: {', '.join(series.ignored[:MOST_NAMED])}{more}."
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
-        verdict(checks), checks, text, explanations, series.source, tolerance,
+        verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
     )  # fmt: skip
+
+
+def unused(series: Series) -> str:
+    """Name the columns that were not used."""
+    unnamed = len(series.ignored) - MOST_NAMED
+    more = f" and {unnamed} more" if unnamed > 0 else ""
+    names = ", ".join(series.ignored[:MOST_NAMED])
+    return f" Columns that were not used: {names}{more}." if names else ""
 
 
 def broken_off(
@@ -105,49 +147,82 @@ def verdict(checks: Sequence[Check]) -> str:
     return "cannot tell" if all(name in INCONCLUSIVE for name in failed) else "disagrees"
 
 
-def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanation, ...]]:
+def diagnose(
+    case: Case, checks: Sequence[Check], families: Families = FAMILIES
+) -> tuple[str, tuple[Explanation, ...]]:
     """Return the diagnosis in words, and the faults behind it, the best first."""
     failed, known = [check for check in checks if check.ok is False], verdict(checks)
     made = sum(check.ok is not None for check in checks)
     if known == "agrees":
-        one_way = case.theory.scene.drive.constant and case.theory.scene.drive.rigid
-        return f"All {made} checks that could be made passed.{MEMORY_UNUSED * one_way}", ()
+        text = f"All {made} checks that could be made passed."
+        return text + (_untested(case) if families is FAMILIES else ""), ()
     if known == "cannot tell":
         why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
-    found = sorted(
-        [*case_of.symptoms(case, failed), *explanations(case)], key=lambda each: -each.rank
-    )
+    tried, skipped = explanations(case, families)
+    seen = case_of.symptoms(case, failed) if families is FAMILIES else ()
+    found = sorted([*seen, *tried], key=lambda each: -each.rank)
     named = [each for each in found if each.rank >= NAMED]
-    return _words(case, failed, named), tuple((named or found)[:SHOWN])
+    text = _words(case, failed, named)
+    text += f" Not tried for want of time: {', '.join(skipped)}." if skipped else ""
+    return text, tuple((named or found)[:SHOWN])
 
 
-def explanations(case: Case) -> list[Explanation]:
-    """Try every fault and order them: those that explain the data first, then by the remaining difference."""
-    rows = bench(case)
+def explanations(case: Case, families: Families = FAMILIES) -> tuple[list[Explanation], list[str]]:
+    """Try every fault and order them by the remaining difference; name the families that were not tried."""
+    rows, clock = bench(case), process_time()
     trials: list[Trial] = []
-    families = BY_ELEMENTS if case.theory.by_elements else FAMILIES
-    for number, (family, good) in enumerate(families):
-        tried: list[Trial] = []
-        for hypothesis in family(rows):
-            tried.append(rows.tried(hypothesis, min((t.score for t in tried), default=np.inf)))
-            count = len(trials) + len(tried)
-            case.theory.methods.tell(number / len(families), f"{count} faults tried")
-        fitted = [trial for trial in tried if trial.hypothesis.powers]
-        best = min(fitted, key=lambda trial: trial.score, default=None)
-        if best and best.enough:
-            alike = rows.indistinguishable(best, [t.hypothesis for t in fitted if t is not best])
-            symbols = tuple(name.removeprefix(faults.WRONG) for name in alike)
-            tried = [t._replace(alike=symbols) if t is best else t for t in tried]
-        trials += tried
-        if any(trial.enough and trial.score <= (1.0 - good) * rows.start for trial in trials):
+    skipped = []
+
+    def tell(number: int) -> None:
+        case.theory.methods.tell(number / len(families), f"{len(trials)} faults tried")
+
+    for number, (words, family) in enumerate(families):
+        best = min((trial.score for trial in trials), default=math.inf)
+        if family is not faults.signs_and_units and best <= (1.0 - EXACT) * rows.start:
             break
+        if process_time() - clock > BUDGET:
+            skipped.append(words)
+            continue
+        for hypothesis in family(rows):
+            trials.append(rows.tried(hypothesis))
+            tell(number)
+    if not any(trial.enough for trial in trials):
+        remote = []
+        for each, x in ((trial.hypothesis, x) for trial in trials for x in trial.hypothesis.remote):
+            if process_time() - clock < BUDGET:
+                remote.append(rows.rated(each, each.make(x), x))
+        for found in sorted(remote, key=lambda trial: trial.score)[:REFINED]:
+            trials.append(rows.tried(found.hypothesis, [found.value]))
+    return _ranked(rows, trials), skipped
+
+
+def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
+    """Return the explanations, the best first; a fitted one that changes nothing explains nothing."""
+
+    def unlikely(trial: Trial) -> float:
+        far = abs(trial.value) if trial.hypothesis.powers else 0.0
+        return trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
+
+    ordered = sorted(trials, key=unlikely)
+    parameters = [trial for trial in ordered if trial.hypothesis.powers]
+    if parameters and parameters[0].enough:
+        best, others = parameters[0], {t.hypothesis.name: t.hypothesis for t in parameters}
+        alike = tuple(
+            n.removeprefix(faults.WRONG)
+            for n in rows.indistinguishable(
+                best, [h for n, h in others.items() if n != best.hypothesis.name]
+            )
+        )
+        ordered = [t._replace(alike=alike) if t is best else t for t in ordered]
     found: dict[str, Explanation] = {}
-    for fault, score, enough, x, alike in sorted(trials, key=lambda trial: trial.score):
-        explained = 1.0 - score / rows.start if rows.start else 0.0
+    for trial in ordered:
+        fault, score, enough, x, alike = trial
+        explained, rank = (
+            1.0 - left / rows.start if rows.start else 0.0 for left in (score, unlikely(trial))
+        )
         found.setdefault(fault.name, Explanation(
-            fault.name, fault.text(x), explained, enough and explained >= NAMED,
-            fault.factor(x), explained, alike,
+            fault.name, fault.text(x), rank, enough and explained >= NAMED, fault.factor(x), explained, alike,
         ))  # fmt: skip
     return [each for each in found.values() if each.rank > 0.0]
 
@@ -156,8 +231,7 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     """Say what explains the disagreement, what else would, and which checks failed."""
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
     if not named:
-        not_tried = NOT_TRIED * case.theory.by_elements
-        return f"No single known fault explains most of the difference{not_tried}. Failed: {which}."
+        return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
     symbol, text, also = first.name.removeprefix(faults.WRONG), _sentence(first.text), ""
     if first.enough:

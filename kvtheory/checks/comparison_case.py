@@ -6,7 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kvtheory.checks.allowances import Band, Resolution, allowance, contact_extent, resolution
+from kvtheory.checks.allowances import (
+    EDGES,
+    Band,
+    Resolution,
+    allowance,
+    contact_extent,
+    edge_jumps,
+    resolution,
+)
 from kvtheory.checks.noise import SURE, gaps, noise
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
@@ -123,8 +131,10 @@ def make_case(
         return case
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
+    edges = [edge_jumps(case.columns[n] - case.now[n]) for n in EDGES if n in names]
+    read, seen = seen != MARGIN, max([seen, *(jump / fine.spacing for jump in edges)])
     wider = min(seen, max(largest, MARGIN))
-    return of(fine._replace(spacing=wider * fine.spacing, spacing_read=wider != MARGIN))
+    return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
 
 
 def _coarser(case: Case) -> float:

@@ -1,140 +1,186 @@
-"""Faults of a simulator as hypotheses: a wrong contact rule, or a wrong initial state.
+"""Mistakes in the contact rule or the initial state of a simulator, as hypotheses.
 
-The paper's scheme runs with and without the fault, and the difference is added to theory.
+What each changes in the curves is simulated (`trial_elements`), and added to theory.
 """
 
 import math
-from collections.abc import Iterator, Mapping
-from functools import partial
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from kvtheory.checks.fitting import Bench, Hypothesis, Pair
-from kvtheory.checks.theory import CURVES, Array, Curves, curves
-from kvtheory.results.schemes import RK4_LIMIT
+from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed
+from kvtheory.checks.theory import CURVES, Array, Curves
+from kvtheory.checks.trial_elements import Rule, changes
+from kvtheory.scene import Scene
 
 
 class Mistake(NamedTuple):
-    """What a simulator does wrong: the name of the fault, its description, and the fields of the rule.
+    """A fault: its name, its description, and its rules, of which the best counts.
 
-    `comes_back` says that it shows only where the indenter re-enters deformed foundation, as where the drive
-    does not keep its velocity, or has a spring. `by_step` says that its effect depends on the time step,
-    which is searched for if it is not known.
+    `shows` says for which scenes it can show. With `strengths`, one for each rule, the strength is an
+    unknown,
+    between the rules; `right` is the one that changes nothing, if there is one. The text may show it.
     """
 
     name: str
     text: str
-    does: Mapping[str, Any]
-    comes_back: bool = False
-    by_step: bool = False
+    rules: Sequence[Rule]
+    shows: Callable[[Scene], bool] = lambda _scene: True
+    strengths: Sequence[float] = ()
+    right: float | None = None
 
 
-LOST, UNRELAXED = "contact lost while rising", "no relaxation of the free surface"
+def _kelvin_voigt(scene: Scene) -> bool:
+    return not scene.foundation.arms
+
+
+def _comes_back(scene: Scene) -> bool:
+    return not (scene.drive.constant and scene.drive.rigid)
+
+
+def _has_arms(scene: Scene) -> bool:
+    return bool(scene.foundation.arms)
+
+
+def _moves(scene: Scene) -> bool:
+    return not scene.held
+
+
+def _ball(scene: Scene) -> bool:
+    return not scene.indenter.per_width
+
+
+FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
+TIMES, PARTS, STARTS, LOSSES = (
+    (0.4, 0.7, 1.4),
+    (0.03, 0.1, 0.25),
+    (0.85, 1.15),
+    (0.3, 0.6, 0.8, 0.95),
+)
+"""Strengths at which mistakes are simulated: factors of damping and time, parts of the half length and
+depth."""
+HUGE, BEYOND = 1e100, 0.02
+"""Largest change that is interpolated, as a wrong rule may diverge; and by how much strengths may be
+exceeded."""
 MISTAKES = (
+    Mistake("no sliding term in the compression rate",
+            "the compression rate is delta' alone: an element that moves with the base under a slope is "
+            "compressed at u' = delta' - h' V (Eq. 7)",
+            [Rule(slide_rate=0.0), Rule(slide_rate=0.0, decay=FORGETFUL)]),
+    Mistake("no depth term in the compression rate",
+            "the compression rate is -h' V alone: an indenter that sinks or rises adds delta' (Eq. 7)",
+            [Rule(depth_rate=0.0), Rule(depth_rate=0.0, decay=FORGETFUL)], _moves),
+    Mistake("sign of the compression rate",
+            "the pressure falls with the compression rate: it is p = K u + C u' (Eq. 5)",
+            [Rule(depth_rate=-1.0, slide_rate=-1.0, decay=FORGETFUL)]),
+    Mistake("sign of the sliding term",
+            "the sliding term of the compression rate has the wrong sign: it is u' = delta' - h' V (Eq. 7), "
+            "so "
+            "that the pressure is higher where the foundation enters",
+            [Rule(slide_rate=-1.0), Rule(slide_rate=-1.0, decay=FORGETFUL)]),
+    Mistake("no damper", "the pressure is K u, without a damper (Eq. 5)",
+            [Rule(depth_rate=0.0, slide_rate=0.0, decay=FORGETFUL)]),
+    Mistake("Hunt-Crossley damping",
+            "the damping grows with the compression, p = K u (1 + c u') with c = {:.3g} tau/delta_0, as in "
+            "the "
+            "law of Hunt and Crossley: that of Kelvin and Voigt is constant, p = K u + C u' (Eq. 5)",
+            [Rule(hunt=c, decay=FORGETFUL) for c in DAMPERS], _kelvin_voigt, DAMPERS),
+    Mistake("sign of the slope in friction",
+            "friction is computed from a pressure with the wrong sign of h' V (Eqs. 7 and 15)",
+            [Rule(friction=-1.0)], _kelvin_voigt),
+    Mistake("friction by the normal in the middle",
+            "friction is F_z times the slope in the middle of the contact patch, as for a single contact "
+            "point: "
+            "it is the integral of p h' (Eq. 15)", [Rule(central=True)]),
     Mistake("tension allowed at the trailing edge",
             "the foundation stays attached where it would pull (no peeling): an element must detach where "
-            "its pressure vanishes (Eqs. 23, 24 and 33)", {"pulls": True}),
-    Mistake(LOST,
+            "its pressure vanishes (Eqs. 23, 24 and 33)", [Rule(pulls=True)]),
+    Mistake("contact lost while rising",
             "elements lose contact where the indenter rises, for the surface of the last step is taken for "
-            "the present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
-            {"flags": False, "stale": True}),
-    Mistake(LOST,
-            "contact is lost from the equation of motion while the indenter rises, as where an element "
-            "counts as free once the indenter is above where the last step left it (Eqs. 24 and 25, F8)",
-            {"flags": False, "stale": True, "still": True}, by_step=True),
-    Mistake(UNRELAXED,
-            "the free surface does not relax, so that the contact ends where the indenter recedes from it: "
-            "it decays as exp(-t/tau) (Eqs. 20 and 25, F8)", {"flags": False, "relaxes": False}),
-    Mistake(UNRELAXED,
-            "the free surface does not relax where the indenter comes back to it: it decays as exp(-t/tau) "
-            "(Eqs. 20 and 25, F8)", {"relaxes": False}, comes_back=True),
+            "the "
+            "present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
+            [Rule(stale=part) for part in LOSSES], _moves, LOSSES, 0.0),
+    Mistake("contact lost while rising",
+            "contact is lost from the equation of motion while the indenter rises, by {:.2g} of the force, "
+            "as where "
+            "an element counts as free once the indenter is above where the last step left it (Eqs. 24 and "
+            "25, F8)",
+            [Rule(drops=part) for part in LOSSES], _moves, LOSSES, 0.0),
+    Mistake("no relaxation of the free surface",
+            "the free surface does not relax where the indenter recedes from it or comes back to it: it "
+            "decays "
+            "as exp(-t/tau) (Eqs. 20 and 25, F8)", [Rule(decay=0.0), Rule(freezes=True)]),
     Mistake("memory forgotten where sliding reverses",
             "the indenter meets an undeformed foundation where it re-enters ground that it left: the surface "
             "there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
-            {"remembers": False}, comes_back=True),
+            [Rule(decay=FORGETFUL)], _comes_back),
+    Mistake("wrong time of the free surface",
+            "the free surface relaxes {:.3g} times as fast as exp(-t/tau) (Eq. 20)",
+            [Rule(decay=factor) for factor in TIMES], _kelvin_voigt, TIMES, 1.0),
+    Mistake("half of the contact",
+            "only half of the contact presses: all of its elements count (Eqs. 14 and 15)",
+            [Rule(front=0.5, back=0.5), Rule(back=0.0), Rule(front=0.0)]),
+    Mistake("elements lost at the leading edge",
+            "elements at the leading edge do not count, over {:.2g} of the half length: the foundation "
+            "enters "
+            "there, and the pressure is largest (Eqs. 14 and 32)", [Rule(lost=part) for part in PARTS],
+            strengths=PARTS, right=0.0),
+    Mistake("a ball by the formulas of a line",
+            "every strip of the ball is as deep as its middle plane: a strip at y is at the depth "
+            "delta - y^2/(2 R) (F20)", [Rule(flat=True)], _ball),
+    Mistake("extra vertical damper",
+            "the indenter is damped by {:.2g} C A beside the foundation, A being its contact at rest (Eq. "
+            "17): "
+            "as a damper of its own, or as the damping of a time integration",
+            [Rule(damper=share) for share in DAMPERS], _moves, DAMPERS, 0.0),
     Mistake("undeformed at the start",
             "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
-            "static depth (Eq. 40)", {"start": 0.0}),
+            "static depth (Eq. 40)", [Rule(start=0.0)], _moves),
+    Mistake("wrong initial depth",
+            "the depth at t = 0 is {:.4g} times the static depth, at which theory starts (Eq. 40)",
+            [Rule(start=start) for start in STARTS], _moves, STARTS, 1.0),
+    Mistake("arms loaded at the start",
+            "the arms bear load at t = 0, as if the indenter had been pressed in at that instant: at rest "
+            "they "
+            "have relaxed (Eq. 40)", [Rule(loaded=True)], _has_arms),
 )  # fmt: skip
-
-DEEPER = 0.05
-"""Relative change of the initial depth that is simulated to see its effect."""
-PER_HALF_LENGTH = 250.0
-"""Elements in the static half length of a simulation with a mistake: its difference to one without is used,
-in which most discretization errors cancel."""
-LONGEST_RUN = 1500
-"""Steps of such a simulation; its later curves are taken as constant."""
-SPAN, LONGEST_SEARCHED = 8.0, 5000
-"""Factor above and below the assumed time step within which an unknown one is searched for, and the largest
-number of steps then."""
-INSTANTS = 400
-"""Approximate number of output times."""
-STABLE = 0.5
-"""Time step used, as a fraction of the largest stable one of the paper's scheme."""
-PASSED = 1.618
-"""Elements that pass in a step: about as in the paper, but never in step with those that enter."""
+"""Every mistake that is tried."""
 
 
 def mistakes(bench: Bench) -> Iterator[Hypothesis]:
-    """Yield each mistake: what it changes in a simulation is added to theory."""
-    right = _simulated(bench, {})
-    if right is None:
-        return
-    scene, resolution = bench.theory.scene, bench.resolution
-    span = 0.0 if resolution.step_known else math.log(SPAN)
+    """Yield each mistake that can show in the scene: what it changes in a simulation is added to theory."""
+    tried = [mistake for mistake in MISTAKES if mistake.shows(bench.theory.scene)]
+    made = iter(changes(bench.theory, [rule for each in tried for rule in each.rules], bench.time))
 
-    def changed(wrong: Curves | None, share: float = 1.0) -> Pair | None:
-        if wrong is None:
-            return None
-        moving = share * (bench.time >= 0.0)
-        change = {name: moving * np.nan_to_num(wrong[name] - right[name]) for name in CURVES}
+    def changed(change: Curves) -> Pair:
         return bench.columns, {name: bench.now[name] + change[name] for name in CURVES}
 
-    def made(x: float, mistake: Mistake) -> Pair | None:
-        step = resolution.time_step * math.exp(x) if mistake.by_step else None
-        return changed(_simulated(bench, mistake.does, step))
-
-    for mistake in MISTAKES:
-        never = mistake.comes_back and scene.drive.constant and scene.drive.rigid
-        if not never and not (mistake.by_step and scene.held):
-            yield Hypothesis(
-                mistake.name, lambda _x, text=mistake.text: text,  # type: ignore[misc]
-                partial(made, mistake=mistake), span=span * mistake.by_step,
-            )  # fmt: skip
-    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + DEEPER})
-    if deeper is not None:
-        text = (
-            "the depth at t = 0 is {:.4g} times the static depth, at which theory starts (Eq. 40)"
-        )
-        yield Hypothesis(
-            "wrong initial depth", lambda x: text.format(1.0 + x),
-            lambda x: changed(deeper, x / DEEPER), [0.0], factor=lambda x: 1.0 + x,
-        )  # fmt: skip
+    for mistake in tried:
+        found = [next(made) for _ in mistake.rules]
+        if mistake.strengths:
+            yield _fitted(mistake, found, changed)
+        else:
+            yield from (fixed(mistake.name, mistake.text, changed(change)) for change in found)
 
 
-def _simulated(bench: Bench, does: Mapping[str, Any], step: float | None = None) -> Curves | None:
-    """Return the curves of a simulation with a mistake, or None if it fails.
+def _fitted(
+    mistake: Mistake, found: Sequence[Curves], changed: Callable[[Curves], Pair]
+) -> Hypothesis:
+    """Return a hypothesis about a mistake of unknown strength, which is interpolated between simulations."""
+    right = mistake.right
+    known = dict(zip(mistake.strengths, found, strict=True))
+    if right is not None:
+        known[right] = {name: np.zeros_like(values) for name, values in found[0].items()}
+    strengths = np.array(sorted(known))
+    table: Array = np.array([[known[s][name] for name in CURVES] for s in strengths])
+    between = PchipInterpolator(strengths, np.clip(table, -HUGE, HUGE), axis=0)
 
-    With a `step` (s), all time steps are that long, or the longest that is stable; without, the outputs
-    are at the times of the rows, for which steps may be shortened.
-    """
-    theory, now = bench.theory, bench.time
-    scene, half = theory.scene, theory.static.half_length
-    spacing, speed = half / PER_HALF_LENGTH, theory.motion.highest_speed
-    damping = 2.0 * half * scene.foundation.damping
-    stable = math.inf if scene.held else STABLE * RK4_LIMIT * scene.support.mass / damping
-    if step is None:
-        step = min(PASSED * spacing / speed if speed else math.inf, stable)
-        now = np.clip(now, 0.0, LONGEST_RUN * step)
-        times: Array = np.unique(now)
-    else:
-        step = min(step, stable)
-        end = min(float(now[-1]), LONGEST_SEARCHED * step)
-        apart = 2.0 * step * math.ceil(end / (2.0 * step * INSTANTS))
-        times = np.minimum(apart * np.arange(math.ceil(end / apart) + 1), end)
-    try:
-        found = theory.methods.elements(scene, spacing, step, times.tolist(), does)
-    except (ValueError, ArithmeticError):
-        return None
-    return {name: np.interp(now, times, values) for name, values in curves(found, scene).items()}
+    def make(x: float) -> Pair | None:
+        if not strengths[0] - BEYOND <= x <= strengths[-1] + BEYOND:
+            return None
+        return changed(dict(zip(CURVES, between(x), strict=True)))
+
+    starts = strengths.tolist()
+    return Hypothesis(mistake.name, mistake.text.format, make, starts, factor=float)

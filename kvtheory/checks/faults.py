@@ -5,16 +5,17 @@ lever arm, or wrong times.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed, scaled_scene
+from kvtheory.checks.fitting import VELOCITY, Bench, Hypothesis, Pair, fixed, scaled_scene
 from kvtheory.checks.theory import CURVES
-from kvtheory.scene.foundations import Foundation
+from kvtheory.scene import Scene
+from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
 
 
 class Parameter(NamedTuple):
@@ -41,14 +42,39 @@ PARAMETERS = (
     Parameter("k_x", {"drive.stiffness": 1.0}, "MN/m^2", 1e-6, " (the spring in the drive)"),
     Parameter("M_x", {"drive.mass": 1.0}, "kg/mm", 1e-3, " (what moves along x)"),
     Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
+    Parameter("R_y", {"indenter.radius_across": 1.0}, "mm", 1e3, " (across the motion)"),
 )  # fmt: skip
 """The parameters that may be wrong; those that the scene does not have are left out."""
+
+
+def parameters_of(scene: Scene) -> Iterator[Parameter]:
+    """Yield the parameters of a scene, those of each arm among them."""
+    values, arms = scene.values(), range(len(scene.foundation.arms))
+    stiffness, time = "foundation.arms[{}].stiffness", "foundation.arms[{}].relaxation_time"
+    yield from (
+        each
+        for each in PARAMETERS
+        if all(values.get(key) or key == VELOCITY for key in each.powers)
+    )
+    for i in arms:
+        yield Parameter(f"K_{i + 1}", {stiffness.format(i): 1.0}, "GN/m^3", 1e-9, f" (arm {i + 1})")
+        yield Parameter(f"tau_{i + 1}", {time.format(i): 1.0}, "ms", 1e3, f" (arm {i + 1})")
+    if len(arms) > 1:
+        both = (("all K_i", stiffness, "GN/m^3", 1e-9), ("all tau_i", time, "ms", 1e3))
+        for symbol, key, unit, per_si in both:
+            powers = {key.format(i): 1.0 for i in arms}
+            yield Parameter(
+                symbol, powers, unit, per_si, " (that of the first arm, the others alike)"
+            )
+
+
 PER_WIDTH = {"kg/mm": ("kg", 1.0), "MN/m^2": ("MN/m", 1e-6), "N s/m^2": ("N s/m", 1.0)}
 """Units of a line contact, and those of a ball in their place."""
 WRONG = "wrong "
 """Prefix of the names of faults that are a wrong parameter."""
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
+    "friction_coefficient": ("friction_coefficient",),
     "both forces": ("normal_force", "friction_force"),
     "both forces along x": ("friction_force", "spring_force"),
     "both edges": ("leading_edge", "trailing_edge"),
@@ -62,13 +88,15 @@ SIGNS = {
     "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
 }
 """What fixes the sign of a column."""
-MEASURED = "normal_force", "friction_force", "spring_force", "depth"
+MEASURED = "friction_coefficient", "normal_force", "friction_force", "spring_force", "depth"
 """Columns measured by a sensor, whose zero may be off."""
-FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
-"""Initial guesses for the factor of a parameter: near 1, and those of wrong units."""
+FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
+"""Remote initial guesses for the factor of a parameter: a diameter for a radius, and wrong units; only the
+first
+two where theory is a run of elements, which would take too many."""
 LARGEST_FACTOR = 2e3
 """Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
-DAMPING_SHARES = (0.01, 0.1, 1.0)
+DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
 POWER_OF_TEN = 0.02
 """A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
@@ -80,6 +108,13 @@ SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 """Initial guesses for an offset of the time, in both directions, as fractions of the span of the data."""
 HUNDREDTH = 0.01
 """Unit in which an offset of the time is fitted, as a fraction of the span."""
+FORCES = "normal_force", "friction_force"
+"""Columns that may be late or filtered beside the others."""
+SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
+"""Columns whose sign follows that of the velocity."""
+DELAYS, SMALL = (0.05, 0.3, 2.0, 10.0), 1e-6
+"""Initial guesses for a delay or the time constant of a filter, as hundredths of the span; and a step that is
+short for it."""
 ONSET = 0.1
 """Fraction of the range of a force: once the force has changed by this much, the drive has started."""
 
@@ -91,14 +126,13 @@ def _power_of_ten(factor: float) -> int | None:
 
 
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
-    """Fit each parameter of the scene; from 1 only where each theory is a run of many elements."""
+    """Fit each parameter of the scene."""
     theory, scene = bench.theory, bench.theory.scene
-    values = {"drive.velocity": theory.final_velocity, **scene.values()}
-    starts = [0.0] if theory.by_elements else np.log(FACTORS).tolist()
+    values = {**scene.values(), VELOCITY: theory.final_velocity or theory.motion.highest_speed}
 
     def scaled(x: float, powers: Mapping[str, float]) -> Pair | None:
-        if abs(x) > math.log(LARGEST_FACTOR):
-            return None
+        if x == 0.0 or abs(x) > math.log(LARGEST_FACTOR):
+            return None if x else (bench.columns, bench.now)
         return bench.against(scaled_scene(scene, powers, math.exp(x)))
 
     def text(x: float, parameter: Parameter) -> str:
@@ -110,40 +144,55 @@ def parameters(bench: Bench) -> Iterator[Hypothesis]:
         size = f"{factor * old:.4g} {unit} rather than {old:.4g} {unit}, {factor:.4g} times"
         return f"the data fit {parameter.symbol} = {size}{parameter.words}{ten}"
 
-    for each in PARAMETERS:
-        if all(values.get(name) for name in each.powers):
-            yield Hypothesis(
-                f"{WRONG}{each.symbol}", partial(text, parameter=each),
-                partial(scaled, powers=each.powers), starts, factor=math.exp, powers=each.powers,
-            )  # fmt: skip
+    remote = np.log(FACTORS[:2] if theory.by_elements else FACTORS).tolist()
+    for each in parameters_of(scene):
+        yield Hypothesis(
+            f"{WRONG}{each.symbol}", partial(text, parameter=each), partial(scaled, powers=each.powers),
+            [0.0], remote, factor=math.exp, powers=each.powers,
+        )  # fmt: skip
 
 
 def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
-    """Replace arms by a damper, the spring in the drive by a rigid drive."""
-    scene = bench.theory.scene
-    if scene.foundation.arms:
-        plain = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
+    """Replace arms by a damper or leave one out, and the spring in the drive by a rigid drive."""
+    scene, arms = bench.theory.scene, bench.theory.scene.foundation.arms
+
+    def other(name: str, text: str, **parts: Any) -> Hypothesis:
+        return fixed(name, text, bench.against(replace(scene, **parts)))
+
+    if arms:
+        stiffness = scene.foundation.stiffness
+        plain = Foundation(stiffness, scene.foundation.retardation_time)
         text = (
             "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have "
             "no stiffness and no relaxation times, which count unless the motion is slow (F18)"
         )
-        pair = bench.against(replace(scene, foundation=plain))
-        yield fixed("Kelvin-Voigt instead of arms", text, pair)
+        yield other("Kelvin-Voigt instead of arms", text, foundation=plain)
+        pairs: Any = [(arm.stiffness, arm.relaxation_time) for arm in arms]
+        relaxed = stiffness - sum(K_i for K_i, _ in pairs)
+        if relaxed > 0.0:
+            text = "the stiffness of the scene is taken for the glassy one: it is the relaxed one"
+            yield other("glassy stiffness", text, foundation=GeneralizedMaxwell(relaxed, pairs))
+        for i in range(len(pairs)):
+            left = pairs[:i] + pairs[i + 1 :]
+            if left:
+                text = f"arm {i + 1} is missing: {pairs[i][0]:.4g} N/m^3 with {pairs[i][1] * 1e3:.4g} ms"
+                yield other(
+                    f"arm {i + 1} missing", text, foundation=GeneralizedMaxwell(stiffness, left)
+                )
     if not scene.drive.rigid:
-        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
         text = (
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "
             "oscillates on the spring of the scene (F22)"
         )
-        pair = bench.against(replace(scene, drive=rigid))
-        yield fixed("rigid drive instead of a spring", text, pair)
+        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
+        yield other("rigid drive instead of a spring", text, drive=rigid)
+        if not scene.drive.damping:
+            yield _damper(bench)
 
 
-def damper(bench: Bench) -> Iterator[Hypothesis]:
+def _damper(bench: Bench) -> Hypothesis:
     """Fit a damper beside a spring that has none."""
     scene = bench.theory.scene
-    if scene.drive.stiffness is None or scene.drive.damping:
-        return
     critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
     text = (
         "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring in the drive, which has none"
@@ -154,8 +203,7 @@ def damper(bench: Bench) -> Iterator[Hypothesis]:
         return bench.against(replace(scene, drive=drive))
 
     starts = np.log(DAMPING_SHARES).tolist()
-    words = lambda x: text.format(math.exp(x) * critical)  # noqa: E731
-    yield Hypothesis(f"{WRONG}c_x", words, damped, starts)
+    return Hypothesis(f"{WRONG}c_x", lambda x: text.format(math.exp(x) * critical), damped, starts)
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
@@ -174,16 +222,21 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
         exchanged = dict(zip(edges, [bench.columns[name] for name in reversed(edges)], strict=True))
         text = "the edges are exchanged: the leading one is where the foundation enters, at x < 0 for V > 0"
         yield fixed("edges exchanged", text, ({**bench.columns, **exchanged}, bench.now))
+    for name in SIGNED:
+        if name in bench.names and (bench.now[name] < -bench.allowed(name)).any():
+            text = f"{name.replace('_', ' ')}: its magnitude is given, without the sign that reverses with V"
+            given = {**bench.now, name: np.abs(bench.now[name])}
+            yield fixed(f"sign of {name} lost", text, (bench.columns, given))
     backward = scaled_scene(bench.theory.scene, {"drive.velocity": 1.0}, -1.0)
     text = "the base moves in the other direction: x and V have the other sign"
     yield fixed("direction of the drive", text, bench.against(backward), -1.0)
 
 
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
-    """Fit the scale and the offset of columns, and the lever arm of the friction force."""
+    """Fit scale, offset and drift of columns, and what may be added to the friction force."""
     theory, columns = bench.theory, bench.columns
     for title, factor, exact, pair in _factors(bench):
-        if _power_of_ten(factor) is None:
+        if _power_of_ten(factor) in (None, 0) and factor > 0.0:
             text = (
                 f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
             )
@@ -197,18 +250,37 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
             factor=partial(float.__mul__, unit),
         )  # fmt: skip
 
+    share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
     for name in (name for name in bench.names if name in MEASURED):
-        off = f"off by {{:.4g}} {theory.units[name]} throughout, while the rest agrees"
-        words = f"{name.replace('_', ' ')}: {off}"
-        yield shifted("offset", name, theory.scales[name], words, theory.scales[name])
+        unit, words = theory.units.get(name, ""), f"{name.replace('_', ' ')}: off by {{:.4g}}"
+        for title, by, off in (
+            ("offset", 1.0, f"{words} {unit} throughout, while the rest agrees"),
+            ("drift", share, f"{words} {unit} at the end, in proportion to the time"),
+        ):
+            scale = theory.scales[name]
+            yield shifted(title, name, scale * np.asarray(by), off, scale)
     if "friction_force" in bench.names:
         half = theory.static.half_length
-        moment = half / theory.radius * columns.get("normal_force", bench.now["normal_force"])
+        pressed = columns.get("normal_force", bench.now["normal_force"])
         words = (
             "friction force: its lever arm is off by {1:.3g} mm, F_x being the moment of the pressure about "
             "another point than the lowest of the indenter (Eqs. 13 and 15)"
         )
-        yield shifted("lever arm", "friction_force", moment, words, half)
+        yield shifted("lever arm", "friction_force", half / theory.radius * pressed, words, half)
+        words = (
+            "friction force: holds a dry friction of {:.3g} F_z beside that of the foundation, which is all "
+            "that a smooth indenter has (Eq. 15)"
+        )
+        against = np.sign(bench.now["sliding_velocity"]) * pressed
+        yield shifted("dry friction", "friction_force", against, words, 1.0)
+    digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in bench.names}
+    if any(half.any() for half in digits.values()):
+        cut = {
+            name: values + np.sign(values) * digits.get(name, 0.0)
+            for name, values in columns.items()
+        }
+        text = "the last digits of the data are cut off, not rounded"
+        yield fixed("digits cut off", text, (cut, bench.now))
 
 
 def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
@@ -224,7 +296,8 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
         factor = float(data[known] @ theory[known]) / square if square else math.nan
         if math.isfinite(factor) and factor != 0.0:
             power = _power_of_ten(factor)
-            exact = factor if power is None else math.copysign(10.0**power, factor)
+            plain = power is None or (power == 0 and factor > 0.0)
+            exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
             changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
             yield title, factor, exact, (changed, bench.now)
 
@@ -239,17 +312,54 @@ def time_units(bench: Bench) -> Iterator[Hypothesis]:
         yield fixed("unit of time", text, pair, 10.0**-power)
 
 
-def time_offset(bench: Bench) -> Iterator[Hypothesis]:
-    """Fit an offset of the time, first from zero, the start of the data, and the first change of a force."""
-    scene, unit = bench.theory.scene, HUNDREDTH * float(bench.time[-1] - bench.time[0])
+def delays(bench: Bench) -> Iterator[Hypothesis]:
+    """Fit an offset of the time from several starts, and the delay or a filter of forces."""
+    end, unit = float(bench.time[-1]), HUNDREDTH * float(bench.time[-1] - bench.time[0])
+    if not bench.theory.scene.drive.rigid and end > LONGEST * bench.theory.scene.run.duration:
+        return
     values = bench.columns[next(name for name in MEASURED if name in bench.columns)]
     change = np.abs(values - values[0])
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
     known = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
     text = "the times are off by {:.6g} ms: in the data the drive starts at that time"
     yield Hypothesis(
-        "time offset", lambda x: text.format(x * unit * 1e3),
-        lambda x: bench.against(scene, bench.time - x * unit),
+        "time offset", lambda x: text.format(x * unit * 1e3), lambda x: bench.late(x * unit),
         [*known, *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))],
         factor=partial(float.__mul__, unit),
     )  # fmt: skip
+
+    def delayed(name: str, words: str, make: Callable[[float], Pair]) -> Hypothesis:
+        """Return a fault with a time as its unknown, fitted by its logarithm."""
+        return Hypothesis(
+            name, lambda x: words.format(math.exp(x) * unit * 1e3), lambda x: make(math.exp(x) * unit),
+            np.log(DELAYS).tolist(), factor=lambda x: math.exp(x) * unit,
+        )  # fmt: skip
+
+    pairs = {"both forces": ("normal_force", "friction_force")} | {name: (name,) for name in FORCES}
+    for title, group in pairs.items():
+        names = [name for name in group if name in bench.names]
+        if len(names) == len(group) and len(bench.names) > len(names):
+            words = f"{title.replace('_', ' ')}: late by {{:.4g}} ms, while the rest agrees"
+            yield delayed(f"delay of {title}", words, partial(bench.late, names=names))
+        if len(names) == len(group):
+            words = (
+                f"{title.replace('_', ' ')}: filtered by a low pass, its time constant {{:.4g}} ms"
+            )
+            yield delayed(f"low pass of {title}", words, partial(_filtered, bench, names=names))
+
+
+def _filtered(bench: Bench, time_constant: float, names: Sequence[str]) -> Pair:
+    """Return the data, and theory with curves that went through a low pass of the first order."""
+    known, now = bench.dense, {}
+    z = np.diff(known["time"]) / time_constant
+    kept, mean = (
+        np.exp(-z),
+        np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z),
+    )
+    for name in names:
+        x, value, found = known[name], float(bench.columns[name][0]), []
+        for k in range(z.size):  # exact for a straight line between two instants
+            found.append(value)
+            value = kept[k] * value + (mean[k] - kept[k]) * x[k] + (1.0 - mean[k]) * x[k + 1]
+        now[name] = np.interp(bench.time, known["time"], [*found, value])
+    return bench.columns, {**bench.now, **now}

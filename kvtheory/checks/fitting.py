@@ -3,15 +3,14 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares, minimize_scalar
 
 from kvtheory.checks.allowances import Band
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves, Theory
+from kvtheory.checks.theory import CURVES, TRIAL_RTOL, Array, Curves
 from kvtheory.scene import Scene
 
 Pair = tuple[Curves, Curves]
@@ -25,12 +24,23 @@ SHARE_OF_VALUES = 0.98
 """Fraction of the values that must be allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
-PRECISION, STEP = 1e-5, 1e-3
+PRECISION, STEP = 1e-4, 1e-3
 """Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
-MAXIMUM_TRIALS, BY_ELEMENTS = 30, 8
-"""Most evaluations to fit one unknown; a good guess needs five. Fewer if theory is a run of many elements."""
-WORTH_SEARCHING, SEARCH_PRECISION = 0.3, 0.01
-"""Part of the difference that x = 0 must explain for a search to begin, and the precision of x."""
+FAR = 0.7
+"""Logarithm of the largest factor by which a parameter is changed at once, for the sake of time."""
+EVALUATIONS, FARTHEST, WORSE = 8, 1.0, 1.2
+"""Most steps to fit one unknown, its longest step, and the growth of the difference that ends it: a step of
+Gauss and Newton, with the slope between the last two points, takes one evaluation."""
+PROMISING = 0.03
+"""Part of the squared difference that must be along the slope of an unknown for a fit from zero to go on."""
+NO_EFFECT = 1e-6
+"""Slope, relative to that of the best parameter, below which another has no effect."""
+LATE_START = 3.0
+"""End of the data, over their span, from which the times must be off."""
+DENSE, SOON, AFTER = 1200, 60, 1e-4
+"""Instants at which theory is interpolated: evenly; after each change of the drive; the first of these,
+relative
+to the span."""
 VELOCITY = "drive.velocity"
 """The key that stands for all velocities of a drive."""
 
@@ -38,16 +48,16 @@ VELOCITY = "drive.velocity"
 class Hypothesis(NamedTuple):
     """A possible fault: its name, its description, and the data and theory that it compares.
 
-    With `starts` it has an unknown x, fitted by least squares from the best of them. With `span`, x is
-    searched for from -span to span, if the fit is not smooth in x. Otherwise x is 0. `factor` is the number
-    that is reported for x. `powers` are those of the quantities of the scene that scale with e^x, if any.
+    With `starts` it has an unknown x, fitted by least squares, from the best of them if there are several;
+    `remote` are starts that are tried if nothing else explains the data. Without, x is 0. `factor` is the
+    number that is reported for x. `powers` are those of the quantities of the scene that scale with e^x.
     """
 
     name: str
     text: Callable[[float], str]
     make: Callable[[float], Pair | None]
     starts: Sequence[float] = ()
-    span: float = 0.0
+    remote: Sequence[float] = ()
     factor: Callable[[float], float | None] = lambda _x: None
     powers: Mapping[str, float] | None = None
 
@@ -81,76 +91,107 @@ class Bench(Case):
         bands = [np.nan_to_num(self.bands[n].high - self.bands[n].low) for n in self.names]
         return np.array(bands), np.array([self.allowed(name) for name in self.names])
 
-    def _gaps(self, one: Curves, other: Curves) -> Array:
+    def _gaps(self, pair: Pair) -> Array:
         """Return the differences of the curves that count; zero where one side does not exist."""
-        return np.nan_to_num(np.array([one[name] - other[name] for name in self.names]))
+        return np.nan_to_num(np.array([pair[0][name] - pair[1][name] for name in self.names]))
 
     def ratios(self, pair: Pair | None) -> Array:
-        """Return how far data lie outside the band of theory, relative to what is allowed, by curve."""
+        """Return the differences relative to the band of theory and what is allowed outside of it."""
         band, limit = self._units
         if pair is None:
             return np.full(limit.shape, LARGEST)
-        gap = self._gaps(*pair)
-        ratios = np.sign(gap) * np.maximum(np.abs(gap) - band, 0.0) / limit
-        return np.clip(ratios, -LARGEST, LARGEST)
+        return np.clip(self._gaps(pair) / (band + limit), -LARGEST, LARGEST)
 
     @cached_property
     def start(self) -> float:
         """The score of the data as they are."""
-        return self._rated(fixed("", "", None), (self.columns, self.now)).score
+        return self.rated(fixed("", "", None), (self.columns, self.now)).score
 
-    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float = 0.0) -> Trial:
+    def rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float = 0.0) -> Trial:
+        """Return how a hypothesis fits with its unknown at x."""
         if pair is None:
             return Trial(hypothesis)
-        ratios = np.abs(self.ratios(pair))
-        largest = np.quantile(ratios, SHARE_OF_VALUES, axis=1).max()
+        band, limit = self._units
+        outside = np.maximum(np.abs(self._gaps(pair)) - band, 0.0) / limit
+        largest = np.quantile(outside, SHARE_OF_VALUES, axis=1).max()
+        ratios = self.ratios(pair)
         score = math.sqrt(float(np.mean(ratios * ratios)))
         return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
 
-    def tried(self, hypothesis: Hypothesis, best: float) -> Trial:
-        """Return how a hypothesis fits; a search is made only if its first score is below `best`."""
-        make = cache(hypothesis.make)
-        if not hypothesis.starts:
-            trials = [self._rated(hypothesis, make(0.0))]
-            promising = trials[0].score < min((1.0 - WORTH_SEARCHING) * self.start, best)
-            if hypothesis.span and promising:
-
-                def score(x: float) -> float:
-                    trials.append(self._rated(hypothesis, make(x), x))
-                    return min(trials[-1].score, LARGEST)
-
-                bounds, options = (-hypothesis.span, hypothesis.span), {"xatol": SEARCH_PRECISION}
-                minimize_scalar(score, bounds=bounds, method="bounded", options=options)
-            return min(trials, key=lambda trial: trial.score)
-
-        def ratios(x: float) -> Array:
-            return self.ratios(make(x)).reshape(-1)
-
-        def slope(x: Array) -> Array:
-            return ((ratios(float(x[0]) + STEP) - ratios(float(x[0]))) / STEP)[:, None]
-
-        first = hypothesis.starts[0]
-        if len(hypothesis.starts) > 1:
-            first = min(hypothesis.starts, key=lambda x: float(np.sum(np.log1p(ratios(x) ** 2))))
-        # With a plain sum of squares, values that a fault cannot explain would distort the fit.
-        found = least_squares(
-            lambda x: ratios(float(x[0])), [first], jac=slope, loss="soft_l1", xtol=PRECISION,
-            max_nfev=BY_ELEMENTS if self.theory.by_elements else MAXIMUM_TRIALS,
-        )  # fmt: skip
-        value = float(found.x[0])
-        return self._rated(hypothesis, make(value), value)
+    def tried(self, hypothesis: Hypothesis, starts: Sequence[float] | None = None) -> Trial:
+        """Return how a hypothesis fits, its unknown fitted from the best of its starts."""
+        starts = hypothesis.starts if starts is None else starts
+        if not starts:
+            return self.rated(hypothesis, hypothesis.make(0.0))
+        found = [(x, hypothesis.make(x)) for x in starts]
+        x, pair = min(found, key=lambda each: self.rated(hypothesis, each[1]).score)
+        best = self.rated(hypothesis, pair, x)
+        ratios, step = self.ratios(pair).reshape(-1), STEP
+        moved = self.ratios(hypothesis.make(x + step)).reshape(-1)
+        for count in range(EVALUATIONS):
+            slope = (moved - ratios) / step
+            if count:
+                x, ratios = x + step, moved
+            weight = 1.0 / np.hypot(
+                1.0, ratios
+            )  # values that a fault cannot explain distort the fit less
+            across, along = float((weight * slope) @ ratios), float((weight * slope) @ slope)
+            left = along * float((weight * ratios) @ ratios)
+            if left == 0.0 or (
+                len(starts) == 1 and across * across < PROMISING * left and not count
+            ):
+                break
+            step = float(np.clip(-across / along, -FARTHEST, FARTHEST))
+            if abs(step) < PRECISION or (hypothesis.powers and abs(x + step - best.value) > FAR):
+                break
+            pair = hypothesis.make(x + step)
+            trial = self.rated(hypothesis, pair, x + step)
+            if trial.score >= best.score * WORSE:
+                break
+            best, moved = (
+                min(best, trial, key=lambda each: each.score),
+                self.ratios(pair).reshape(-1),
+            )
+        return best
 
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
         """Return the data and the theory of another scene, or None where it has none."""
         try:
-            theory = Theory(scene, self.theory.methods)
+            theory = type(self.theory)(scene, self.theory.methods)
             found = theory.at(self.time if times is None else times, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None
-        if theory.by_elements and times is None:  # the errors of few elements cancel
+        if self.theory.by_elements and times is None:  # the errors of few elements cancel
             coarse = self.theory.at(self.time, TRIAL_RTOL)
             found = {name: self.now[name] + found[name] - coarse[name] for name in self.now}
         return self.columns, found
+
+    @cached_property
+    def dense(self) -> Curves:
+        """Theory at many instants, with the time, to be interpolated."""
+        end, span = float(self.time[-1]), float(self.time[-1] - self.time[0])
+        end = end if end <= LATE_START * span else span  # the times may be off by hours
+        changes = self.theory.motion.changes
+        near = [t + span for t in changes for span in end * np.geomspace(AFTER, 0.1, SOON)]
+        times = np.unique(
+            np.clip([*np.linspace(0.0, end, DENSE), *near, *changes], 0.0, max(end, 0.0))
+        )
+        return {"time": times, **self.theory.at(times, TRIAL_RTOL)}
+
+    @cached_property
+    def rest(self) -> Mapping[str, float]:
+        """Theory before the start."""
+        found = self.theory.at(np.array([-1.0, 0.0]), TRIAL_RTOL)
+        return {name: values[0] for name, values in found.items()}
+
+    def late(self, delay: float, names: Sequence[str] = CURVES) -> Pair:
+        """Return the data, and theory whose curves of these names are late by a time in s."""
+        at, known = self.time - delay, self.dense
+        moved = {
+            n: np.where(at < 0.0, self.rest[n], np.interp(at, known["time"], known[n]))
+            for n in names
+        }
+        return self.columns, {**self.now, **moved}
 
     def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
         """Return the names of the parameters that the data cannot distinguish from the best one.
@@ -165,9 +206,11 @@ class Bench(Case):
             there = self.against(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
             if here is None or there is None:
                 return ()
-            gaps = self._gaps(there[1], here[1]) / sum(self._units)
-            slopes.append(gaps.reshape(-1) / STEP)
-        pairs = zip(others, slopes[1:], strict=True)
+            slopes.append((self._gaps((there[1], here[1])) / sum(self._units)).reshape(-1) / STEP)
+        least = NO_EFFECT * float(np.linalg.norm(slopes[0]))
+        pairs = [
+            (o, s) for o, s in zip(others, slopes[1:], strict=True) if np.linalg.norm(s) > least
+        ]
         return tuple(o.name for o, s in pairs if uncertainty(slopes[0], s) >= abs(best.value))
 
 

@@ -5,7 +5,7 @@ Columns are recognised by name and unit, as people write them: ``t [ms]``, ``Tim
 depth.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from os import PathLike
@@ -22,12 +22,14 @@ from kvtheory.scene.units import bare, to_si
 
 PRESSURE = {"peak_pressure": "N/m^2"}
 """The unit as `kvtheory.scene.units` spells it."""
-SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **PRESSURE}
+CURVE = {"friction_coefficient": "1", **PRESSURE}
+"""Units beside those of a series, of a curve over the velocity too."""
+SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **CURVE}
 """The units of the series of a line contact, in that spelling."""
 
 SPELLINGS = {
     "time": "time, t, Zeit",
-    "velocity": "velocity, V, drive velocity, v_drive, Geschwindigkeit",
+    "velocity": "velocity, V, drive velocity, drive.velocity, v_drive, Geschwindigkeit",
     "sliding_velocity": "sliding_velocity, sliding velocity, v_s, v_slide, slip velocity, "
     "Gleitgeschwindigkeit",
     "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
@@ -39,6 +41,9 @@ SPELLINGS = {
     "Reibkraft, Reibungskraft, Tangentialkraft",
     "spring_force": "spring_force, spring force, F_s, F_spring, drive force, pulling force, Federkraft, "
     "Zugkraft",
+    "friction_coefficient": "friction_coefficient, mu, µ, friction coefficient, coefficient of friction, "
+    "COF, "
+    "Reibungszahl, Reibwert, Reibungskoeffizient",
     "leading_edge": "leading_edge, x_LE, Vorderkante",
     "trailing_edge": "trailing_edge, x_TE, Hinterkante",
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
@@ -55,9 +60,10 @@ SHOWN = (
 )
 MISSPELT = 0.8
 """Similarity to a known name from which a name counts as misspelt, not as something else."""
-SHORTEST, MOST_ROWS = 8, 2000
-"""Fewest rows that can show a jump, a transient of two time constants and a limit; and about how many rows
-are kept of a longer series, as more would not change a verdict."""
+SHORTEST, FEWEST_POINTS, MOST_ROWS = 8, 5, 2000
+"""Fewest rows that can show a jump, a transient of two time constants and a limit; fewest velocities of a
+curve;
+and about how many rows are kept of longer data, as more would not change a verdict."""
 BRIEFEST = 1e-30
 """Shortest span in s: no contact changes in a shorter time, whose powers would underflow."""
 MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
@@ -92,6 +98,8 @@ def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None
     quantity = KNOWN[plain(name)][0]
     sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
     si = units[quantity]
+    if si == "1" and unit in ("", "-", "%"):
+        return Column(header, quantity, 0.01 if unit == "%" else 1.0)
     if not unit:
         raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
     try:
@@ -111,6 +119,8 @@ class Series:
     scheme: str | None = None
     ignored: tuple[str, ...] = ()
     """Columns of no known name."""
+    curve: bool = False
+    """Whether the rows are steady states at velocities, which then stand in the place of the times."""
 
     @property
     def time(self) -> Array:
@@ -131,7 +141,7 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     >>> series.columns["depth"].tolist()[0], series.time.tolist()[-1]
     (0.0003, 0.007)
     """
-    units = {**units, **PRESSURE}
+    units = {**units, **CURVE}
     if isinstance(data, (str, PathLike)):
         path = Path(data)
         table = read_table(path)
@@ -147,7 +157,7 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
         known = {key: getattr(data, key, None) for key in ("per_length", "time_step", "scheme")}
         source = str(known["scheme"] or getattr(data, "model", None) or type(data).__name__)
         found = {name: getattr(data, name, None) for name in SI_UNITS}
-        if found["time"] is None:
+        if found["time"] is None and found["velocity"] is None:
             what = "a path to a CSV, a mapping of arrays, or a result with time, depth, ..."
             raise TypeError(f"`data`: expected {what}; got {type(data).__name__}")
         data = {name: values for name, values in found.items() if values is not None}
@@ -195,6 +205,33 @@ def _raise(source: str, problems: Sequence[str]) -> None:
         raise ValueError("\n".join(f"{source}: {problem}" for problem in problems))
 
 
+def _unusable(time: Array, curve: bool, places: Sequence[str]) -> Iterator[str]:
+    """Yield why times, or the velocities of a curve, cannot be judged."""
+    steps, distinct = np.diff(time), np.unique(time).size
+    if curve:
+        if distinct < FEWEST_POINTS:
+            yield f"holds {distinct} velocities; at least {FEWEST_POINTS} show a curve and its scatter"
+    elif time.size < SHORTEST:
+        yield f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"
+    elif steps.min() < 0.0:
+        k = int(np.argmax(steps < 0.0)) + 1
+        follows = f"{time[k]:.9g} s in {places[k]} follows {time[k - 1]:.9g} s"
+        yield f"the time must increase, but {follows}"
+    elif np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
+        yield f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"
+
+
+def _without(values: Mapping[str, Array], name: str) -> dict[str, Array]:
+    return {other: array for other, array in values.items() if other != name}
+
+
+def _by_velocity(values: Mapping[str, Array]) -> dict[str, Array]:
+    """Return columns in the order of the velocity, which stands in the place of the time."""
+    order = np.argsort(values["velocity"], kind="stable")
+    columns = {n: x[order] if x.shape == order.shape else x for n, x in values.items()}
+    return {**columns, "time": columns["velocity"]}
+
+
 def _checked(
     columns: Sequence[Column | None], heads: Sequence[str], arrays: Iterable[Array], source: str,
     places: Sequence[str], **known: Any,
@@ -206,16 +243,26 @@ def _checked(
         raise ValueError(f"{source}: no column is known: {names}; expected {SHOWN}")
     values = {column.quantity: column.factor * array for column, array in pairs}
     problems: list[str] = []
+    curve = "time" not in values and "velocity" in values
+    if curve:
+        order = np.argsort(values["velocity"], kind="stable")
+        values = {
+            name: array[order] if array.shape == order.shape else array
+            for name, array in values.items()
+        }
+        values["time"] = values["velocity"]
+    else:
+        values.pop("friction_coefficient", None)
     if "time" not in values:
         problems.append(f"no column is the time; expected t [ms] or time [s] beside {SHOWN}")
-    if not any(name in values for name in JUDGED):
+    if not any(name in values for name in (*JUDGED, *("friction_coefficient",) * curve)):
         problems.append(f"nothing to judge: expected one of {', '.join(JUDGED)}")
     sizes = {array.shape for array in values.values()}
     if len(sizes) > 1 or any(len(size) != 1 for size in sizes):
         shapes = ", ".join(f"{name} {array.shape}" for name, array in values.items())
         problems.append(f"the columns differ in length: {shapes}")
     _raise(source, problems)
-    for column, _ in pairs:
+    for column in (column for column, _ in pairs if column.quantity in values):
         array = values[column.quantity]
         bad = np.flatnonzero(~np.isfinite(array))
         if bad.size and not (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
@@ -224,17 +271,8 @@ def _checked(
             problems.append(f'column "{column.header}": {count}, {first}')
     _raise(source, problems)
     time = values["time"]
-    steps = np.diff(time)
-    if time.size < SHORTEST:
-        problems = [f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"]
-    elif steps.min() < 0.0:
-        k = int(np.argmax(steps < 0.0)) + 1
-        follows = f"{time[k]:.9g} s in {places[k]} follows {time[k - 1]:.9g} s"
-        problems = [f"the time must increase, but {follows}"]
-    elif np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
-        problems = [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
-    _raise(source, problems)
+    _raise(source, list(_unusable(time, curve, places)))
     step = -(-time.size // MOST_ROWS)
     thinned = {name: values[name][::step] for name in SI_UNITS if name in values}
     ignored = (shown(head) for head, c in zip(heads, columns, strict=True) if c is None)
-    return Series(thinned, source, **known, ignored=tuple(ignored))
+    return Series(thinned, source, **known, ignored=tuple(ignored), curve=curve)

@@ -46,14 +46,12 @@ class Methods(NamedTuple):
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
     `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
-    spring; `elements` the curves of a simulation, for a scene, spacing (m), time step (s), times, and the
-    fields of its contact rule that are wrong.
+    spring.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
     steady: Callable[[Scene], Any]
     rates: Callable[[Scene], NDArray[np.complex128]]
-    elements: Callable[..., Mapping[str, Any]]
     tell: Callable[[float, str], object] = lambda _share, _words: None
 
 
@@ -121,6 +119,14 @@ class Theory:
         """Return the stiffness of a contact, K A + k_s with A = sqrt(a^2 + l_r^2) + a (F12)."""
         K, k_s = self.scene.foundation.stiffness, self.scene.support.spring
         return K * self.width(depth) * (np.hypot(a, l_r) + a) + k_s
+
+    def damping(self, duration: Any) -> Any:
+        """Return C; for arms, their stress after a duration (s) over the rate of compression."""
+        arms = self.scene.foundation.arms
+        if not arms:
+            return self.scene.foundation.damping
+        parts = ((arm.stiffness * arm.relaxation_time, arm.relaxation_time) for arm in arms)
+        return sum(-C * np.expm1(-duration / tau) for C, tau in parts)
 
     @cached_property
     def motion(self) -> Any:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import click
@@ -26,9 +27,16 @@ AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mas
 @click.option(
     "--problem", metavar="NAME", help='Print a reference problem instead; "list" names them all.'
 )
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    type=click.Path(path_type=Path),
+    help="Write the folder of the problem: scene, reference series, criteria, and a script that judges.",
+)
 def scene(
     scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None,
-    problem: str | None,
+    problem: str | None, output: Path | None,
 ) -> None:  # fmt: skip
     """Print a scene template, or check SCENE.
 
@@ -48,6 +56,9 @@ def scene(
             else ("--support", "--set or --json")
         )
         raise ValueError(f"{option} prints a template; it does not go with SCENE, {others}")
+    if output is not None:
+        _write_problem(problem, output)
+        return
     if problem == "list":
         console.print_table(("problem", "what it is"), problems().items())
         return
@@ -96,6 +107,19 @@ def scene(
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
     for note in notes:
         click.echo(f"\n{note}")
+
+
+def _write_problem(name: str | None, folder: Path) -> None:
+    """Write the folder of a reference problem."""
+    from kvtheory.api._problem_folder import write_problem
+    from kvtheory.reference_problems import problem_text
+
+    if name is None or name == "list":
+        raise ValueError("-o writes the folder of a reference problem; name it by --problem NAME")
+    problem_text(name)  # whether it exists
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ValueError(f"-o {folder}: exists and is not an empty folder; name another")
+    click.echo(f"Wrote {write_problem(name, folder)}: start with README.md")
 
 
 def _print_equivalent_line(scene: Any) -> None:

@@ -15,7 +15,10 @@ from kvtheory.scene import Scene, to_toml
 
 CURVES = {
     **{name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"},
-    **{name: (f"${QUANTITIES[name].symbol}$", 1.0) for name in SPRING_UNITS},
+    **{
+        name: (f"${QUANTITIES[name].symbol}$", 1.0)
+        for name in (*SPRING_UNITS, "friction_coefficient")
+    },
 }
 """Curves that are drawn if the data contain them: symbol, sign."""
 DOTS = 200
@@ -52,7 +55,8 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     (9, True)
     """
     names = [name for name in CURVES if name in comparison.series]
-    time = np.asarray(comparison.series["time"]) * 1e3
+    axis = next(iter(comparison.series))
+    time = np.asarray(comparison.series[axis]) * 1e3
     artists: list[Any] = []
     for (over, rest), name in zip(axes, names, strict=False):
         symbol, sign = CURVES[name]
@@ -79,7 +83,7 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
         for ax in row:
             ax.set_axis_off()
     for ax in axes[len(names) - 1]:
-        ax.set(xlabel=r"time $t$ [ms]")
+        ax.set(xlabel=r"time $t$ [ms]" if axis == "time" else r"velocity $V$ [mm/s]")
     axes[0][0].legend(loc="best")
     axes[0][1].legend(loc="upper right", ncols=2, fontsize=8)
     return artists

@@ -30,11 +30,12 @@ class Check:
 class Explanation:
     """A fault that would explain a disagreement.
 
-    `rank` orders them, from 0 to 1. For a fault that was simulated it equals `explained`, the part of the
-    difference (root mean square, relative to the allowance) that it removes; for one inferred from a symptom
-    it is an assumed strength of the evidence, and `explained` is None. `enough` says whether the remaining
-    difference is allowed; `factor` is the fitted factor or shift, if any. `alike` are the parameters that
-    the data cannot distinguish from the one that this fault names.
+    `rank` orders them, up to 1. `explained` is the part of the difference (root mean square, relative to the
+    allowance) that the fault removes; the rank is a little lower for a fault with an unknown, and more so for
+    a parameter far from its value. For a fault inferred from a symptom the rank is an assumed strength of the
+    evidence, and `explained` is None. `enough` says whether the remaining difference is allowed; `factor` is
+    the fitted factor or shift, if any. `alike` are the parameters that the data cannot distinguish from this
+    one.
     """
 
     name: str
@@ -59,7 +60,8 @@ class Comparison(Exported):
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
     ``"cannot tell"`` if only the check of the sampling, or of the phase of a cycle, failed. `diagnosis`
     explains it in words; `explanations` are possible faults, the most likely first. `series` holds the data
-    as arrays in SI by name, `time` first; `theory`, and the `allowed` difference, are at the same times.
+    as arrays in SI by name, `time` first (for a curve, `velocity`); `theory`, and the `allowed` difference,
+    are at the same times.
     """
 
     verdict: str
@@ -95,7 +97,8 @@ class Comparison(Exported):
 
     def _columns(self) -> Columns:
         """Return data, theory and the allowed difference of each quantity."""
-        columns = {"time": (self.series["time"], "s")}
+        axis = next(iter(self.series))
+        columns = {axis: (self.series[axis], self.units[axis])}
         kinds = {"data": self.series, "theory": self.theory, "allowed": self.allowed}
         for name in self.allowed:
             for kind, values in kinds.items():

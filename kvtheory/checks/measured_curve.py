@@ -1,0 +1,113 @@
+"""A measured curve, friction over velocity, held against steady sliding with its own scatter.
+
+It is a case whose "time" is the velocity, so that the same faults are tried as for a time series.
+"""
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kvtheory.checks import comparing
+from kvtheory.checks.allowances import Band, Resolution
+from kvtheory.checks.checklist import RELATIVE, largest, root_mean_square
+from kvtheory.checks.comparison_case import Case, rms
+from kvtheory.checks.noise import SURE, noise, rounded
+from kvtheory.checks.reading import Series
+from kvtheory.checks.theory import CURVES, Array, Theory
+from kvtheory.results.comparison import Check, Comparison
+
+NAMES = ("friction_coefficient", "friction_force", "normal_force", "depth", "leading_edge", "trailing_edge",
+         "peak_pressure")  # fmt: skip
+"""The columns that are compared."""
+SMOOTH = 1e-3
+"""Error allowed beside the scatter, relative to a value: no experiment and few simulations are better."""
+LARGEST_SCATTER = 0.2
+"""Scatter, relative to the curve, beyond which the points cannot test it."""
+STEADY_ONLY = (
+    " Steady sliding tests neither the inertia nor the memory of the free surface: the problems heavy-mass "
+    "and "
+    "reversal do."
+)
+
+
+class SteadyTheory(Theory):
+    """Steady sliding of a scene at given velocities."""
+
+    @cached_property
+    def scales(self) -> Any:
+        """The scales of differences: the static state, and its products."""
+        static = self.static
+        return {**super().scales, "friction_coefficient": static.depth / static.half_length}
+
+    def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
+        """Return the curves at velocities, which stand in the place of the times."""
+        state = self.methods.steady(self.scene.at(times))
+        moving = {name: np.zeros_like(times) for name in CURVES}
+        known = {name: getattr(state, name, None) for name in NAMES} | {"normal_force": state.load}
+        sizes = {
+            name: np.broadcast_to(x, times.shape) for name, x in known.items() if x is not None
+        }
+        return {**moving, "velocity": times, "sliding_velocity": times, **sizes}
+
+
+def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
+    """Compare a curve over the velocity with steady sliding; `kvtheory.compare` documents it."""
+    steady = SteadyTheory(theory.scene, theory.methods)
+    now = steady.at(series.time)
+    names = tuple(name for name in NAMES if name in series.columns and name in now)
+    order, bands, zero = np.arange(series.time.size, dtype=float), {}, np.zeros_like(series.time)
+    for name in now:
+        digits = sigma = zero
+        if name in names:
+            values = series.columns[name]
+            digits, sigma = rounded(values), noise(order, values - now[name], now[name])
+        smooth = SMOOTH * np.abs(now[name]) + digits
+        bands[name] = Band(now[name], now[name], smooth, sigma, digits)
+    case = Case(
+        steady, series, names, Resolution(1.0, 1.0, True, True), now, bands, zero, tolerance
+    )
+    checks = tuple(_checks(case))
+    families = [f for f in comparing.FAMILIES if f[0] in comparing.STEADY]
+    text, explanations = comparing.diagnose(case, checks, families)
+    if comparing.verdict(checks) == "agrees":
+        text += STEADY_ONLY
+    columns = {"velocity": series.time, **{name: series.columns[name] for name in names}}
+    return Comparison(
+        comparing.verdict(checks), checks, text + comparing.unused(series), explanations, series.source,
+        tolerance, columns, now, {name: case.allowed(name) for name in names},
+        {**steady.units, "friction_coefficient": "1"},
+    )  # fmt: skip
+
+
+def _checks(case: Case) -> Iterator[Check]:
+    """Yield the scatter, and for each column the largest difference, the root mean square and the mean."""
+    loud = max(rms(case.bands[name].noise) / rms(case.now[name]) for name in case.names)
+    most = case.tolerance * LARGEST_SCATTER
+    yield Check(
+        comparing.SCATTER, loud, most, loud <= most, "F1", "root mean square, relative to the curve"
+    )
+    for name in case.names:
+        title, equation = (
+            name.replace("_", " "),
+            "F17" if case.theory.scene.foundation.arms else "F1",
+        )
+        mean = abs(float(np.mean(case.residual(name))))
+        band, scale = case.bands[name], case.theory.scales[name]
+        random = SURE * rms(band.noise) / np.sqrt(case.time.size)
+        allowed = case.tolerance * (rms(band.systematic) + random) / scale
+        for kind, (measured, limit, note) in (
+            ("largest", largest(case, name)), ("RMS", root_mean_square(case, name)),
+            ("mean difference", (mean, allowed, "")),
+        ):  # fmt: skip
+            words = note.replace(" ms", " mm/s")
+            yield Check(
+                f"{title}, {kind}",
+                float(measured),
+                float(limit),
+                bool(measured <= limit),
+                equation,
+                RELATIVE,
+                words,
+            )

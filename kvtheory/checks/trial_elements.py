@@ -1,0 +1,353 @@
+"""A compact simulation of all mistakes in the contact rule together.
+
+Its arrays run over rules, rows and columns of elements: a line contact is one row, a ball has several. The
+right rule is the first, and the difference of the others to it is what a mistake changes, so that most errors
+of the discretization cancel. It is NumPy alone, and shares no code with the models.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.linalg import expm
+
+from kvtheory.checks.theory import Array, Theory
+from kvtheory.scene import Scene, Sphere
+from kvtheory.scene.static_state import StaticState
+
+
+class Rule(NamedTuple):
+    """How an element presses on the indenter; any value but the default is a mistake.
+
+    The compression rate is `depth_rate` times delta' less `slide_rate` times h' V; the free surface decays as
+    exp(-`decay` t/tau), and is forgotten for an infinite one. `pulls`: an element sticks below z = 0.
+    `stale` is the part of the pressure of receding elements that is lost in the equation of motion, `drops`
+    that of all elements while the indenter rises. `hunt`: the damping is this times C u/delta_0. `friction`
+    is the factor on h' V in the pressure that makes friction. `central`: friction is F_z times the slope in
+    the middle of the patch. `front`, `back`: weights of the elements before and behind the lowest point;
+    `lost` is the part of the half length that is missing at the leading edge. `flat`: all strips of a ball
+    are as its middle one. `start` is the first depth over the static one; `loaded`: the arms bear load at the
+    start. `freezes`: arms do not relax where the indenter has left them. `damper` is that of the indenter,
+    over C times the contact.
+    """
+
+    depth_rate: float = 1.0
+    slide_rate: float = 1.0
+    decay: float = 1.0
+    pulls: bool = False
+    stale: float = 0.0
+    drops: float = 0.0
+    hunt: float = 0.0
+    friction: float = 1.0
+    central: bool = False
+    front: float = 1.0
+    back: float = 1.0
+    lost: float = 0.0
+    flat: bool = False
+    start: float = 1.0
+    loaded: bool = False
+    freezes: bool = False
+    damper: float = 0.0
+
+
+COLUMNS, ROWS = {False: 100, True: 26}, 8
+"""Elements in the static half length of a line contact and of a ball, and rows in half the width of a
+ball."""
+WINDOW = 1.7
+"""Half of the width over which elements are simulated, in static half lengths."""
+PASSED = 1.618
+"""Elements that pass in a step: never in step with those that enter."""
+FEWEST_STEPS, LONGEST_RUN = 300, 1500
+"""Fewest and most steps of the simulation; its later curves are taken as constant."""
+FINEST, GROWTH = 0.02, 1.3
+"""Length of the first step after a change of the drive, as part of the longest, and growth of the next
+ones."""
+OSCILLATION = 0.05
+"""Longest step, in periods of the spring over 2 pi."""
+SWING = 4.0
+"""Room for a motion on the spring, in static half lengths."""
+SIMULATED = ("velocity", "depth", "depth_rate", "normal_force", "friction_force", "leading_edge",
+             "trailing_edge", "peak_pressure", "sliding_velocity", "spring_force")  # fmt: skip
+"""The curves that a simulation returns, in their order."""
+LATE, NEWTON = 0.52, 1
+"""Weight of the end of a step, a little above that of the trapezoidal rule; and Newton steps."""
+
+
+class Pressed(NamedTuple):
+    """The answer of the elements to a step, by rule: forces, edges, peak, and their new state."""
+
+    normal: Array
+    lift: Array
+    friction: Array
+    slope: Array
+    drag: Array
+    left: Array
+    right: Array
+    peak: Array
+    surface: Array
+    stress: Array
+
+
+@dataclass
+class Elements:
+    """The elements of each rule as arrays (rules, rows, columns), and what they remember.
+
+    `surface` is their compression, `stress` that of each arm, in a first dimension; `seen` is the time until
+    which each column is up to date. `heights` are y^2/(2 R'), `areas` those of elements (a length for a
+    line).
+    """
+
+    scene: Scene
+    rule: Any
+    places: Array
+    heights: Array
+    areas: Array
+    length: float
+    surface: Array
+    stress: Array
+    seen: Array
+
+    @classmethod
+    def at_rest(cls, scene: Scene, rules: Sequence[Rule], low: float, high: float) -> "Elements":
+        """Return elements between two places (m), under the indenter at rest."""
+        static, ball, arms = (
+            StaticState.of(scene),
+            isinstance(scene.indenter, Sphere),
+            scene.foundation.arms,
+        )
+        rule = Rule(*np.array(rules, dtype=float).T[:, :, None, None])
+        length = static.half_length / COLUMNS[ball]
+        places: Any = np.arange(math.floor(low / length), math.ceil(high / length) + 1) * length
+        heights, areas = np.zeros((len(rules), 1, 1)), np.full((len(rules), 1, 1), length)
+        if isinstance(scene.indenter, Sphere):
+            y = (np.arange(int(ROWS * WINDOW)) + 0.5).reshape(
+                1, -1, 1
+            ) / ROWS  # over the half width
+            heights = static.depth * np.where(rule.flat > 0.0, 0.0, y * y)
+            width = 2.0 * static.half_length * scene.indenter.stretch / ROWS
+            areas = length * width * ((rule.flat == 0.0) | (y < 1.0))
+        R = scene.indenter.radius  # type: ignore[union-attr]
+        surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
+        stress: Array = np.array(
+            [arm.stiffness * rule.loaded * surface for arm in arms], dtype=float
+        )
+        stress = stress.reshape(len(arms), *surface.shape)
+        return cls(
+            scene, rule, places, heights, areas, length, surface, stress, np.zeros(places.size)
+        )
+
+    def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
+        """Return the answer to a step h (s) of the columns `near`.
+
+        `state` holds by rule the depth, its rate, the displacement of the base, and the sliding velocity.
+        """
+        depth, rate, moved, speed = (each[:, None, None] for each in state)
+        rule, R = self.rule, self.scene.indenter.radius  # type: ignore[union-attr]
+        x = self.places[near] + moved
+        slope = x / R
+        g = depth - self.heights - 0.5 * x * slope
+        rise = rule.depth_rate * rate - rule.slide_rate * slope * speed
+        law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
+        touching = g > -0.5 * np.abs(slope) * self.length  # with a part of the element
+        on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
+        other = (
+            p + (1.0 - rule.friction) * damping * slope * speed
+        )  # the pressure that makes friction
+        p, other = (np.where(on & ((q > 0.0) | (rule.pulls > 0.0)), q, 0.0) for q in (p, other))
+        inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
+        area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
+        reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
+        area = np.where((rule.lost > 0.0) & (np.abs(x) > (1.0 - rule.lost) * reach)
+                        & (x * speed < 0.0), 0.0, area)  # fmt: skip
+        normal, friction = (p * area).sum(axis=(1, 2)), -(other * slope * area).sum(axis=(1, 2))
+        kept = 1.0 - rule.stale * (g < self.surface[:, :, near])
+        lift = (p * area * kept).sum(axis=(1, 2))
+        middle = (p != 0.0).any(axis=1)
+        some = middle.any(axis=1)
+        left, right = (np.where(some, end, np.nan) for end in (
+            np.where(middle, x[:, 0], np.inf).min(axis=1), np.where(middle, x[:, 0], -np.inf).max(axis=1),
+        ))  # fmt: skip
+        central = -normal * np.nan_to_num(left + right) / (2.0 * R)
+        friction = np.where(rule.central[:, 0, 0] > 0.0, central, friction)
+        held = np.where(p != 0.0, area, 0.0)
+        stiff = (held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0)).sum(axis=(1, 2))
+        drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
+        drag = (held * drag * slope * slope).sum(axis=(1, 2))
+        return Pressed(
+            normal, lift, friction, stiff, drag, left, right, p.max(axis=(1, 2)), surface, stress
+        )
+
+    def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
+        """Return who presses, p = K u + C u', C, K and the new state, with the exact memory of F8."""
+        foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
+        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
+        free = np.where(forgets | sticks, 0.0, np.exp(-age) * old) if h else old
+        on = np.where(sticks, g > 0.0, np.where(old == 0.0, touching, g >= free))
+        size = np.where(rule.hunt > 0.0, rule.hunt * g / StaticState.of(self.scene).depth, 1.0)
+        damping = foundation.damping * size
+        p = foundation.stiffness * g + damping * rise
+        surface = np.where(on, np.maximum(g, 0.0), free)
+        return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
+
+    def _arms(self, h: float, near: slice, g: Any, rise: Any, _touching: Any) -> Any:
+        """Do the same for arms that are strained at a constant rate during the step."""
+        foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
+        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        moduli, times = _moduli_and_times(self.scene)
+        kept = np.exp(-h / times)
+        gain = moduli * ((1.0 - kept) * times / h if h else 1.0)
+        glassy = foundation.stiffness + gain.sum()
+        stress = kept * self.stress[:, :, :, near]
+        free = (gain * old - stress).sum(axis=0) / glassy
+        free = np.where(forgets | sticks, 0.0, np.where(rule.decay > 0.0, free, old)) if h else old
+        on = (g > 0.0) & (sticks | (g >= free))
+        surface = np.where(on, g, free)
+        right = (rule.depth_rate == 1.0) & (rule.slide_rate == 1.0)
+        stress = stress + gain * np.where(right | ~on, surface - old, h * rise)
+        stress = np.where((forgets | sticks) & ~on & (h > 0.0), 0.0, stress)
+        stress = np.where((rule.freezes > 0.0) & ~on, self.stress[:, :, :, near], stress)
+        return on, foundation.stiffness * surface + stress.sum(axis=0), 0.0, glassy, surface, stress
+
+    def near(self, moved: Array, reach: float) -> slice:
+        """Return the columns that are near the indenter by any rule."""
+        ends = -reach - moved.max(), reach - moved.min()
+        return slice(*np.searchsorted(self.places, ends).tolist())
+
+    def keep(self, time: float, near: slice, found: Pressed) -> None:
+        """Take over the state after a step that ends at a time."""
+        self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
+        self.seen[near] = time
+
+    def relax(self, time: float, near: slice) -> None:
+        """Let the columns near the indenter relax from the time when they were last seen to this one."""
+        late = np.flatnonzero(self.seen[near] < time) + near.start
+        K, decay = self.scene.foundation.stiffness, np.minimum(self.rule.decay, 1e9)
+        for k in late[self.surface[:, :, late].any(axis=(0, 1))]:
+            gap = time - self.seen[k]
+            if self.scene.foundation.arms:
+                moduli, times = (part[:, 0, 0, 0] for part in _moduli_and_times(self.scene))
+                rates = np.linalg.solve(
+                    np.eye(moduli.size) + moduli[:, None] / K, np.diag(-1.0 / times)
+                )
+                left = np.einsum("ab,brj->arj", expm(rates * gap), self.stress[..., k])
+                left = np.where(np.isinf(self.rule.decay[..., 0]), 0.0, left)
+                relaxes = self.rule.decay[..., 0] > 0.0
+                self.stress[..., k] = np.where(relaxes, left, self.stress[..., k])
+                self.surface[..., k] = np.where(
+                    relaxes, -left.sum(axis=0) / K, self.surface[..., k]
+                )
+            else:
+                tau = self.scene.foundation.retardation_time
+                self.surface[..., k] *= np.exp(-decay[..., 0] * gap / tau)
+        self.seen[late] = time
+
+
+def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
+    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms])
+    return arms[:, 0, None, None, None], arms[:, 1, None, None, None]
+
+
+def instants(theory: Theory, end: float) -> Array:
+    """Return the ends of the steps: short ones follow each change of the drive, whose time comes twice."""
+    scene, length = (
+        theory.scene,
+        theory.static.half_length / COLUMNS[not theory.scene.indenter.per_width],
+    )
+    longest = end / FEWEST_STEPS
+    if theory.motion.highest_speed:
+        longest = min(longest, PASSED * length / theory.motion.highest_speed)
+    if not scene.drive.rigid:
+        longest = min(longest, OSCILLATION * math.sqrt(scene.drive_mass / scene.drive.stiffness))
+    first = longest * FINEST * GROWTH ** np.arange(math.ceil(-math.log(FINEST) / math.log(GROWTH)))
+    changes = sorted({0.0, *(t for t in theory.motion.changes if 0.0 < t < end)})
+    found: list[float] = []
+    for start, stop in pairwise([*changes, end]):
+        ramp = start + np.cumsum(first)
+        rest = np.arange(ramp[-1] + longest, stop, longest)
+        found += [start, *ramp[ramp < stop].tolist(), *rest.tolist(), stop]
+    return np.array(found[:LONGEST_RUN])
+
+
+def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, dict[str, Array]]:
+    """Return times, and each curve as an array (times, rules), of simulations up to a time in s.
+
+    A step is a Newton step or two of a trapezoidal rule, from the rates before it.
+    """
+    scene, static, motion, times = theory.scene, theory.static, theory.motion, instants(theory, end)
+    reach, drive, held, M = WINDOW * static.half_length, scene.drive, scene.held, scene.support.mass
+    k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
+    swing = 0.0 if drive.rigid else SWING * static.half_length
+    low, high = motion.extremes(0.0, float(times[-1]))
+    elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
+    depth = np.array([rule.start for rule in rules]) * static.depth
+    rate, along, along_rate = np.zeros((3, len(rules)))
+    damper = np.array([rule.damper for rule in rules]) * scene.foundation.damping
+    damper *= static.load / (scene.foundation.stiffness * static.depth)
+    drops = np.array([1.0 - rule.drops for rule in rules])
+    M_x, lifted, pulled = scene.drive_mass, np.zeros(len(rules)), np.zeros(len(rules))
+
+    def lift(sunk: Array, rate: Array, found: Pressed) -> Array:
+        spring = k_s * (sunk - static.depth) + damper * rate
+        return scene.support.weight - spring - drops ** (rate < 0.0) * found.lift
+
+    def pull(shift: Array, speed: Array, found: Pressed) -> Array:
+        return found.friction - k_x * shift - drive.damping * speed
+
+    forward, now, rows = motion.forward(float(times[-1])), 0.0, []
+    for time, following in zip(times.tolist(), [*times[1:].tolist(), math.inf], strict=True):
+        last, h, now = now, time - now, time
+        base, V = motion.displacement(now), motion.velocity(now, before=following == time)
+        near = elements.near(base - along, reach)
+        elements.relax(last, near)
+
+        def at(h: float) -> tuple[Array, Array, Pressed]:
+            sunk = depth + h * ((1.0 - LATE) * before + LATE * rate)  # noqa: B023
+            shift = along + h * ((1.0 - LATE) * before_along + LATE * along_rate)  # noqa: B023
+            state = sunk, rate, base - shift, V - along_rate  # noqa: B023
+            return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
+
+        before, before_along = rate, along_rate
+        for _ in range(NEWTON * (h > 0.0)):
+            sunk, shift, found = at(h)
+            if not held:
+                a = LATE * lift(sunk, rate, found) + (1.0 - LATE) * lifted
+                slope = damper + LATE * h * k_s + found.slope
+                rate = rate - (rate - before - h * a / M) / (1.0 + LATE * h * slope / M)
+            if k_x:
+                a = LATE * pull(shift, along_rate, found) + (1.0 - LATE) * pulled
+                slope = drive.damping + LATE * h * k_x + found.drag
+                off = along_rate - before_along - h * a / M_x
+                along_rate = along_rate - off / (1.0 + LATE * h * slope / M_x)
+        depth, along, found = at(h)
+        elements.keep(now, near, found)
+        if not held:
+            lifted = lift(depth, rate, found)
+        if k_x:
+            pulled = pull(along, along_rate, found)
+        speed = V - along_rate
+        forward = np.where(speed == 0.0, forward, speed > 0.0)
+        edges = np.where(forward, (found.left, found.right), (found.right, found.left))
+        spring = k_x * along + drive.damping * along_rate if k_x else found.friction
+        rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
+                     found.peak, speed, spring))  # fmt: skip
+    return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:
+    """Return by rule what it changes in each curve at times (s)."""
+    with np.errstate(all="ignore"):  # a wrong rule may diverge
+        grid, found = simulate(theory, [Rule(), *rules], float(times[-1]))
+    off = [{name: values[:, k] - values[:, 0] for name, values in found.items()}
+           for k in range(1, len(rules) + 1)]  # fmt: skip
+    moving = (times >= 0.0) & (times <= max(grid[-1], 0.0) * 2.0)
+    return [
+        {
+            n: moving * np.interp(times, grid, np.nan_to_num(curve, nan=0.0))
+            for n, curve in each.items()
+        }
+        for each in off
+    ]
