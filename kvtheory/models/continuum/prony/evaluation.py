@@ -49,8 +49,8 @@ def step_at(run: Run, s: float) -> int:
     return low
 
 
-def states(run: Run, times: Any, found: Any) -> None:
-    """Write the state at each of the `times` into a row of `found`."""
+def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
+    """Write the state at each of the `times` into a row of `found`, with peak pressures if wanted."""
     for i in range(len(times)):
         s, row = times[i], found[i]
         index = step_at(run, s)
@@ -75,8 +75,10 @@ def states(run: Run, times: Any, found: Any) -> None:
         row[ALONG_RATE] = value(rows[ALONG], theta)
         row[NORMAL_FORCE], row[FRICTION_FORCE] = forces(l, r, d, first, second)
         row[LEFT_STATE], row[RIGHT_STATE] = step.sides[0].state, step.sides[1].state
-        present(run, index, theta)
-        row[PEAK_PRESSURE] = peak(run, index, s, row)
+        row[PEAK_PRESSURE] = 0.0
+        if peaks:
+            present(run, index, theta)
+            row[PEAK_PRESSURE] = peak(run, index, s, row)
 
 
 def present(run: Run, index: int, theta: float) -> None:
@@ -218,7 +220,7 @@ def surface(run: Run, s: float, state: Any, xi: float) -> float:
     return 0.0
 
 
-WALK, STATES, PRESSURE, SURFACE = range(4)
+WALK, STATES, WITHOUT_PEAKS, PRESSURE, SURFACE = range(5)
 """Tasks of `perform`."""
 
 
@@ -230,8 +232,8 @@ def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
     one = Run(run.given[0], run.now[0], *run[2:])
     if task == WALK:
         return walk(one, attempts)
-    if task == STATES:
-        states(one, times, found)
+    if task in (STATES, WITHOUT_PEAKS):
+        states(one, times, found, task == STATES)
     else:
         for i in range(1, len(times)):
             if task == PRESSURE:

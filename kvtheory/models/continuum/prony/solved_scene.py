@@ -115,11 +115,12 @@ class SolvedPronyScene:
             for start, state in zip(steps["start"][turns], states[turns], strict=True):
                 verb = "touches" if state == TOUCHING else "peels"
                 found.append(Event(float(start) * self.units.time, f"{name} edge {verb}"))
+        whole = self.motion.states(s, peaks=False)
         for name, at in (("normal", e_.NORMAL_FORCE), ("friction", e_.FRICTION_FORCE)):
-            k = int(np.argmax(np.abs(self.motion.states(s)[at])))
+            k = int(np.argmax(np.abs(whole[at])))
             low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
             fine = np.linspace(low, high, 65)
-            k = int(np.argmax(np.abs(self.motion.states(fine)[at])))
+            k = int(np.argmax(np.abs(self.motion.states(fine, peaks=False)[at])))
             found.append(Event(float(fine[k]) * self.units.time, f"{name} force maximum"))
         return tuple(sorted(found, key=lambda event: event.time))
 

@@ -85,10 +85,11 @@ class Trajectory:
         times = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(SUBDIVISIONS) / SUBDIVISIONS)
         return np.append(times.reshape(-1), ends[-1])
 
-    def states(self, s: ArrayLike) -> Array:
+    def states(self, s: ArrayLike, *, peaks: bool = True) -> Array:
         """Return the states at an array of times: a column for each, with the rows of `evaluation`."""
         times = np.ascontiguousarray(s, dtype=float)
-        return self._perform(evaluation.STATES, times, np.empty((times.size, evaluation.SIZE))).T
+        task = evaluation.STATES if peaks else evaluation.WITHOUT_PEAKS
+        return self._perform(task, times, np.empty((times.size, evaluation.SIZE))).T
 
     def profile(self, task: int, xi: Array, s: float) -> Array:
         """Return the pressure or the compression, a task of `evaluation`, at places and one time."""
