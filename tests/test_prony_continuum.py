@@ -108,7 +108,7 @@ def test_small_disturbances_decay_at_the_rates_of_f24():
     for later in (V, V * (1.0 + 1e-4)):
         drive = kv.Drive(history=[(0.0, V), (0.4, V), (0.4, later), (0.6, later)], **held)
         depths.append(
-            kv.transient(sliding(arms, drive, 0.6), at=times, rtol=1e-10, certify=False).depth
+            kv.transient(sliding(arms, drive, 0.6), at=times, rtol=1e-11, certify=False).depth
         )
     change = np.diff(depths[1] - depths[0])
     rest = np.convolve(change, np.poly(np.exp(0.002 * rates)).real, "valid")

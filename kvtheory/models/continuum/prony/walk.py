@@ -54,9 +54,9 @@ PROBES = 3
 TOGGLES = 12
 """Most changes at one instant; more than a few mean that no state of the edges is consistent."""
 
-DEEPEST, WATCHED = 100.0, 8
-"""Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; segments of
-free ground that are watched on each side."""
+DEEPEST, LEAST, WATCHED = 100.0, 1e-8, 8
+"""Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; the least
+tolerance there, which allows for rounding; segments of free ground that are watched on each side."""
 
 DONE, PAUSED, FULL, STUCK, CLOSES, PARTS = range(6)
 """How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
@@ -256,7 +256,7 @@ def _one_interval(run: Run) -> bool:
     On several arms this is no theorem. The elements are the first, the middle and the last of each segment.
     """
     now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
-    least = -DEEPEST * run.given.rtol * (1.0 + run.given.glass)
+    least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
     Y = b_.evaluate(run.pieces[now.piece], now.s)[0] - now.x
     for i in range(len(run.arms)):
         for row in (DEPTHS, SLIDES):
