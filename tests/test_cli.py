@@ -420,9 +420,6 @@ def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
 
     monkeypatch.setattr("kvtheory.plots.comparison.save_comparison_report", refuse)
     monkeypatch.setattr("kvtheory.plots.files.save_page", refuse)
-    (place / "mu.csv").write_text(
-        "V [m/s],mu\n1e-3,0.0010\n1e-2,0.0099\n0.1,0.0857\n1,0.0662\n3,0.0390\n"
-    )
     for replaced, by in SLOW.items():
         monkeypatch.setattr(f"kvtheory.{replaced}", by)
     run(*arguments, status=2)

@@ -1,26 +1,28 @@
-r"""The contact of a parabola with a Prony series: accumulators, and the history of the leading edge (F23).
+r"""The contact of a parabola with a Prony series: accumulators, and the history of both edges (F23).
 
 Scaled form, with k_i = K_i/K and T_i = tau_i/tau: u = d - xi^2 in the contact, p = u + sum s_i. An element at
-X = xi - Y that entered at sigma, where the leading edge l = -sqrt(d) was at X, has
+X = xi - Y that entered at sigma, where an edge was at xi_e = X + Y(sigma), and its arms had the stresses s_e,
+has
 
-    s_i = k_i {A_i - xi B_i - e^-(s - sigma)/T_i [A_i - l B_i](sigma)},
+    s_i = k_i (A_i - xi B_i) + e^-(s - sigma)/T_i [s_e - k_i (A_i - xi_e B_i)](sigma),
 
     A_i' = d' + lambda B_i - A_i/T_i,   B_i' = 2 lambda - B_i/T_i,
 
-A_i and B_i starting at zero; the elements in contact at rest lack the term in brackets. Along the contact
+A_i and B_i starting at zero; those in contact at rest lack the term in brackets. The moments F_i and M_i of
+s_i over the contact, from which both forces follow, obey, with I_n = int xi^n dxi, summed over both edges,
 
-    ds_i/dxi = -k_i {B_i + e^-(s - sigma)/T_i [2 l - B_i](sigma)},
+    F_i' = k_i (d' I_0 - 2 lambda I_1) - F_i/T_i +- s_e X_e',
+    M_i' = lambda F_i + k_i (d' I_1 - 2 lambda I_2) - M_i/T_i +- xi_e s_e X_e'.
 
-and the trailing edge is p = 0. Its velocity through the material is -p'/(dp/dxi), p' at constant X. The
-moments F_i and M_i of s_i over the contact, from which both forces follow, obey, with I_n = int xi^n dxi,
+An edge peels at p = 0, or touches the free surface, d - xi^2 = u: zero on ground that was never touched, and
+where an edge left it at sigma, the solution of u + sum s_i = 0, a sum of N modes. It peels as long as p of
+the element there would fall, and touches as long as it rises.
 
-    F_i' = k_i (d' I_0 - 2 lambda I_1) + s_i(r) (r' - lambda) - F_i/T_i,
-    M_i' = lambda F_i + k_i (d' I_1 - 2 lambda I_2) + r s_i(r) (r' - lambda) - M_i/T_i.
-
-A step stores polynomials over its length, a row for each quantity; the memory is evaluated from them, also
-within the step that is being solved. Where the history has a kink, the step that begins there says so: an
-element is found among the steps between two kinks, whose polynomials are continued beyond, and the instant at
-which the trailing edge passes a kink ends a step.
+A step stores polynomials over its length, a row for each quantity. The memory is evaluated from them, also
+within the step that is being solved. A segment is ground over which one edge passed one way without a kink:
+it is told from the rows of this edge, and the instants at its ends. The contact is a sequence of segments
+from left to right; the free ground on each side is a list that begins at the edge. An edge that passes the
+end of a segment, or turns, ends a step.
 """
 
 import math
@@ -28,17 +30,24 @@ from typing import Any
 
 from kvtheory.scene.base_motion import evaluate
 
-RATE, ALONG, EDGE, PER_ARM = 0, 1, 2, 3
-"""Rows of a step: d', x', r; then, for each arm, A_i, B_i, s_i(r), F_i and M_i."""
-DEPTHS, SLIDES, STRESSES, FORCES, MOMENTS = range(5)
-"""Rows of an arm."""
-OWN = 5
+RATE, ALONG, EDGES, PER_ARM = 0, 1, 2, 4
+"""Rows of a step: d', x', both edges xi_e; then those of each arm."""
+DEPTHS, SLIDES, STRESSES, FORCES, MOMENTS, OWN = 0, 1, 2, 4, 5, 6
+"""Rows of an arm: A_i, B_i, s_e at both edges, F_i, M_i; their number."""
+STIFFNESS, TIME, FALL, SHARE, MODES = range(5)
+"""Columns of an arm: k_i, T_i, rate and share of a free mode; then the N by N matrices to modes and back."""
 
-NEWTON_STEPS = 40
-EDGE_ERROR = 1e-15
-"""Allowed error of the trailing edge, relative to 1 + Y."""
-AT_REST = -1
-"""Number of the step in which an element entered that was in contact at rest."""
+PEELING, TOUCHING = 0, 1
+"""States of an edge."""
+SIDES = (-1.0, 1.0)
+NEVER = -1
+"""Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest."""
+
+ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
+"""Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
+
+FARTHEST = 0.1
+"""How far an edge is continued beyond the end of a segment."""
 
 Run = Any
 
@@ -61,80 +70,149 @@ def integral(row: Any, theta: float) -> float:
 
 def motion(run: Run, index: int, s: float) -> tuple[float, float, float, float, float]:
     """Return d, d', Y, lambda and theta at `s`, from a step."""
-    step, rows = run.steps[index], run.rows[index]
+    step = run.steps[index]
     theta = (s - step.start) / step.span
     Y, number, _ = evaluate(run.pieces[step.piece], s)
-    d = step.depth + step.span * integral(rows[RATE], theta)
+    d = step.depth + step.span * integral(run.rows[index, RATE], theta)
     if run.given.sprung:
-        Y -= step.along + step.span * integral(rows[ALONG], theta)
-        number -= value(rows[ALONG], theta)
-    return d, value(rows[RATE], theta), Y, number, theta
+        Y -= step.along + step.span * integral(run.rows[index, ALONG], theta)
+        number -= value(run.rows[index, ALONG], theta)
+    return d, value(run.rows[index, RATE], theta), Y, number, theta
 
 
-def entered(run: Run, index: int, sigma: float) -> int:
-    """Return the step in which an element entered at `sigma`, between the same kinks as the step `index`."""
+def step_of(run: Run, edge: int, index: int, sigma: float) -> int:
+    """Return the step of an instant, between the same kinks of an edge as the step `index`."""
     steps, last = run.steps, run.now.steps
-    while index < last and sigma >= steps[index + 1].start and not steps[index + 1].kinked:
+    while index < last and sigma >= steps[index + 1].start and steps[index + 1].kinked[edge] == 0:
         index += 1
-    while index > 0 and sigma < steps[index].start and not steps[index].kinked:
+    while index > 0 and sigma < steps[index].start and steps[index].kinked[edge] == 0:
         index -= 1
     return index
 
 
-def arms(
-    run: Run, s: float, xi: float, index: int, sigma: float, l: float, theta: float, here: Any
-) -> tuple[float, float, float]:
-    """Return sum s_i, its slope over xi and sum s_i/T_i of an element, and write s_i.
+def pressed(
+    run: Run, s: float, d: float, Y: float, xi: float, edge: int, index: int, sigma: float
+) -> tuple[float, float]:
+    """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
 
-    The step `index` is that in which the element entered, at `sigma` and theta, where the leading edge was
-    at `l`. `here` has A_i, B_i at present, and s_i.
+    It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest.
     """
-    total = slope = relaxing = 0.0
+    theta = xi_e = 0.0
+    if index != NEVER:
+        _, _, Y_e, _, theta = motion(run, index, sigma)
+        xi_e = value(run.rows[index, EDGES + edge], theta)
+        xi = xi_e - Y_e + Y
+    p = d - xi * xi
     for i in range(len(run.arms)):
-        k, T = run.arms[i, 0], run.arms[i, 1]
-        row = here[i]
-        A, B = row[DEPTHS], row[SLIDES]
-        stress, change = A - xi * B, B
-        if index != AT_REST:
-            rows, first = run.rows[index], PER_ARM + OWN * i
-            A, B = value(rows[first + DEPTHS], theta), value(rows[first + SLIDES], theta)
-            fall = math.exp(min((sigma - s) / T, 1.0))
-            stress -= fall * (A - l * B)
-            change += fall * (2.0 * l - B)
-        row[STRESSES] = k * stress
-        total += k * stress
-        slope -= k * change
-        relaxing += k * stress / T
-    return total, slope, relaxing
+        k, row = run.arms[i, STIFFNESS], run.here[i]
+        stress = k * (row[DEPTHS] - xi * row[SLIDES])
+        if index != NEVER:
+            first = PER_ARM + OWN * i
+            A, B = (
+                value(run.rows[index, first], theta),
+                value(run.rows[index, first + SLIDES], theta),
+            )
+            left = value(run.rows[index, first + STRESSES + edge], theta) - k * (A - xi_e * B)
+            stress += left * math.exp(min((sigma - s) / run.arms[i, TIME], 1.0))
+        row[STRESSES] = stress
+        p += stress
+    return p, xi
 
 
-def trailing(
-    run: Run, s: float, d: float, v: float, Y: float, number: float, r: float, index: int,
-    sigma: float, here: Any,
-) -> tuple[float, float, int, float, float]:  # fmt: skip
-    """Return r, r' - lambda, the step and the instant at which the element there entered, and p' there.
+def free(
+    run: Run, s: float, d: float, Y: float, edge: int, index: int, sigma: float
+) -> tuple[float, float]:
+    """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi; write its s_i."""
+    _, _, Y_e, _, theta = motion(run, index, sigma)
+    xi_e = value(run.rows[index, EDGES + edge], theta)
+    xi, count, u_e, u = xi_e - Y_e + Y, len(run.arms), 0.0, 0.0
+    for i in range(count):
+        run.here[i, FORCES] = value(run.rows[index, PER_ARM + OWN * i + STRESSES + edge], theta)
+        u_e -= run.here[i, FORCES]
+    for m in range(count):
+        mode = 0.0
+        for i in range(count):
+            mode += run.arms[m, MODES + i] * (u_e - run.here[i, FORCES] / run.arms[i, STIFFNESS])
+        run.here[m, MOMENTS] = mode * math.exp(min((sigma - s) * run.arms[m, FALL], 1.0))
+        u += run.arms[m, SHARE] * run.here[m, MOMENTS]
+    for i in range(count):
+        damper = 0.0
+        for m in range(count):
+            damper += run.arms[i, MODES + count + m] * run.here[m, MOMENTS]
+        run.here[i, STRESSES] = run.arms[i, STIFFNESS] * (u - damper)
+    return u - d + xi * xi, xi
 
-    By Newton's method from a guess of `r`, of elements that were in contact at rest, or of `sigma`. NaN if it
-    does not converge.
+
+def edge_at(
+    run: Run, k: int, s: float, d: float, Y: float, xi: float, index: int, sigma: float
+) -> tuple[float, int, float]:
+    """Return xi of an edge, the step and the instant of the element there; write its s_i into `here`.
+
+    From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`. NaN if the secant
+    method does not converge.
     """
-    l = theta = 0.0
-    for _ in range(NEWTON_STEPS):
-        if index != AT_REST:
-            index = entered(run, index, sigma)
-            d_0, v_0, Y_0, number_0, theta = motion(run, index, sigma)
-            if not d_0 > 0.0:
-                return math.nan, math.nan, index, sigma, math.nan
-            l = -math.sqrt(d_0)
-            r = l - Y_0 + Y
-        total, slope, relaxing = arms(run, s, r, index, sigma, l, theta, here)
-        p, slope = d - r * r + total, slope - 2.0 * r
-        move = -p / slope
-        if abs(move) <= EDGE_ERROR * (1.0 + abs(Y)):
-            loading = (1.0 + run.given.glass) * (v - 2.0 * r * number)
-            rate = loading - relaxing
-            return r, -rate / slope, index, sigma, rate
-        if index == AT_REST:
-            r += move
+    side = run.now.sides[k]
+    if side.segment == NEVER:
+        for i in range(len(run.arms)):
+            run.here[i, STRESSES] = 0.0
+        return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
+    segment = run.segments[side.segment]
+    backward = segment.edge == k
+    far = segment.a if backward else segment.b
+    if segment.step == NEVER:
+        return _search(run, k, s, d, Y, xi, NEVER, xi, math.nan, math.nan)
+    if far == math.inf:
+        return _search(run, k, s, d, Y, xi, index, sigma, math.nan, math.nan)
+    at_far = step_of(run, segment.edge, index, far)
+    f, xi = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
+    if f >= 0.0:
+        return _search(run, k, s, d, Y, xi, index, sigma, far, side.near)
+    # beyond the end of the segment: continued as if all elements there had passed with the last one
+    slope, beyond = 2.0 * xi, SIDES[k]
+    if side.state == PEELING:
+        beyond = -SIDES[k]
+        for i in range(len(run.arms)):
+            slope += run.arms[i, STIFFNESS] * run.here[i, SLIDES]
+    return xi + beyond * min(abs(f / slope), FARTHEST), at_far, far
+
+
+def _margin(
+    run: Run, state: int, s: float, d: float, Y: float, edge: int, index: int, x: float
+) -> tuple[float, float]:
+    """Return p, or the gap if the edge touches, and xi."""
+    if state == PEELING:
+        return pressed(run, s, d, Y, x, edge, index, x)
+    return free(run, s, d, Y, edge, index, x)
+
+
+def _search(
+    run: Run, k: int, s: float, d: float, Y: float, xi: float, index: int, x: float, far: float, near: float
+) -> tuple[float, int, float]:  # fmt: skip
+    """Find an edge by the secant method from a guess x: of the instant, or of xi of elements at rest.
+
+    It lies between two instants, if they are known.
+    """
+    side, at_rest = run.now.sides[k], index == NEVER
+    edge, before, at, last = run.segments[side.segment].edge, math.nan, 0.0, math.nan
+    bracketed = not math.isnan(far)
+    for _ in range(ITERATIONS):
+        if not at_rest:
+            x = min(x, near) if bracketed and edge == k else x
+            index = step_of(run, edge, index, x)
+        f, xi = _margin(run, side.state, s, d, Y, edge, index, x)
+        if abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
+            return xi, index, x
+        move = (1e-4 if at_rest else 1e-3 * (run.now.s - s)) if math.isnan(last) else 0.0
+        if f != before and not math.isnan(last):
+            move = -f * (x - at) / (f - before)
+        before, at, last = f, x, xi
+        if f > 0.0:
+            far = x
         else:
-            sigma = min(sigma + move / (0.5 * v_0 / l - number_0), s)
-    return math.nan, math.nan, index, sigma, math.nan
+            near = x
+        x += move
+        if bracketed and not min(near, far) <= x <= max(near, far):
+            x = 0.5 * (near + far)
+        elif not at_rest:
+            x = min(x, s)
+    return (xi if abs(xi - last) <= STALLED else math.nan), index, x

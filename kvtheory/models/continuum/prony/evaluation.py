@@ -1,21 +1,23 @@
-"""The state at any time of a solved motion on a Prony series: depth, edges, forces and pressure."""
+"""The state at any time of a motion on a Prony series: depth, edges, forces, pressure, free surface."""
 
 import math
 from typing import Any
 
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
-    AT_REST,
     DEPTHS,
-    EDGE,
+    EDGES,
     FORCES,
     MOMENTS,
+    NEVER,
     OWN,
+    PEELING,
     PER_ARM,
     SLIDES,
-    arms,
+    free,
     integral,
     motion,
+    pressed,
     value,
 )
 from kvtheory.models.continuum.prony.records import Run
@@ -24,14 +26,15 @@ from kvtheory.models.continuum.prony.walk import walk
 from kvtheory.scene.base_motion import evaluate
 
 DEPTH, RATE, NUMBER, DRIVE, ALONG_X, ALONG_RATE, LEFT, RIGHT = range(8)
-NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, TRAVEL = range(8, 12)
-SIZE = 12
+NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, TRAVEL, LEFT_STATE, RIGHT_STATE = range(8, 14)
+SIZE = 14
 """Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
-both edges, both forces, the largest pressure, and Y."""
+both edges, both forces, the largest pressure, Y, and the states of both edges."""
 
-REFINED, BISECTIONS = 12, 60
-"""Evaluations in the search for the peak between two instants at which elements entered, and bisections for
-the instant at which an element entered; the pressure is stationary at the peak."""
+REFINED, BISECTIONS, SAMPLES = 30, 60, 3
+"""Evaluations in the search for the peak between two samples, bisections for the instant at which an edge
+passed a place, and samples in each step of the history."""
+GOLDEN = 0.6180339887498949
 
 
 def step_at(run: Run, s: float) -> int:
@@ -46,18 +49,19 @@ def step_at(run: Run, s: float) -> int:
     return low
 
 
-def states(run: Run, times: Any, found: Any) -> None:
-    """Write the state at each of the `times` into a row of `found`."""
+def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
+    """Write the state at each of the `times` into a row of `found`, with peak pressures if wanted."""
     for i in range(len(times)):
         s, row = times[i], found[i]
         index = step_at(run, s)
+        step, rows = run.steps[index], run.rows[index]
         d, v, Y, number, theta = motion(run, index, s)
-        rows, first, second = run.rows[index], 0.0, 0.0
+        first = second = 0.0
         for k in range(len(run.arms)):
             at = PER_ARM + OWN * k
             first += value(rows[at + FORCES], theta)
             second += value(rows[at + MOMENTS], theta)
-        l, r = -math.sqrt(d), value(rows[EDGE], theta)
+        l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
         row[DEPTH], row[RATE], row[NUMBER], row[LEFT], row[RIGHT], row[TRAVEL] = (
             d,
             v,
@@ -66,12 +70,15 @@ def states(run: Run, times: Any, found: Any) -> None:
             r,
             Y,
         )
-        row[DRIVE] = evaluate(run.pieces[run.steps[index].piece], s)[1]
-        row[ALONG_X] = run.steps[index].along + run.steps[index].span * integral(rows[ALONG], theta)
+        row[DRIVE] = evaluate(run.pieces[step.piece], s)[1]
+        row[ALONG_X] = step.along + step.span * integral(rows[ALONG], theta)
         row[ALONG_RATE] = value(rows[ALONG], theta)
         row[NORMAL_FORCE], row[FRICTION_FORCE] = forces(l, r, d, first, second)
-        present(run, index, theta)
-        row[PEAK_PRESSURE] = peak(run, index, s, row)
+        row[LEFT_STATE], row[RIGHT_STATE] = step.sides[0].state, step.sides[1].state
+        row[PEAK_PRESSURE] = 0.0
+        if peaks:
+            present(run, index, theta)
+            row[PEAK_PRESSURE] = peak(run, index, s, row)
 
 
 def present(run: Run, index: int, theta: float) -> None:
@@ -81,88 +88,156 @@ def present(run: Run, index: int, theta: float) -> None:
             run.here[i, row] = value(run.rows[index, PER_ARM + OWN * i + row], theta)
 
 
-def pressure_of(run: Run, s: float, state: Any, sigma: float) -> tuple[float, float]:
-    """Return p and dp/dxi of the element that entered at `sigma`; `here` holds the present accumulators."""
-    index = step_at(run, sigma)
-    d, _, Y, _, theta = motion(run, index, sigma)
-    l = -math.sqrt(d)
-    xi = l - Y + state[TRAVEL]
-    total, slope, _ = arms(run, s, xi, index, sigma, l, theta, run.here)
-    return state[DEPTH] - xi * xi + total, slope - 2.0 * xi
+def pressure_of(run: Run, s: float, state: Any, number: int, place: float) -> float:
+    """Return p of an element of a segment, -inf outside of the contact; `here` has the present accumulators.
 
-
-def pressure_at_rest(run: Run, s: float, state: Any, xi: float) -> float:
-    """Return p of an element that was in contact at rest."""
-    total, _, _ = arms(run, s, xi, AT_REST, 0.0, 0.0, 0.0, run.here)
-    return float(state[DEPTH] - xi * xi + total)
+    The place is the instant at which the element entered, or X if it was in contact at rest.
+    """
+    segment, Y = run.segments[number], state[TRAVEL]
+    at_rest = segment.step == NEVER
+    index = NEVER if at_rest else step_at(run, place)
+    p, xi = pressed(run, s, state[DEPTH], Y, place + Y, segment.edge, index, place)
+    slack = 1e-12 * (1.0 + abs(Y))
+    return p if state[LEFT] - slack <= xi <= state[RIGHT] + slack else -math.inf
 
 
 def peak(run: Run, index: int, s: float, state: Any) -> float:
-    """Return the largest pressure: at ends and middles of steps of the history, and where dp/dxi is zero."""
-    largest, oldest = 0.0, run.steps[index].oldest
-    if oldest == AT_REST:
-        bend = 0.0
-        for i in range(len(run.arms)):
-            bend += run.arms[i, 0] * run.here[i, SLIDES]
-        xi = min(max(-0.5 * bend, state[TRAVEL] - 1.0), state[RIGHT])
-        largest = pressure_at_rest(run, s, state, xi)
-    before, rising = s, pressure_of(run, s, state, s)[1]
-    for j in range(index, max(oldest, 0) - 1, -1):
-        for half in (1.0, 0.0):
-            sigma = run.steps[j].start
-            if half > 0.0:
-                sigma += 0.5 * ((run.steps[j + 1].start if j < index else s) - sigma)
-            p, slope = pressure_of(run, s, state, sigma)
-            largest = max(largest, p)
-            if rising > 0.0 > slope:  # towards the trailing edge
-                low, high, at_low, at_high = before, sigma, rising, slope
-                for turn in range(REFINED):
-                    share = at_low / (at_low - at_high)
-                    if turn % 3 == 2 or not 0.02 < share < 0.98:
-                        share = 0.5
-                    middle = low + share * (high - low)
-                    p, slope_there = pressure_of(run, s, state, middle)
-                    largest = max(largest, p)
-                    if slope_there > 0.0:
-                        low, at_low = middle, slope_there
-                    else:
-                        high, at_high = middle, slope_there
-            before, rising = sigma, slope
+    """Return the largest pressure: of samples in each segment, refined by golden sections about the best."""
+    largest, step = 0.0, run.steps[index]
+    for i in range(step.first, step.first + step.count):
+        number = run.chain[i]
+        segment = run.segments[number]
+        at_rest = segment.step == NEVER
+        low = max(segment.X_a, state[LEFT] - state[TRAVEL]) if at_rest else segment.a
+        high = min(segment.X_b, state[RIGHT] - state[TRAVEL]) if at_rest else min(segment.b, s)
+        if not low < high:
+            continue
+        j = NEVER if at_rest else step_at(run, low)
+        best, before, place, after, at = -math.inf, low, low, high, low
+        while True:
+            p = pressure_of(run, s, state, number, at)
+            if p > best:
+                best, before, place, after = p, last_of(at, low, place), at, math.inf
+            elif after == math.inf:
+                after = at
+            if at >= high:
+                break
+            if at_rest:
+                at = min(at + (high - low) / (2 * SAMPLES), high)
+            else:
+                width = run.steps[j].span / SAMPLES
+                at = min(at + width, high)
+                while j < index and run.steps[j + 1].start <= at:
+                    j += 1
+        largest = max(largest, best)
+        if best > 0.0:
+            largest = max(largest, golden(run, s, state, number, before, min(after, high)))
     return largest
 
 
-def pressure(run: Run, s: float, state: Any, xi: float) -> float:
-    """Return the pressure at one place in the contact."""
-    index, X = step_at(run, s), xi - state[TRAVEL]
-    present(run, index, (s - run.steps[index].start) / run.steps[index].span)
-    if run.steps[0].lead < X:
-        return pressure_at_rest(run, s, state, xi)
-    low, high = 0.0, s
-    for _ in range(BISECTIONS):
-        sigma = 0.5 * (low + high)
-        d, _, Y, _, _ = motion(run, step_at(run, sigma), sigma)
-        if -math.sqrt(d) - Y > X:
-            low = sigma
+def last_of(at: float, low: float, place: float) -> float:
+    """Return the sample before the best one, which was the best until then, or the first."""
+    return place if at > low else low
+
+
+def golden(run: Run, s: float, state: Any, number: int, low: float, high: float) -> float:
+    """Return the largest pressure between two places of a segment, by golden sections."""
+    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    f, g = (pressure_of(run, s, state, number, one), pressure_of(run, s, state, number, two))
+    largest = max(f, g)
+    for _ in range(REFINED):
+        if f > g:
+            high, two, g = two, one, f
+            one = high - GOLDEN * (high - low)
+            f = pressure_of(run, s, state, number, one)
         else:
-            high = sigma
-    return pressure_of(run, s, state, high)[0]
+            low, one, f = one, two, g
+            two = low + GOLDEN * (high - low)
+            g = pressure_of(run, s, state, number, two)
+        largest = max(largest, f, g)
+    return largest
 
 
-WALK, STATES, PRESSURE = range(3)
+def instant_of(run: Run, number: int, s: float, X: float) -> float:
+    """Return when an edge passed `X`, within a segment; NaN if it did not before `s`."""
+    segment = run.segments[number]
+    low, high = segment.a, min(segment.b, s)
+    ends = _place(run, segment.edge, low), _place(run, segment.edge, high)
+    slack = 1e-12 * (1.0 + abs(X))
+    if not min(ends[0], ends[1]) - slack <= X <= max(ends[0], ends[1]) + slack:
+        return math.nan
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if (_place(run, segment.edge, middle) < X) == (ends[0] < ends[1]):
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _place(run: Run, edge: int, s: float) -> float:
+    index = step_at(run, s)
+    _, _, Y, _, theta = motion(run, index, s)
+    return value(run.rows[index, EDGES + edge], theta) - Y
+
+
+def pressure(run: Run, s: float, state: Any, xi: float) -> float:
+    """Return the pressure at one place, zero outside of the contact."""
+    index, X = step_at(run, s), xi - state[TRAVEL]
+    step = run.steps[index]
+    if not state[LEFT] <= xi <= state[RIGHT]:
+        return 0.0
+    present(run, index, (s - step.start) / step.span)
+    largest = 0.0
+    for i in range(step.first, step.first + step.count):
+        segment = run.segments[run.chain[i]]
+        if segment.step == NEVER:
+            if segment.X_a <= X <= segment.X_b:
+                largest = max(largest, pressure_of(run, s, state, run.chain[i], X))
+        else:
+            sigma = instant_of(run, run.chain[i], s, X)
+            if not math.isnan(sigma):
+                largest = max(largest, pressure_of(run, s, state, run.chain[i], sigma))
+    return largest
+
+
+def surface(run: Run, s: float, state: Any, xi: float) -> float:
+    """Return the compression at one place: under the indenter, or where an edge left the ground."""
+    index, X = step_at(run, s), xi - state[TRAVEL]
+    if state[LEFT] <= xi <= state[RIGHT]:
+        return float(state[DEPTH] - xi * xi)
+    side = run.steps[index].sides[0 if xi < state[LEFT] else 1]
+    number = side.own if side.state == PEELING else side.segment
+    while number != NEVER:
+        segment = run.segments[number]
+        sigma = instant_of(run, number, s, X)
+        if not math.isnan(sigma):
+            gap, _ = free(
+                run, s, state[DEPTH], state[TRAVEL], segment.edge, step_at(run, sigma), sigma
+            )
+            return gap + state[DEPTH] - xi * xi
+        number = segment.next
+    return 0.0
+
+
+WALK, STATES, WITHOUT_PEAKS, PRESSURE, SURFACE = range(5)
 """Tasks of `perform`."""
 
 
 def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
-    """Perform a task, the only entry to the kernels: walk, or write states at times, or pressures.
+    """Perform a task, the only entry to the kernels: walk, or write states at times, pressures or heights.
 
-    The pressures are at the places that follow one time, whose state is in the first row.
+    The latter are at the places that follow one time, whose state is in the first row.
     """
     one = Run(run.given[0], run.now[0], *run[2:])
     if task == WALK:
         return walk(one, attempts)
-    if task == STATES:
-        states(one, times, found)
+    if task in (STATES, WITHOUT_PEAKS):
+        states(one, times, found, task == STATES)
     else:
         for i in range(1, len(times)):
-            found[i, 0] = pressure(one, times[0], found[0], times[i])
+            if task == PRESSURE:
+                found[i, 0] = pressure(one, times[0], found[0], times[i])
+            else:
+                found[i, 0] = surface(one, times[0], found[0], times[i])
     return 0

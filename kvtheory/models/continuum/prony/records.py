@@ -6,27 +6,41 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.prony.contact import AT_REST, OWN, PER_ARM
+from kvtheory.models.continuum.prony.contact import NEVER, OWN, PER_ARM, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.theory.laws import Element
 
 ROOM = 48
 """Initial capacity in steps."""
+PER_STEP = 8
+"""Segments that one event may add."""
 
+SIDE = r_._record(
+    state="i8", segment="i8", own="i8", index="i8", xi="f8", sigma="f8", near="f8", pace="f8"
+)  # fmt: skip
+"""State of an edge; the segment in which it moves, of the contact if it peels, of free ground if it touches;
+that which it writes; the step in which the element there passed an edge; xi_e; the instant at which it did,
+that at which the edge began in the segment, and the rate of that instant."""
+SEGMENT = r_._record(
+    edge="i8", step="i8", next="i8", a="f8", b="f8", X_a="f8", X_b="f8"
+)  # fmt: skip
+"""Edge and first step of a segment, the next one outward on free ground, the instants and X at its ends."""
 STEP = r_._record(
-    start="f8", span="f8", depth="f8", along="f8", lead="f8", kinked="?", piece="i8",
-    oldest="i8",
+    start="f8", span="f8", depth="f8", along="f8", piece="i8", kinked=("i8", (2,)), first="i8",
+    count="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
-"""Start and span of a step; d, x and X of the leading edge at its start; whether the history has a kink
-there; the piece of the drive; the step in which the element at the trailing edge entered."""
+"""Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
+have a kink there; where the contact's segments are in `chain`, and their number; both sides at its start."""
 NOW = r_._record(
-    s="f8", d="f8", v="f8", x="f8", w="f8", r="f8", sigma="f8", span="f8",
-    oldest="i8", piece="i8", steps="i8", rejected="i8", evaluations="i8", kinked="?", smooth="?",
+    s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", piece="i8", steps="i8", segments="i8",
+    chain="i8", first="i8", count="i8", toggles="i8", rejected="i8", evaluations="i8",
+    kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
 )  # fmt: skip
-"""Time, d, d', x, x', the trailing edge and when the element there entered, the length of the next step; the
-step in which it entered, the piece of the drive, numbers of steps, rejected steps and evaluations; whether
-the history has a kink here, and whether the last step continues smoothly."""
+"""Time, d, d', x, x', length of the next step, piece of the drive, numbers of steps, segments and entries in
+`chain`; the contact there; the changes at this instant, numbers of rejected steps and evaluations; whether
+the histories of the edges have a kink here, and whether the last step continues smoothly; both sides."""
 GIVEN = r_._record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
     first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
@@ -36,38 +50,33 @@ K_i/K; controls of the step size; number of stages; whether the indenter is fixe
 
 
 class Run(NamedTuple):
-    """A transient in progress, whose outcome are `steps` and the polynomials in `rows`.
+    """A transient in progress; its outcome are `steps`, the polynomials in `rows`, `segments` and `chain`.
 
-    Outside the kernels `given` and `now` hold one record, inside they are the record itself. `arms` are
-    pairs k_i, T_i, `state` is A_i, B_i, s_i(r), F_i, M_i of each arm at present. The others are of the
-    method and of the step: `sums` of the rows of `inverse`; `stages` as `rows`, but values at the stages;
-    `places` with other values there (`step`); a filter for each arm; a square, its inverse and vectors of
-    Broyden's method; and `here`, as `state`, at one instant.
+    Outside the kernels `given` and `now` hold one record, inside they are the record itself. `method` has A,
+    its inverse, the powers of theta from the stages, and nodes and row sums of the inverse; `arms` are as in
+    `contact`, `state` has their rows at present. The others are of the step: `stages` are as `rows`, but
+    values at the stages, and what else belongs to a stage; `squares` a filter for each arm, and two for
+    Broyden's method; `vectors` its vectors; `here` is as `state`, of one element.
     """
 
     given: Any
     now: Any
     pieces: Any
-    arms: Any
-    state: Any
     steps: Any
     rows: Any
-    nodes: Any
-    A: Any
-    inverse: Any
-    sums: Any
-    powers: Any
+    segments: Any
+    chain: Any
+    method: Any
+    arms: Any
+    state: Any
     stages: Any
-    places: Any
-    filters: Any
-    square: Any
-    inverted: Any
+    squares: Any
     vectors: Any
     here: Any
 
 
-PLACES, VECTORS = 11, 7
-"""Number of values of a place, and of vectors."""
+PLACES, VECTORS = 12, 7
+"""Number of other values of a stage, and of vectors."""
 
 
 def begin(
@@ -77,42 +86,83 @@ def begin(
     """Return a new run at rest; `arms` are pairs k_i, T_i, and `numbers` eps and kappa."""
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
-    method, unknowns = radau(n), n * max(int(not fixed) + int(spring is not None), 1)
-    own = spring or Spring()
+    unknowns, own, wide = (
+        n * max(2 - fixed - (spring is None), 1),
+        spring or Spring(),
+        PER_ARM + OWN * count,
+    )
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
         float(sum(k for k, _ in arms)), control.first_step, control.longest, control.grow, n, fixed,
         spring is not None,
     )  # fmt: skip
-    now = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, math.inf, AT_REST, 0, 0, 0, 0, True, False)
-    wide = PER_ARM + OWN * count
-
-    return Run(
-        given=np.array([given], GIVEN) if arrays else [r_.new(GIVEN, *given)],
-        now=np.array([now], NOW) if arrays else [r_.new(NOW, *now)],
+    element = Element.of(1.0, 0.0, arms)
+    columns = *np.array(arms, dtype=float).T, element.rates, element.shares
+    method, tableau = np.zeros((4, n, n)), radau(n)
+    method[:3] = tableau.A, tableau.inverse, tableau.powers
+    method[3, :2] = tableau.nodes, method[1].sum(axis=1)
+    run = Run(
+        given=[r_.new(GIVEN, *given)],
+        now=r_._blanks(1, NOW),
         pieces=drive.rows,
-        arms=np.array(arms, dtype=float),
-        state=np.zeros((count, OWN)),
-        steps=np.zeros(ROOM, STEP) if arrays else r_._blanks(ROOM, STEP),
+        steps=r_._blanks(ROOM, STEP),
         rows=np.zeros((ROOM, wide, n + 1)),
-        nodes=np.array(method.nodes),
-        A=np.array(method.A),
-        inverse=np.array(method.inverse),
-        sums=np.sum(method.inverse, axis=1),
-        powers=np.array(method.powers),
-        stages=np.zeros((wide, n)),
-        places=np.zeros((n, PLACES)),
-        filters=np.zeros((count, n, n)),
-        square=np.zeros((unknowns, unknowns)),
-        inverted=np.zeros((unknowns, unknowns)),
+        segments=r_._blanks(2 * ROOM, SEGMENT),
+        chain=np.zeros(8 * ROOM, dtype=np.int64),
+        method=method,
+        arms=np.hstack([np.stack(columns, axis=1), element.to_modes, element.from_modes]),
+        state=np.zeros((count, OWN)),
+        stages=np.zeros((wide + PLACES, n)),
+        squares=np.zeros((count + 2, unknowns, unknowns)),
         vectors=np.zeros((VECTORS, unknowns)),
         here=np.zeros((count, OWN)),
     )
+    _rest(run._replace(now=run.now[0]))
+    return as_arrays(run) if arrays else run
+
+
+def as_arrays(run: Run) -> Run:
+    """Return a run, new or in progress, with arrays for compiled kernels."""
+    kinds = {"given": GIVEN, "now": NOW, "steps": STEP, "segments": SEGMENT}
+    return run._replace(**{n: r_.structured(getattr(run, n), kind) for n, kind in kinds.items()})
+
+
+def _rest(run: Run) -> None:
+    """Set the contact at rest: both edges touch, and write segments at both ends of it."""
+    now = run.now
+    now.d, now.span, now.segments, now.chain, now.count = 1.0, math.inf, 3, 3, 3
+    for k, edge, step, a, b in (
+        (0, 0, 0, -1.0, -1.0),
+        (1, 1, NEVER, -1.0, 1.0),
+        (2, 1, 0, 1.0, 1.0),
+    ):
+        segment = run.segments[k]
+        segment.edge, segment.step, segment.next, segment.X_a, segment.X_b = edge, step, NEVER, a, b
+        segment.b = 0.0 if step == NEVER else math.inf
+        run.chain[k] = k
+    for k in range(2):
+        side = now.sides[k]
+        side.state, side.segment, side.own, side.xi, side.pace = (
+            TOUCHING,
+            NEVER,
+            2 * k,
+            SIDES[k],
+            1.0,
+        )
+        now.kinked[k] = 1
 
 
 def with_more_room(run: Run) -> Run:
-    """Return the run with room for twice as many steps."""
-    steps, rows = run.steps, np.concatenate([run.rows, np.zeros_like(run.rows)])
-    if isinstance(steps, list):
-        return run._replace(steps=steps + r_._blanks(len(steps), STEP), rows=rows)
-    return run._replace(steps=np.concatenate([steps, np.zeros_like(steps)]), rows=rows)
+    """Return the run with room for twice as much."""
+    more = {"steps": STEP, "segments": SEGMENT}
+    wider: dict[str, Any] = {
+        name: np.concatenate([getattr(run, name), np.zeros_like(getattr(run, name))])
+        for name in ("rows", "chain")
+    }
+    for name, kind in more.items():
+        records = getattr(run, name)
+        if isinstance(records, list):
+            wider[name] = records + r_._blanks(len(records), kind)
+        else:
+            wider[name] = np.concatenate([records, np.zeros_like(records)])
+    return run._replace(**wider)

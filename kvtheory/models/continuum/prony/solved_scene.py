@@ -20,6 +20,7 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTEST,
 )
 from kvtheory.models.continuum.prony import evaluation as e_
+from kvtheory.models.continuum.prony.contact import PEELING, TOUCHING
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solved_scene import AFTER_END, end_of, scaled_drive
@@ -35,14 +36,11 @@ Array = NDArray[np.float64]
 
 COLUMNS = {
     "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "depth": e_.DEPTH, "depth_rate": e_.RATE,
-    "normal_force": e_.NORMAL_FORCE, "friction_force": e_.FRICTION_FORCE, "leading_edge": e_.LEFT,
-    "trailing_edge": e_.RIGHT, "peak_pressure": e_.PEAK_PRESSURE,
+    "normal_force": e_.NORMAL_FORCE, "friction_force": e_.FRICTION_FORCE,
+    "peak_pressure": e_.PEAK_PRESSURE,
 }  # fmt: skip
-"""Column of each quantity in the states; the force of a spring follows from x and x'."""
-MIRRORED = {
-    "velocity", "sliding_velocity", "friction_force", "leading_edge", "trailing_edge", "spring_force"
-}  # fmt: skip
-"""Quantities that change their sign with the velocity."""
+"""Column of each quantity in the states that is there as it is."""
+STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching"}
 ROUNDING = 4e-15
 """Rounding of the moments, relative to the largest accumulator: it is large on arms that hardly relax."""
 STATEMENT = (
@@ -55,14 +53,11 @@ SECOND = COMPARISON._replace(longest=math.inf)
 
 @dataclass(frozen=True)
 class SolvedPronyScene:
-    """A solved motion and its scales; evaluates every quantity of a transient in SI.
-
-    `side` is the sign of the velocity: the motion is that of its mirror image.
-    """
+    """A solved motion and its scales; evaluates every quantity of a transient in SI."""
 
     motion: Trajectory
+    drive: BaseMotion
     units: StaticState
-    side: float
     end: float
 
     @cached_property
@@ -82,53 +77,64 @@ class SolvedPronyScene:
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and the states of the edges at the given times (s)."""
-        found, own = self.scaled_series(self.motion, self.scaled(time)), scales(self.units)
-        count = len(found["depth"])
+        s, own = np.atleast_1d(self.scaled(time)), scales(self.units)
+        states = self.motion.states(s)
+        found = self.scaled_series(states, s)
+        left, right = states[[e_.LEFT_STATE, e_.RIGHT_STATE]]
+        leads = found["leading_edge"] == states[e_.LEFT]
+        leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
         return {
             "time": np.asarray(time, dtype=float),
-            **{name: value * own[name] * (self.side if name in MIRRORED else 1.0)
-               for name, value in found.items() },
-            "leading_state": ("touching",) * count,
-            "trailing_state": ("peeling",) * count,
-        }  # fmt: skip
+            **{name: value * own[name] for name, value in found.items()},
+            "leading_state": tuple(map(STATE_NAMES.__getitem__, leading.tolist())),
+            "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
+        }
 
-    def scaled_series(self, motion: Trajectory, s: Any) -> dict[str, Array]:
-        """Return the scaled quantities of a motion at scaled times, for a velocity above zero."""
-        states, units = motion.states(s), self.units
+    def scaled_series(self, states: Array, s: Array) -> dict[str, Array]:
+        """Return the scaled quantities of states at scaled times."""
+        units = self.units
         found = {name: states[at] for name, at in COLUMNS.items() if name in scales(units)}
         if not units.rigid_drive:
             spring, damping = units.drive_stiffness_number, units.drive_damping_number
             found["spring_force"] = spring * states[e_.ALONG_X] + damping * states[e_.ALONG_RATE]
+        number = states[e_.NUMBER]
+        still = [] if number.all() else [self.drive.forward(t) for t in s.tolist()]
+        leads = np.where(number == 0.0, still, number > 0.0) if still else number > 0.0
+        left, right = states[[e_.LEFT, e_.RIGHT]]
+        found["leading_edge"] = np.where(leads, left, right)
+        found["trailing_edge"] = np.where(leads, right, left)
         return found
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """The maxima of the forces, in order of time (s)."""
-        s = self.motion.natural
-        found = []
+        """The changes of the edges, and the maxima of the forces, in order of time (s)."""
+        s, steps, found = self.motion.natural, self.motion.steps, []
+        for k, name in enumerate(("left", "right")):
+            states = steps["sides"]["state"][:, k]
+            turns = np.flatnonzero(np.diff(states, prepend=TOUCHING))
+            for start, state in zip(steps["start"][turns], states[turns], strict=True):
+                verb = "touches" if state == TOUCHING else "peels"
+                found.append(Event(float(start) * self.units.time, f"{name} edge {verb}"))
+        whole = self.motion.states(s, peaks=False)
         for name, at in (("normal", e_.NORMAL_FORCE), ("friction", e_.FRICTION_FORCE)):
-            k = int(np.argmax(np.abs(self.motion.states(s)[at])))
+            k = int(np.argmax(np.abs(whole[at])))
             low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
             fine = np.linspace(low, high, 65)
-            k = int(np.argmax(np.abs(self.motion.states(fine)[at])))
+            k = int(np.argmax(np.abs(self.motion.states(fine, peaks=False)[at])))
             found.append(Event(float(fine[k]) * self.units.time, f"{name} force maximum"))
         return tuple(sorted(found, key=lambda event: event.time))
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m)."""
-        s, xi = (
-            self.scaled(time),
-            self.side * np.atleast_1d(np.asarray(x, float)) / self.units.half_length,
-        )
-        l, r = self.motion.states([s])[[e_.LEFT, e_.RIGHT], 0]
-        inside = (l <= xi) & (xi <= r)
-        p = np.zeros(xi.shape)
-        p[inside] = np.maximum(self.motion.pressure(xi[inside], s), 0.0)
-        return (p * self.units.pressure).reshape(np.shape(x))
+        return self._profile(e_.PRESSURE, x, time) * self.units.pressure
 
     def surface(self, x: ArrayLike, time: float) -> Array:
-        """Refuse: the free surface behind the contact is not evaluated."""
-        raise ValueError("`surface` holds for Kelvin-Voigt only; on a Prony series `pressure` does")
+        """Return the compression u in m of the foundation at the positions `x` (m)."""
+        return self._profile(e_.SURFACE, x, time) * self.units.depth
+
+    def _profile(self, task: int, x: ArrayLike, time: float) -> Array:
+        xi = np.asarray(x, dtype=float) / self.units.half_length
+        return self.motion.profile(task, xi, self.scaled(time))
 
     def energy(self, time: ArrayLike) -> Any:
         """Refuse: the energies behind the contact are not evaluated."""
@@ -152,27 +158,16 @@ def own_units(scene: Scene) -> StaticState:
     )  # fmt: skip
 
 
-def mirrored(drive: BaseMotion) -> tuple[BaseMotion, float]:
-    """Return a drive that moves one way with V >= 0, and the sign of the velocity of the given one."""
-    speeds = drive.velocities
-    if speeds[0] >= 0.0:
-        return drive, 1.0
-    if speeds[-1] > 0.0:
-        raise ValueError("the drive reverses")
-    pieces = tuple((a, b, *(-c for c in rest)) for a, b, *rest in drive.pieces)
-    return BaseMotion(pieces, drive.changes), -1.0
-
-
 def transient(
     scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
     *, certify: bool = True, max_steps: int | None = None,
 ) -> Transient:  # fmt: skip
     """Solve a scene whose foundation is a Prony series; `kvtheory.transient` documents it.
 
-    ValueError if an edge returns to ground that it left: a stop, a reversal, a hop.
+    ValueError if the indenter takes off.
     """
     units = own_units(scene)
-    drive, side = mirrored(scaled_drive(scene, units))
+    drive = scaled_drive(scene, units)
     foundation, spring = scene.foundation, None
     arms = [
         (arm.stiffness / foundation.stiffness, arm.relaxation_time / units.time)
@@ -201,8 +196,10 @@ def transient(
     except ValueError as error:
         why, s = error.args
         at = f"{why} at t = {s * units.time:.6g} s"
-        raise ValueError(f"on a Prony series holds for sliding one way: {at}") from None
-    fine = SolvedPronyScene(motion, units, side, end_of(scene) / units.time)
+        raise ValueError(
+            f"the transient on a Prony series is followed while the indenter is in contact: {at}"
+        ) from None
+    fine = SolvedPronyScene(motion, drive, units, end_of(scene) / units.time)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     other, why = None, NOTHING if certify else NOT_ASKED
     if certify:
@@ -223,11 +220,11 @@ def certificate(
     fine: SolvedPronyScene, other: Trajectory | None, s: Array, rtol: float, scene: Scene, why: str
 ) -> Certificate:
     """Return the certificate of the states at scaled times, from a solution with a tighter tolerance."""
-    here = fine.scaled_series(fine.motion, s)
+    here = fine.scaled_series(fine.motion.states(s), s)
     if other is None:
         errors = dict.fromkeys(here, math.inf)
         return Certificate("estimated", why, {"time": 0.0, **errors}, AT_REST)
-    there = fine.scaled_series(other, s)
+    there = fine.scaled_series(other.states(s), s)
     rounding = ROUNDING * float(
         np.abs(fine.motion.run.arms[:, :1] * fine.motion.run.state[:, :2]).sum()
     )

@@ -12,21 +12,24 @@ from typing import Any
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
     DEPTHS,
-    EDGE,
+    EDGES,
     FORCES,
     MOMENTS,
     OWN,
+    PEELING,
     PER_ARM,
     RATE,
     SLIDES,
     STRESSES,
-    trailing,
+    edge_at,
 )
+from kvtheory.models.continuum.prony.contact import STIFFNESS as STIFF
+from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
 from kvtheory.scene.base_motion import evaluate
 
-TIME, DISPLACEMENT, NUMBER, DEPTH, FALL, OFFSET, SWING, SIGMA, OLDEST, FLUX, RISE = range(11)
-"""Columns of a place: s; Y and lambda of the drive; d, d', x, x'; sigma and step of the element at the
-trailing edge, the velocity of that edge through the material, and p' of the element."""
+MOMENT, WAY, SPEED, DEPTH, OFFSET, SIGMA, INDEX, FLUX = 0, 1, 2, 3, 4, 5, 7, 9
+"""What else belongs to a stage: s; Y and lambda of the base under the indenter; d, x; of both edges the
+instant and the step of the element there, and the velocity through the material."""
 CHANGE, MOVE, RESIDUAL, BEFORE, IMAGE, BACK, SOURCE = range(7)
 """Vectors of Broyden's method, and the source of a filter."""
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
@@ -34,6 +37,10 @@ ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 may be the last if it does not fall any more."""
 
 Run = Any
+
+
+A, INVERSE, POWERS, OTHER = range(4)
+"""Tables of `Run.method`; the rows of the last are the nodes, and the sums of the rows of the inverse."""
 
 
 def moments(l: float, r: float) -> tuple[float, float, float, float]:
@@ -48,24 +55,35 @@ def forces(l: float, r: float, d: float, first: float, second: float) -> tuple[f
     return 0.75 * (d * I_0 - I_2 + first), -1.5 * (d * I_1 - I_3 + second)
 
 
+def at(run: Run, what: int, j: int) -> float:
+    """Return what else belongs to a stage."""
+    return float(run.stages[PER_ARM + OWN * len(run.arms) + what, j])
+
+
 def prepare(run: Run, span: float) -> None:
     """Begin a step of length `span` from the present state, and make the filters of the arms."""
-    now, given, step = run.now, run.given, run.steps[run.now.steps]
-    Y, _, _ = evaluate(run.pieces[now.piece], now.s)
+    now, n, step = run.now, run.given.stages, run.steps[run.now.steps]
     step.start, step.span, step.depth, step.along, step.piece = now.s, span, now.d, now.x, now.piece
-    step.kinked, step.oldest, step.lead = now.kinked, now.oldest, -math.sqrt(now.d) - Y + now.x
-    for j in range(given.stages):
-        place = run.places[j]
-        place[TIME] = now.s + run.nodes[j] * span
-        place[DISPLACEMENT], place[NUMBER], _ = evaluate(run.pieces[now.piece], place[TIME])
-        place[OLDEST], place[SIGMA] = now.oldest, now.sigma + (place[TIME] - now.s)
-        run.stages[EDGE, j] = now.r
+    step.first, step.count = now.first, now.count
+    for k in range(2):
+        side, kept = now.sides[k], step.sides[k]
+        step.kinked[k] = now.kinked[k]
+        kept.state, kept.segment, kept.own, kept.xi = side.state, side.segment, side.own, side.xi
+    other = run.stages[PER_ARM + OWN * len(run.arms) :]
+    for j in range(n):
+        after = run.method[OTHER, 0, j] * span
+        other[MOMENT, j] = now.s + after
+        for k in range(2):
+            side = now.sides[k]
+            other[INDEX + k, j], other[SIGMA + k, j] = side.index, side.sigma + side.pace * after
+            run.stages[EDGES + k, j] = side.xi
+    square = run.squares[len(run.arms)]
     for i in range(len(run.arms)):
-        for j in range(given.stages):
-            for k in range(given.stages):
-                run.square[j, k] = run.inverse[j, k]
-            run.square[j, j] += span / run.arms[i, 1]
-        invert(run.square, given.stages, run.filters[i])
+        for j in range(n):
+            for k in range(n):
+                square[j, k] = run.method[INVERSE, j, k]
+            square[j, j] += span / run.arms[i, RELAXATION]
+        invert(square, n, run.squares[i])
 
 
 def invert(square: Any, n: int, inverse: Any) -> bool:
@@ -101,11 +119,11 @@ def relax(run: Run, i: int, row: int) -> None:
     source, n, begin = run.vectors[SOURCE], run.given.stages, run.state[i, row]
     span, found = run.steps[run.now.steps].span, run.stages[PER_ARM + OWN * i + row]
     for j in range(n):
-        source[j] = span * source[j] + run.sums[j] * begin
+        source[j] = span * source[j] + run.method[OTHER, 1, j] * begin
     for j in range(n):
         total = 0.0
         for k in range(n):
-            total += run.filters[i, j, k] * source[k]
+            total += run.squares[i, j, k] * source[k]
         found[j] = total
 
 
@@ -117,7 +135,7 @@ def interpolate(run: Run, row: int, begin: float) -> float:
     for k in range(n):
         total = 0.0
         for j in range(n):
-            total += run.powers[k, j] * (values[j] - begin)
+            total += run.method[POWERS, k, j] * (values[j] - begin)
         found[k + 1] = total
         share *= (4.0 * k + 2.0) / (k + 1.0)  # binomial (2 n, n)
     return abs(found[n]) / share
@@ -127,23 +145,26 @@ def solve(run: Run) -> bool:
     """Solve the stages of a step that is prepared; return whether Broyden's method converged."""
     given, now = run.given, run.now
     free, change, move = 0 if given.fixed else given.stages, run.vectors[CHANGE], run.vectors[MOVE]
-    size = free + (given.stages if given.sprung else 0)
+    size, inverse = free + (given.stages if given.sprung else 0), run.squares[len(run.arms) + 1]
     guess(run, free)
-    if size == 0 or not evaluate_stages(run, free):
-        return size == 0 and evaluate_stages(run, free)
+    if not evaluate_stages(run, free):
+        return False
+    if size == 0:
+        return True
     linearize(run, free, size)
-    if not invert(run.square, size, run.inverted):
+    if not invert(run.squares[len(run.arms)], size, inverse):
         return False
     balance(run, free)
     allowed, previous = given.rtol * (1.0 + max(abs(now.v), abs(now.w))), math.inf
     for _ in range(ITERATIONS):
         largest = 0.0
         for i in range(size):
-            move[i] = 0.0
+            total = 0.0
             for j in range(size):
-                move[i] -= run.inverted[i, j] * run.vectors[RESIDUAL, j]
-            change[i] += move[i]
-            largest = max(largest, abs(move[i]))
+                total -= inverse[i, j] * run.vectors[RESIDUAL, j]
+            move[i] = total
+            change[i] += total
+            largest = max(largest, abs(total))
         if not largest < math.inf or not evaluate_stages(run, free):
             return False
         if largest <= SHARE * allowed or 0.5 * previous <= largest <= STALL * allowed:
@@ -155,18 +176,23 @@ def solve(run: Run) -> bool:
 
 def update(run: Run, free: int, size: int) -> None:
     """Evaluate the residuals after a move, and update the inverse Jacobian by Broyden's formula."""
-    inverse, move, residual = run.inverted, run.vectors[MOVE], run.vectors[RESIDUAL]
+    inverse, move, residual = (
+        run.squares[len(run.arms) + 1],
+        run.vectors[MOVE],
+        run.vectors[RESIDUAL],
+    )
     before, image, back = run.vectors[BEFORE], run.vectors[IMAGE], run.vectors[BACK]
     for i in range(size):
         before[i] = residual[i]
     balance(run, free)
     product = 0.0
     for i in range(size):
-        image[i] = back[i] = 0.0
+        changed = returned = 0.0
         for j in range(size):
-            image[i] += inverse[i, j] * (residual[j] - before[j])
-            back[i] += move[j] * inverse[j, i]
-        product += move[i] * image[i]
+            changed += inverse[i, j] * (residual[j] - before[j])
+            returned += move[j] * inverse[j, i]
+        image[i], back[i] = changed, returned
+        product += move[i] * changed
     for i in range(size):
         factor = (move[i] - image[i]) / product
         for j in range(size):
@@ -175,18 +201,18 @@ def update(run: Run, free: int, size: int) -> None:
 
 def guess(run: Run, free: int) -> None:
     """Write initial changes of d' and x' over the stages: those that continue the last step smoothly."""
-    now, given, change = run.now, run.given, run.vectors[CHANGE]
-    last = now.steps - 1
-    for j in range(given.stages):
-        if free:
-            change[j] = 0.0
-        if given.sprung:
-            change[free + j] = 0.0
-        if now.smooth:
-            theta = (run.places[j, TIME] - run.steps[last].start) / run.steps[last].span
-            for first, row, begin in ((0, RATE, now.v), (free, ALONG, now.w)):
-                if (row == RATE and free) or (row == ALONG and given.sprung):
-                    total = 0.0
+    now, given, change, last = run.now, run.given, run.vectors[CHANGE], run.now.steps - 1
+    for first, row, begin, moves in (
+        (0, RATE, now.v, not given.fixed), (free, ALONG, now.w, given.sprung)
+    ):  # fmt: skip
+        if moves:
+            for j in range(given.stages):
+                change[first + j] = 0.0
+                if now.smooth:
+                    theta, total = (
+                        (at(run, MOMENT, j) - run.steps[last].start) / run.steps[last].span,
+                        0.0,
+                    )
                     for k in range(given.stages, -1, -1):
                         total = total * theta + run.rows[last, row, k]
                     change[first + j] = total - begin
@@ -195,75 +221,115 @@ def guess(run: Run, free: int) -> None:
 def evaluate_stages(run: Run, free: int) -> bool:
     """Evaluate everything at the stages from the changes of d' and x'; return whether there is a contact."""
     run.now.evaluations += run.given.stages
-    return place(run, free) and find_edges(run)
+    if not place(run, free):
+        return False
+    touching = run.now.sides[0].state != PEELING
+    first = (
+        0 if touching else 1
+    )  # a peeling edge may be among elements that just entered at the other
+    if not find_edge(run, first) or not find_edge(run, 1 - first):
+        return False
+    for j in range(run.given.stages):
+        if not run.stages[EDGES, j] < run.stages[EDGES + 1, j]:
+            return False
+    collect(run)
+    return True
 
 
 def place(run: Run, free: int) -> bool:
     """Evaluate the motion at the stages, and the accumulators; return whether the depth is positive."""
     now, given, n, change = run.now, run.given, run.given.stages, run.vectors[CHANGE]
-    span, stages = run.steps[now.steps].span, run.stages
+    span, stages, source = run.steps[now.steps].span, run.stages, run.vectors[SOURCE]
+    other = stages[PER_ARM + OWN * len(run.arms) :]
     for j in range(n):
-        here = run.places[j]
-        d, x = now.d + span * run.nodes[j] * now.v, now.x + span * run.nodes[j] * now.w
-        v = now.v + (change[j] if free else 0.0)
-        w = now.w + (change[free + j] if given.sprung else 0.0)
+        node = span * run.method[OTHER, 0, j]
+        d, x = now.d + node * now.v, now.x + node * now.w
         for k in range(n):
-            d += span * run.A[j, k] * change[k] if free else 0.0
-            x += span * run.A[j, k] * change[free + k] if given.sprung else 0.0
-        here[DEPTH], here[FALL], here[OFFSET], here[SWING] = d, v, x, w
-        stages[RATE, j], stages[ALONG, j] = v, w
+            if free:
+                d += span * run.method[A, j, k] * change[k]
+            if given.sprung:
+                x += span * run.method[A, j, k] * change[free + k]
+        stages[RATE, j] = now.v + (change[j] if free else 0.0)
+        stages[ALONG, j] = now.w + (change[free + j] if given.sprung else 0.0)
+        Y, number, _ = evaluate(run.pieces[now.piece], other[MOMENT, j])
+        other[DEPTH, j], other[OFFSET, j] = d, x
+        other[WAY, j], other[SPEED, j] = Y - x, number - stages[ALONG, j]
         if not 0.0 < d < math.inf:
             return False
     interpolate(run, RATE, now.v)
     interpolate(run, ALONG, now.w)
-    source = run.vectors[SOURCE]
     for i in range(len(run.arms)):
         first = PER_ARM + OWN * i
         for j in range(n):
-            source[j] = 2.0 * (run.places[j, NUMBER] - run.places[j, SWING])
+            source[j] = 2.0 * other[SPEED, j]
         relax(run, i, SLIDES)
         for j in range(n):
-            number = run.places[j, NUMBER] - run.places[j, SWING]
-            source[j] = run.places[j, FALL] + number * stages[first + SLIDES, j]
+            source[j] = stages[RATE, j] + other[SPEED, j] * stages[first + SLIDES, j]
         relax(run, i, DEPTHS)
         interpolate(run, first + SLIDES, run.state[i, SLIDES])
         interpolate(run, first + DEPTHS, run.state[i, DEPTHS])
     return True
 
 
-def find_edges(run: Run) -> bool:
-    """Find the trailing edge at the stages, and the moments; return whether there is a contact."""
-    n, stages, source = run.given.stages, run.stages, run.vectors[SOURCE]
+def find_edge(run: Run, k: int) -> bool:
+    """Find an edge at the stages, its stresses, and its velocity through the material."""
+    n, stages, side, span = (
+        run.given.stages,
+        run.stages,
+        run.now.sides[k],
+        run.steps[run.now.steps].span,
+    )
+    other = stages[PER_ARM + OWN * len(run.arms) :]
     for j in range(n):
-        here = run.places[j]
         for i in range(len(run.arms)):
             for row in range(STRESSES):
                 run.here[i, row] = stages[PER_ARM + OWN * i + row, j]
-        r, flux, oldest, sigma, rise = trailing(
-            run, here[TIME], here[DEPTH], here[FALL], here[DISPLACEMENT] - here[OFFSET],
-            here[NUMBER] - here[SWING], stages[EDGE, j], int(here[OLDEST]), here[SIGMA], run.here,
+        xi, index, sigma = edge_at(
+            run, k, other[MOMENT, j], other[DEPTH, j], other[WAY, j], stages[EDGES + k, j],
+            int(other[INDEX + k, j]), other[SIGMA + k, j],
         )  # fmt: skip
-        if not r > -math.sqrt(here[DEPTH]):
+        if not abs(xi) < math.inf:
             return False
-        stages[EDGE, j], here[FLUX], here[SIGMA], here[RISE] = r, flux, sigma, rise
-        here[OLDEST] = oldest
+        stages[EDGES + k, j], other[INDEX + k, j], other[SIGMA + k, j] = xi, index, sigma
         for i in range(len(run.arms)):
-            stages[PER_ARM + OWN * i + STRESSES, j] = run.here[i, STRESSES]
+            stages[PER_ARM + OWN * i + STRESSES + k, j] = run.here[i, STRESSES]
+    interpolate(run, EDGES + k, side.xi)
     for i in range(len(run.arms)):
-        k, first = run.arms[i, 0], PER_ARM + OWN * i
+        interpolate(run, PER_ARM + OWN * i + STRESSES + k, run.state[i, STRESSES + k])
+    for j in range(n):
+        speed = 0.0
+        for m in range(n):
+            speed += run.method[INVERSE, j, m] * (stages[EDGES + k, m] - side.xi)
+        other[FLUX + k, j] = speed / span - other[SPEED, j]
+    return True
+
+
+def collect(run: Run) -> None:
+    """Evaluate the moments at the stages."""
+    n, stages, source = run.given.stages, run.stages, run.vectors[SOURCE]
+    other = stages[PER_ARM + OWN * len(run.arms) :]
+    for i in range(len(run.arms)):
+        first = PER_ARM + OWN * i
         for row in (FORCES, MOMENTS):
             for j in range(n):
-                here, r = run.places[j], stages[EDGE, j]
-                v, number = here[FALL], here[NUMBER] - here[SWING]
-                I_0, I_1, I_2, _ = moments(-math.sqrt(here[DEPTH]), r)
-                lost = stages[first + STRESSES, j] * here[FLUX]
+                l, r, v, number = (
+                    stages[EDGES, j],
+                    stages[EDGES + 1, j],
+                    stages[RATE, j],
+                    other[SPEED, j],
+                )
+                I_0, I_1, I_2, _ = moments(l, r)
+                left = stages[first + STRESSES, j] * other[FLUX, j]
+                right = stages[first + STRESSES + 1, j] * other[FLUX + 1, j]
                 if row == FORCES:
-                    source[j] = k * (v * I_0 - 2.0 * number * I_1) + lost
+                    total = run.arms[i, STIFF] * (v * I_0 - 2.0 * number * I_1) + right - left
                 else:
-                    source[j] = k * (v * I_1 - 2.0 * number * I_2) + r * lost
-                    source[j] += number * stages[first + FORCES, j]
+                    total = (
+                        run.arms[i, STIFF] * (v * I_1 - 2.0 * number * I_2) + r * right - l * left
+                    )
+                    total += number * stages[first + FORCES, j]
+                source[j] = total
             relax(run, i, row)
-    return True
 
 
 def balance(run: Run, free: int) -> None:
@@ -271,50 +337,48 @@ def balance(run: Run, free: int) -> None:
     given, n, change = run.given, run.given.stages, run.vectors[CHANGE]
     span, residual = run.steps[run.now.steps].span, run.vectors[RESIDUAL]
     for j in range(n):
-        place, first, second = run.places[j], 0.0, 0.0
+        first = second = 0.0
         for i in range(len(run.arms)):
             first += run.stages[PER_ARM + OWN * i + FORCES, j]
             second += run.stages[PER_ARM + OWN * i + MOMENTS, j]
-        d = place[DEPTH]
-        f_z, f_x = forces(-math.sqrt(d), run.stages[EDGE, j], d, first, second)
+        d, x = at(run, DEPTH, j), at(run, OFFSET, j)
+        f_z, f_x = forces(run.stages[EDGES, j], run.stages[EDGES + 1, j], d, first, second)
+        down = along = 0.0
+        for k in range(n):
+            if free:
+                down += run.method[INVERSE, j, k] * change[k]
+            if given.sprung:
+                along += run.method[INVERSE, j, k] * change[free + k]
         if free:
-            inertia = 0.0
-            for k in range(n):
-                inertia += run.inverse[j, k] * change[k]
-            residual[j] = given.eps * inertia - span * (1.0 - f_z - given.kappa * (d - 1.0))
+            residual[j] = given.eps * down - span * (1.0 - f_z - given.kappa * (d - 1.0))
         if given.sprung:
-            inertia = 0.0
-            for k in range(n):
-                inertia += run.inverse[j, k] * change[free + k]
-            held = given.damping * place[SWING] + given.spring * place[OFFSET]
-            residual[free + j] = given.eps_x * inertia - span * (f_x - held)
+            held = given.damping * run.stages[ALONG, j] + given.spring * x
+            residual[free + j] = given.eps_x * along - span * (f_x - held)
 
 
 def linearize(run: Run, free: int, size: int) -> None:
     """Write the derivatives of the residuals by the changes, for edges that do not move."""
-    given, n, square = run.given, run.given.stages, run.square
+    given, n, square = run.given, run.given.stages, run.squares[len(run.arms)]
     span = run.steps[run.now.steps].span
     for j in range(size):
         for k in range(size):
             square[j, k] = 0.0
     for j in range(n):
-        place, r = run.places[j], run.stages[EDGE, j]
-        I_0, I_1, _, _ = moments(-math.sqrt(place[DEPTH]), r)
+        I_0, I_1, _, _ = moments(run.stages[EDGES, j], run.stages[EDGES + 1, j])
         for k in range(n):
             of_v = of_w = across = 0.0
-            J_0, J_1, J_2, _ = moments(-math.sqrt(run.places[k, DEPTH]), run.stages[EDGE, k])
+            J_0, J_1, J_2, _ = moments(run.stages[EDGES, k], run.stages[EDGES + 1, k])
             for i in range(len(run.arms)):
-                share = span * run.arms[i, 0] * run.filters[i, j, k]
+                share = span * run.arms[i, STIFF] * run.squares[i, j, k]
                 of_v, across, of_w = of_v + share * J_0, across + share * J_1, of_w + share * J_2
-            step = span * run.A[j, k]
+            step = span * run.method[A, j, k]
             if free:
-                square[j, k] = given.eps * run.inverse[j, k]
+                square[j, k] = given.eps * run.method[INVERSE, j, k]
                 square[j, k] += span * (given.kappa * step + 0.75 * (I_0 * step + of_v))
             if given.sprung:
-                square[free + j, free + k] = given.eps_x * run.inverse[j, k]
-                square[free + j, free + k] += span * (given.spring * step + 3.0 * of_w)
-                if j == k:
-                    square[free + j, free + k] += span * given.damping
+                along = given.eps_x * run.method[INVERSE, j, k]
+                along += span * (given.spring * step + 3.0 * of_w)
+                square[free + j, free + k] = along + (span * given.damping if j == k else 0.0)
             if free and given.sprung:
                 square[j, free + k] = span * 1.5 * across
                 square[free + j, k] = span * 1.5 * (I_1 * step + across)
@@ -323,19 +387,20 @@ def linearize(run: Run, free: int, size: int) -> None:
 def size_of(run: Run) -> float:
     """Write the other polynomials of a step; return its error relative to the tolerance.
 
-    The error is estimated by the last coefficients of the polynomials in Legendre's: of the rates, the edge,
+    The error is estimated by the last coefficients of the polynomials in Legendre's: of the rates, the edges,
     the compressions that the arms remember, and the moments.
     """
-    now, given = run.now, run.given
+    now, given, largest, moving = run.now, run.given, 0.0, 0.0
     rate = interpolate(run, RATE, now.v) / (1.0 + abs(now.v))
     along = interpolate(run, ALONG, now.w) / (1.0 + abs(now.w))
-    largest = max(rate, along, interpolate(run, EDGE, now.r))
+    for k in range(2):
+        largest = max(largest, interpolate(run, EDGES + k, now.sides[k].xi))
+        moving = max(moving, abs(now.sides[k].xi))
     remembered = first = second = 0.0
     for i in range(len(run.arms)):
-        k, row, state = run.arms[i, 0], PER_ARM + OWN * i, run.state[i]
+        k, row, state = run.arms[i, STIFF], PER_ARM + OWN * i, run.state[i]
         remembered += k * interpolate(run, row + DEPTHS, state[DEPTHS])
-        remembered += k * abs(now.r) * interpolate(run, row + SLIDES, state[SLIDES])
-        interpolate(run, row + STRESSES, state[STRESSES])
+        remembered += k * moving * interpolate(run, row + SLIDES, state[SLIDES])
         first += interpolate(run, row + FORCES, state[FORCES])
         second += interpolate(run, row + MOMENTS, state[MOMENTS])
-    return max(largest, remembered, first, second) / given.rtol
+    return max(rate, along, largest, remembered, first, second) / given.rtol

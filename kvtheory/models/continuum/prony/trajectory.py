@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory import compilation
 from kvtheory.models.continuum import compiled
-from kvtheory.models.continuum.prony import contact, evaluation, step, walk
-from kvtheory.models.continuum.prony.records import STEP, Run, begin, with_more_room
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.prony import contact, evaluation, segments, step, walk
+from kvtheory.models.continuum.prony.records import STEP, Run, as_arrays, begin, with_more_room
 from kvtheory.models.continuum.run import Spring, StepControl, readable, structured
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
@@ -19,19 +20,21 @@ from kvtheory.scene.base_motion import BaseMotion
 
 Array = NDArray[np.float64]
 
-STEP_LIMIT = 100_000
+STEP_LIMIT = 5_000
 ATTEMPTS = 200
 """Attempted steps between two reports of progress."""
-WORTHWHILE = 1000
-"""Interpreted steps, times arms, after which compiling pays: about a second."""
+WORTHWHILE = 20_000
+"""Interpreted steps, times arms, after which compiling pays: it takes half a minute, once per installation."""
+NARROW = 0.1
+"""Width of a contact that is closing: it narrows as the root of the time that is left."""
 SUBDIVISIONS = 4
 """Points shown for each step."""
-ONE_WAY = {
-    walk.RETOUCHES: "the trailing edge returns to ground that it left",
-    walk.RECEDES: "the leading edge leaves the ground",
-    walk.STUCK: "an edge turns back at once, or the contact closes",
+REFUSED = {
+    walk.STUCK: "no consistent state of the edges is found",
+    walk.CLOSES: "the indenter takes off",
+    walk.PARTS: "the contact is not one interval",
 }
-"""How a motion ceases to slide one way."""
+"""Why a motion is not solved."""
 
 
 class Tally:
@@ -43,7 +46,7 @@ class Tally:
 @cache
 def kernel() -> Any:
     """Return the compiled entry of the kernels; it needs numba."""
-    modules = b_, contact, step, walk, evaluation
+    modules = b_, contact, step, segments, walk, evaluation
     for module in modules:
         compilation.register(module, _nrt=False, no_cfunc_wrapper=True)
 
@@ -71,23 +74,28 @@ class Trajectory:
         return isinstance(self.run.steps, np.ndarray)
 
     @cached_property
+    def steps(self) -> NDArray[Any]:
+        """The steps as a structured array, see `records.STEP`."""
+        return np.asarray(structured(self.run.steps[: self.counts.steps], STEP))
+
+    @cached_property
     def natural(self) -> Array:
         """Times at which to show the motion: those of the steps, subdivided."""
-        starts = structured(self.run.steps[: self.counts.steps], STEP)["start"]
-        ends = np.append(starts, self.counts.s)
+        ends = np.append(self.steps["start"], self.counts.s)
         times = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(SUBDIVISIONS) / SUBDIVISIONS)
         return np.append(times.reshape(-1), ends[-1])
 
-    def states(self, s: ArrayLike) -> Array:
+    def states(self, s: ArrayLike, *, peaks: bool = True) -> Array:
         """Return the states at an array of times: a column for each, with the rows of `evaluation`."""
         times = np.ascontiguousarray(s, dtype=float)
-        return self._perform(evaluation.STATES, times, np.empty((times.size, evaluation.SIZE))).T
+        task = evaluation.STATES if peaks else evaluation.WITHOUT_PEAKS
+        return self._perform(task, times, np.empty((times.size, evaluation.SIZE))).T
 
-    def pressure(self, xi: Array, s: float) -> Array:
-        """Return the pressure at places in the contact."""
+    def profile(self, task: int, xi: Array, s: float) -> Array:
+        """Return the pressure or the compression, a task of `evaluation`, at places and one time."""
         found = np.empty((1 + xi.size, evaluation.SIZE))
         found[0] = self.states([s])[:, 0]
-        return self._perform(evaluation.PRESSURE, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
+        return self._perform(task, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
 
     def _perform(self, task: int, times: Array, found: Array) -> Array:
         if self.compiled:
@@ -103,7 +111,7 @@ def solve(
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
 ) -> Trajectory:  # fmt: skip
-    """Solve the transient of `drive`, V >= 0, from rest until `end`, in scaled form.
+    """Solve the transient of `drive` from rest until `end`, in scaled form.
 
     `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `numbers` eps and kappa, which is infinite for a fixed
     indenter. The rest is as in `continuum.solver.solve`.
@@ -111,7 +119,7 @@ def solve(
     Raises
     ------
     ValueError
-        If the sliding is not one-way: an edge returns to ground that it left.
+        If the indenter takes off, or no consistent state of the edges is found.
     TransientError
         If too many steps are needed.
 
@@ -119,25 +127,26 @@ def solve(
     >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
     0.417162
     """
-    tally = len(arms)
-    fast = compilation.available() and Tally.steps >= WORTHWHILE if fast is None else fast
-    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=fast)
-    left, status = max_steps, walk.PAUSED
-    nothing = np.zeros(1), np.zeros((1, 1))
+    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=bool(fast))
+    left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
     while status != walk.DONE:
-        if fast:
-            status = kernel()(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
-        else:
-            status = evaluation.perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
+        compile_now = fast is None and Tally.steps >= WORTHWHILE and compilation.available()
+        if compile_now and isinstance(run.steps, list):
+            run = as_arrays(run)
+        interpreted = isinstance(run.steps, list)
+        perform = evaluation.perform if interpreted else kernel()
+        status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
-        left = max_steps - now.steps - now.rejected
-        if status in ONE_WAY:
-            raise ValueError(ONE_WAY[status], now.s)
+        before, left = left, max_steps - now.steps - now.rejected
+        Tally.steps += (before - left) * len(arms) if interpreted else 0
+        if status in REFUSED:
+            edges = [r_.value(r_.value(run.now[0], "sides")[k], "xi") for k in range(2)]
+            closes = edges[1] - edges[0] < NARROW and status == walk.STUCK
+            raise ValueError(REFUSED[walk.CLOSES if closes else status], now.s)
         if status == walk.FULL:
             run = with_more_room(run)
         if left <= 0 and status != walk.DONE:
             raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
         if progress is not None:
             progress(now.s)
-    Tally.steps += 0 if fast else tally * (max_steps - left)
     return Trajectory(run)

@@ -1,28 +1,36 @@
-"""From step to step on a Prony series: step sizes, kinks of the history, the limits of one-way sliding."""
+"""From step to step on a Prony series: step sizes, and events: edges turn, or pass to other ground."""
 
 import math
 from typing import Any
 
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
-    AT_REST,
-    EDGE,
+    DEPTHS,
+    EDGES,
+    NEVER,
     OWN,
+    PEELING,
     PER_ARM,
     RATE,
+    SIDES,
+    SLIDES,
+    STRESSES,
+    edge_at,
+    free,
     integral,
     motion,
+    pressed,
+    step_of,
     value,
 )
+from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
+from kvtheory.models.continuum.prony.segments import cross, split, turn
 from kvtheory.models.continuum.prony.step import (
     DEPTH,
-    FALL,
-    NUMBER,
+    INDEX,
     OFFSET,
-    OLDEST,
-    RISE,
     SIGMA,
-    SWING,
+    at,
     prepare,
     size_of,
     solve,
@@ -33,19 +41,30 @@ SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
 """Margin and least factor of a step size, that after a step which did not converge, and the least error."""
 SHORTEST = 1e-13
 """Least step relative to the run: a shorter one would be lost in rounding."""
-OVERRUN = 1e-4
-"""Share of a step that may lie beyond a kink; one that ran farther is repeated with the right length."""
+SMOOTH = 1e-9
+"""Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
+OVERRUN, NEAR = 1e-6, 1e-11
+"""Share of a step, and of the run, that may lie beyond an event; a step that ran farther is repeated with the
+right length."""
 BISECTIONS = 60
-ALLOWED = 1e-3
-"""Share of the tolerance by which an edge may seem to go back."""
-BETWEEN = 4
-"""Points per stage at which the leading edge is watched."""
+ALLOWED, ROUNDING = 1e-3, 1e-13
+"""Share of the tolerance, and least violation, that an event needs."""
+PROBES = 3
+"""Instants per stage at which events are looked for."""
+TOGGLES = 12
+"""Most changes at one instant; more than a few mean that no state of the edges is consistent."""
 
-DONE, PAUSED, FULL, STUCK, RETOUCHES, RECEDES = range(6)
+DEEPEST, LEAST, WATCHED = 100.0, 1e-8, 8
+"""Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; the least
+tolerance there, which allows for rounding; segments of free ground that are watched on each side."""
+
+DONE, PAUSED, FULL, STUCK, CLOSES, PARTS = range(6)
 """How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
-of zero, as where the contact closes; where the trailing edge would return to ground that it left; where the
-leading edge would leave ground."""
+of zero, or no consistent state of the edges; where the contact closes; where it is no interval any more."""
 
+Monitors = tuple[float, float, float, float, float]
+"""Event functions, which stay positive until an event: the width, the state and the ground of the left edge,
+and of the right one."""
 Run = Any
 
 
@@ -54,21 +73,29 @@ def walk(run: Run, attempts: int) -> int:
     now, end = run.now, run.given.end
     if now.steps == 0 and now.span == math.inf:
         now.span = _first(run)
+        _jump(run)
     for _ in range(attempts):
         until = min(run.pieces[now.piece, b_.END], end)
         if now.s >= end:
             return DONE
+        if not _has_room(run):
+            return FULL
         if now.s + SHORTEST * end >= until:
             now.s = until
             if until < end:
                 _next_piece(run)
             continue
-        if now.steps + 1 >= len(run.steps):
-            return FULL
         status = _advance(run, until)
         if status != DONE:
             return status
     return PAUSED
+
+
+def _has_room(run: Run) -> bool:
+    """Whether one more step is certain to fit, with its events."""
+    now = run.now
+    fits = now.steps + 1 < len(run.steps) and now.segments + 8 < len(run.segments)
+    return fits and now.chain + 8 * (now.count + 8) < len(run.chain)
 
 
 def _first(run: Run) -> float:
@@ -85,119 +112,217 @@ def _first(run: Run) -> float:
 
 
 def _next_piece(run: Run) -> None:
-    """Begin a piece of the drive; where the velocity or its slope jumps, the history has a kink."""
+    """Begin a piece of the drive; where the velocity or its slope jumps, histories have a kink."""
     now = run.now
     _, last, last_slope = b_.evaluate(run.pieces[now.piece], now.s)
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
-    jumps = abs(number - last) > 1e-9 * (1.0 + abs(number))
-    if jumps or abs(slope - last_slope) > 1e-9 * (1.0 + abs(slope)):
-        now.kinked = True
+    jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = min(now.span, _first(run))
+        for k in range(2):
+            split(run, k)
+        _jump(run)
+
+
+def _jump(run: Run) -> None:
+    """Let edges turn where a jump of the drive changes the rate of the pressure."""
+    now = run.now
+    _, number, _ = b_.evaluate(run.pieces[now.piece], now.s)
+    for k in range(2):
+        relaxing = 0.0
+        for i in range(len(run.arms)):
+            relaxing += run.state[i, STRESSES + k] / run.arms[i, RELAXATION]
+        side = now.sides[k]
+        if _slack(run, side.state, side.xi, now.v, number - now.w, relaxing) < 0.0:
+            turn(run, k)
+
+
+def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: float) -> float:
+    """Return a number that is positive as long as an edge may keep its state: +- p' of the element there."""
+    given = run.given
+    rise = (1.0 + given.glass) * (v - 2.0 * xi * number) - relaxing
+    terms = (1.0 + given.glass) * (1.0 + abs(v) + 2.0 * abs(xi * number)) + abs(relaxing)
+    allowed = max(ALLOWED * given.rtol, ROUNDING)
+    return float((-rise if state == PEELING else rise) / terms + allowed)
+
+
+def monitors(run: Run, theta: float) -> Monitors:
+    """Return the event functions at a share of the step."""
+    now, index = run.now, run.now.steps
+    rows = run.rows[index]
+    _, v, Y, number, _ = motion(run, index, now.s + theta * run.steps[index].span)
+    l_state, l_ground = _watch(run, 0, theta, v, Y, number)
+    r_state, r_ground = _watch(run, 1, theta, v, Y, number)
+    width = value(rows[EDGES + 1], theta) - value(rows[EDGES], theta)
+    return width, l_state, l_ground, r_state, r_ground
+
+
+def _watch(
+    run: Run, k: int, theta: float, v: float, Y: float, number: float
+) -> tuple[float, float]:
+    """Return whether an edge may keep its state, and how far it is from the end of its segment."""
+    side, rows, relaxing = run.now.sides[k], run.rows[run.now.steps], 0.0
+    for i in range(len(run.arms)):
+        stress = value(rows[PER_ARM + OWN * i + STRESSES + k], theta)
+        relaxing += stress / run.arms[i, RELAXATION]
+    xi, ground = value(rows[EDGES + k], theta), math.inf
+    if side.segment != NEVER:
+        segment = run.segments[side.segment]
+        inward = SIDES[k] if side.state == PEELING else -SIDES[k]
+        if segment.edge == k:
+            ground = inward * (xi - Y - segment.X_a) + ROUNDING * (1.0 + abs(Y))
+        elif segment.b < math.inf:
+            ground = inward * (xi - Y - segment.X_b) + ROUNDING * (1.0 + abs(Y))
+    return _slack(run, side.state, xi, v, number, relaxing), ground
+
+
+def _smallest(values: Monitors) -> float:
+    return min(values[0], values[1], values[2], values[3], values[4])
+
+
+def _event(run: Run) -> tuple[float, Monitors]:
+    """Return the first event as a share of the step, infinite if there is none, and the monitors after it."""
+    count, low = PROBES * run.given.stages, 0.0
+    for m in range(1, count + 1):
+        high = m / count
+        violated = monitors(run, high)
+        if _smallest(violated) < 0.0:
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (low + high)
+                values = monitors(run, middle)
+                if _smallest(values) < 0.0:
+                    high, violated = middle, values
+                else:
+                    low = middle
+            return high, violated
+        low = high
+    return math.inf, violated
 
 
 def _advance(run: Run, until: float) -> int:
-    """Try one step; accept it up to its first kink, or reduce the step size for the next attempt."""
-    now, n = run.now, run.given.stages
+    """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
+    now, n, shortest = run.now, run.given.stages, SHORTEST * run.given.end
     span, whole = min(now.span, run.given.longest), until - now.s
     if span > (1.0 - 0.1 * OVERRUN) * whole:
         span = whole
-    if not span > SHORTEST * run.given.end:
+    if not span > shortest:
         return STUCK
     prepare(run, span)
-    if not solve(run):
-        now.rejected += 1
-        now.span = FAILED * span
-        return DONE
-    size = size_of(run)
+    size = size_of(run) if solve(run) else math.inf
     if not size <= 1.0:
         now.rejected += 1
-        now.span = (
-            span * max(SHRINK, SAFETY * math.pow(size, -1.0 / n))
-            if size < math.inf
-            else FAILED * span
-        )
+        factor = max(SHRINK, SAFETY * math.pow(size, -1.0 / n)) if size < math.inf else FAILED
+        now.span = factor * span
         return DONE
-    theta, kink = _passed(run, span)
-    if theta < 1.0 - OVERRUN:
+    theta, violated = _event(run)
+    if theta * span <= shortest:
+        now.rejected += 1
+        return _change(run, violated)
+    if theta < 1.0 - OVERRUN and (1.0 - theta) * span > NEAR * run.given.end:
         now.rejected += 1
         now.span = theta * (1.0 + 0.5 * OVERRUN) * span
         return DONE
-    status = _limits(run, min(theta, 1.0))
-    if status != DONE:
-        return status
     now.span = span * min(run.given.grow, SAFETY * math.pow(max(size, TINY), -1.0 / n))
     _commit(run, span, until, min(theta, 1.0))
-    if kink >= 0:
-        now.kinked = now.oldest == AT_REST
-        now.oldest, now.sigma = kink, run.steps[kink].start
+    interval = _one_interval(run)
+    now.steps, now.toggles = now.steps + 1, 0
+    if interval and theta <= 1.0:
+        return _change(run, violated)
+    return DONE if interval else PARTS
+
+
+def _change(run: Run, violated: Monitors) -> int:
+    """Change what the event at the present time violates."""
+    now = run.now
+    now.toggles += 1
+    if violated[0] < 0.0:
+        return CLOSES
+    if now.toggles > TOGGLES:
+        return STUCK
+    for k in range(2):
+        if violated[2 * k + 2] < 0.0:
+            cross(run, k)
+            if now.count == 0:
+                return CLOSES
+        elif violated[2 * k + 1] < 0.0:
+            turn(run, k)
     return DONE
 
 
-def _passed(run: Run, span: float) -> tuple[float, int]:
-    """Return when the trailing edge passes a kink, as a share of the step, and the step that begins there."""
-    now, at = run.now, run.now.oldest + 1
-    while at <= now.steps and not run.steps[at].kinked:
-        at += 1
-    if at > now.steps or _ahead(run, span, at, 1.0) >= 0.0:
-        return math.inf, AT_REST
-    low, high = 0.0, 1.0
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if _ahead(run, span, at, middle) >= 0.0:
-            low = middle
-        else:
-            high = middle
-    return high, at
+def _one_interval(run: Run) -> bool:
+    """Whether the pressure is positive within the contact and the ground is free outside, at some elements.
 
-
-def _ahead(run: Run, span: float, at: int, theta: float) -> float:
-    """Return how far the trailing edge is from the place where the leading edge was when a step began."""
-    s = run.now.s + theta * span
-    _, _, Y, _, _ = motion(run, run.now.steps, s)
-    return value(run.rows[run.now.steps, EDGE], theta) - Y - float(run.steps[at].lead)
-
-
-def _limits(run: Run, until: float) -> int:
-    """Return whether an edge would go back before the share `until` of the step."""
-    given, now = run.given, run.now
-    for j in range(given.stages):
-        place = run.places[j]
-        if run.nodes[j] > until:
-            break
-        number = place[NUMBER] - place[SWING]
-        terms = (1.0 + given.glass) * (1.0 + abs(place[FALL]) + abs(number))
-        if place[RISE] > ALLOWED * given.rtol * terms:
-            return RETOUCHES
-    for j in range(1, BETWEEN * given.stages + 1):
-        theta = until * j / (BETWEEN * given.stages)
-        d, v, _, number, _ = motion(run, now.steps, now.s + theta * run.steps[now.steps].span)
-        advance = v + 2.0 * number * math.sqrt(d)
-        if advance < -ALLOWED * given.rtol * (1.0 + abs(v) + abs(number)):
-            return RECEDES
-    return DONE
+    On several arms this is no theorem. The elements are the first, the middle and the last of each segment.
+    """
+    now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
+    least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
+    Y = b_.evaluate(run.pieces[now.piece], now.s)[0] - now.x
+    for i in range(len(run.arms)):
+        for row in (DEPTHS, SLIDES):
+            run.here[i, row] = run.state[i, row]
+    for i in range(now.first, now.first + now.count):
+        segment = run.segments[run.chain[i]]
+        for half in range(3):
+            share = 0.5 * half
+            if segment.step == NEVER:
+                x = segment.X_a + share * (segment.X_b - segment.X_a) + Y
+                p, xi = pressed(run, now.s, now.d, Y, x, segment.edge, NEVER, 0.0)
+            else:
+                x = segment.a + share * (min(segment.b, now.s) - segment.a)
+                index = step_of(run, segment.edge, segment.step, x)
+                p, xi = pressed(run, now.s, now.d, Y, 0.0, segment.edge, index, x)
+            if l < xi < r and p < least:
+                return False
+    for k in range(2):
+        side = now.sides[k]
+        number, count = side.own if side.state == PEELING else side.segment, 0
+        while number != NEVER and count < WATCHED:
+            segment = run.segments[number]
+            for half in range(3):
+                x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
+                index = step_of(run, segment.edge, segment.step, x)
+                gap, xi = free(run, now.s, now.d, Y, segment.edge, index, x)
+                if (xi < l or xi > r) and gap < least:
+                    return False
+            number, count = segment.next, count + 1
+    return True
 
 
 def _commit(run: Run, span: float, until: float, theta: float) -> None:
     """Accept a step up to the share `theta` of it: the state there becomes the present one."""
-    now, n = run.now, run.given.stages
-    row, last, whole = run.rows[now.steps], run.places[n - 1], theta == 1.0
+    now, n, begun = run.now, run.given.stages, run.now.s
+    rows, whole = run.rows[now.steps], theta == 1.0
+    end = until if whole and now.s + span >= until else now.s + theta * span
     if whole:
-        end = until if now.s + span >= until else now.s + span
-        now.d, now.x, now.v, now.w = last[DEPTH], last[OFFSET], last[FALL], last[SWING]
-        now.r, now.sigma, now.oldest = run.stages[EDGE, n - 1], last[SIGMA], int(last[OLDEST])
+        now.d, now.x = at(run, DEPTH, n - 1), at(run, OFFSET, n - 1)
     else:
-        end = now.s + theta * span
-        now.d += span * integral(row[RATE], theta)
-        now.x += span * integral(row[ALONG], theta)
-        now.v, now.w, now.r = (
-            value(row[RATE], theta),
-            value(row[ALONG], theta),
-            value(row[EDGE], theta),
-        )
+        now.d += span * integral(rows[RATE], theta)
+        now.x += span * integral(rows[ALONG], theta)
+    now.v = run.stages[RATE, n - 1] if whole else value(rows[RATE], theta)
+    now.w = run.stages[ALONG, n - 1] if whole else value(rows[ALONG], theta)
     for i in range(len(run.arms)):
         for k in range(OWN):
-            at = PER_ARM + OWN * i + k
-            run.state[i, k] = run.stages[at, n - 1] if whole else value(row[at], theta)
-    now.s, now.kinked, now.smooth = end, False, True
-    now.steps += 1
+            row = PER_ARM + OWN * i + k
+            run.state[i, k] = run.stages[row, n - 1] if whole else value(rows[row], theta)
+    Y, _, _ = b_.evaluate(run.pieces[now.piece], end)
+    for k in range(2):
+        side, before = now.sides[k], now.sides[k].sigma
+        index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
+        side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
+        if not whole and side.segment != NEVER:
+            for i in range(len(run.arms)):
+                for row in (DEPTHS, SLIDES):
+                    run.here[i, row] = run.state[i, row]
+            xi, index, sigma = edge_at(
+                run, k, end, now.d, Y - now.x, side.xi, index, before + theta * (sigma - before)
+            )
+            if abs(xi) < math.inf:
+                side.xi = xi
+                for i in range(len(run.arms)):
+                    run.state[i, STRESSES + k] = run.here[i, STRESSES]
+        side.index, side.sigma = index, sigma
+        if side.segment != NEVER:
+            side.pace = (sigma - before) / (end - begun)
+    now.s, now.smooth = end, True
+    now.kinked[0] = now.kinked[1] = 0

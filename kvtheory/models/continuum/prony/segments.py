@@ -1,0 +1,154 @@
+"""The segments of ground that the edges pass: how they begin and end, and in which one an edge moves."""
+
+import math
+from typing import Any
+
+from kvtheory.models.continuum.prony.contact import NEVER, PEELING, TOUCHING
+from kvtheory.scene.base_motion import evaluate
+
+INSTANT, SHORT = 1e-13, 1e-2
+"""Length of a segment in time, relative to the run, or in space, as a share of the tolerance, below which it
+counts as none."""
+
+Run = Any
+
+
+def here(run: Run, k: int) -> float:
+    """Return X of an edge at present."""
+    Y, _, _ = evaluate(run.pieces[run.now.piece], run.now.s)
+    return float(run.now.sides[k].xi - Y + run.now.x)
+
+
+def begin(run: Run, k: int, outward: int) -> None:
+    """Begin the segment that an edge writes; `outward` is the next one on free ground."""
+    now, number = run.now, run.now.segments
+    segment = run.segments[number]
+    segment.edge, segment.step, segment.next = k, now.steps, outward
+    segment.a, segment.b, segment.X_a, segment.X_b = now.s, math.inf, here(run, k), 0.0
+    now.sides[k].own, now.segments, now.kinked[k] = number, number + 1, 1
+
+
+def end(run: Run, k: int) -> int:
+    """End the segment that an edge writes; return it, or the next one outward if it is empty."""
+    now, number = run.now, run.now.sides[k].own
+    segment = run.segments[number]
+    segment.b, segment.X_b = now.s, here(run, k)
+    empty = now.s - segment.a <= INSTANT * run.given.end
+    empty = empty or abs(segment.X_b - segment.X_a) <= SHORT * run.given.rtol
+    if now.sides[k].state == TOUCHING:
+        if empty:
+            pop(run, k)
+        return int(number)
+    return int(segment.next) if empty else int(number)
+
+
+def pop(run: Run, k: int) -> None:
+    """Remove the contact's last segment at an edge."""
+    run.now.count -= 1
+    if k == 0:
+        run.now.first += 1
+
+
+def last(run: Run, k: int) -> int:
+    """Return the contact's last segment at an edge."""
+    now = run.now
+    return int(run.chain[now.first + (now.count - 1 if k == 1 else 0)])
+
+
+def renew(run: Run) -> None:
+    """Copy the contact's sequence of segments, with room at both ends; earlier steps keep the old one."""
+    now = run.now
+    for i in range(now.count):
+        run.chain[now.chain + 1 + i] = run.chain[now.first + i]
+    now.first, now.chain = now.chain + 1, now.chain + now.count + 2
+
+
+def push(run: Run, k: int) -> None:
+    """Add the segment that an edge writes to the contact."""
+    renew(run)
+    now = run.now
+    now.count += 1
+    if k == 0:
+        now.first -= 1
+    run.chain[now.first + (now.count - 1 if k == 1 else 0)] = now.sides[k].own
+
+
+def cut(run: Run, k: int, number: int) -> int:
+    """Return a copy of a segment that ends where the edge in it is now."""
+    now, side = run.now, run.now.sides[k]
+    if number == NEVER:
+        return NEVER
+    old, new = run.segments[number], run.segments[now.segments]
+    new.edge, new.step, new.next = old.edge, old.step, old.next
+    new.a, new.b, new.X_a, new.X_b = old.a, old.b, old.X_a, old.X_b
+    if old.edge == k:
+        new.b, new.X_b = side.sigma, here(run, k)
+    else:
+        new.a, new.X_a = side.sigma, here(run, k)
+    now.segments += 1
+    return int(now.segments - 1)
+
+
+def aim(run: Run, k: int, number: int) -> None:
+    """Let an edge move in a segment, from its near end."""
+    side, run.now.sides[k].segment = run.now.sides[k], number
+    if number == NEVER:
+        return
+    segment = run.segments[number]
+    if segment.edge == k:
+        side.sigma, side.pace, side.index = segment.b, -1.0, segment.step
+        while side.index + 1 < run.now.steps and run.steps[side.index + 1].start < segment.b:
+            side.index += 1
+    else:
+        side.sigma, side.pace, side.index = segment.a, 1.0, segment.step
+        while side.index + 1 < run.now.steps and run.steps[side.index + 1].start <= segment.a:
+            side.index += 1
+    side.near = side.sigma
+
+
+def turn(run: Run, k: int) -> None:
+    """Let a peeling edge touch, or a touching one peel."""
+    now, side, other = run.now, run.now.sides[k], run.now.sides[1 - k]
+    if side.state == PEELING:
+        ground, old = end(run, k), last(run, k)
+        new = cut(run, k, old)
+        if other.state == PEELING and other.segment == old:
+            other.segment = new
+        renew(run)
+        run.chain[now.first + (now.count - 1 if k == 1 else 0)] = new
+        begin(run, k, NEVER)
+        side.state = TOUCHING
+        push(run, k)
+        aim(run, k, ground)
+    else:
+        end(run, k)
+        ground = cut(run, k, side.segment)
+        begin(run, k, ground)
+        side.state = PEELING
+        aim(run, k, last(run, k))
+
+
+def split(run: Run, k: int) -> None:
+    """Begin a new segment where the history of an edge has a kink."""
+    side = run.now.sides[k]
+    written = end(run, k)
+    begin(run, k, written if side.state == PEELING else NEVER)
+    if side.state == TOUCHING:
+        push(run, k)
+
+
+def cross(run: Run, k: int) -> None:
+    """Let an edge move on to the next segment."""
+    side, now = run.now.sides[k], run.now
+    segment = run.segments[side.segment]
+    if side.state == TOUCHING:
+        outward = int(segment.next)
+        split(run, k)
+        aim(run, k, outward)
+        return
+    pop(run, k)
+    if now.count > 0:
+        split(run, k)
+        if segment.step == NEVER and now.sides[1 - k].state == TOUCHING:
+            split(run, 1 - k)  # the motion has a kink too
+        aim(run, k, last(run, k))
