@@ -207,7 +207,7 @@ def test_a_hundred_arms_cost_no_more_elements_than_three():
     told = []
     times = np.geomspace(1e-4, 1.0, 100)
     many = kv.GeneralizedMaxwell(1e10, arms=[(3e8, float(time)) for time in times])
-    scene = kv.Scene(foundation=many)
+    scene = kv.Scene(indenter=kv.Circle("10 mm"), foundation=many)
     found = kv.solve(
         scene, at="10 ms", rtol=1e-2, progress=lambda share, words: told.append((share, words))
     )

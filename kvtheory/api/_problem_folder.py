@@ -1,4 +1,4 @@
-"""The folder of a reference problem: `kvtheory scene --problem NAME -o FOLDER`.
+"""The folder of a reference problem, as the command `kvtheory scene` writes it.
 
 It can be dropped into another repository: the scene, a reference series with its certificate,
 acceptance criteria, a picture, and a script that tests a series.
@@ -164,8 +164,7 @@ The reference, `reference.csv`, is {what}. Its certificate is {certificate}.
 
 {rule}
 {more}
-`kvtheory scene --problem {name}` prints the scene, and with `-o FOLDER` writes this folder.
-`kv.problem("{name}")` loads it.
+`kvtheory.problem("{name}")` loads the scene; the command `kvtheory scene` prints it, and writes this folder.
 """
 
 

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 STEP_LIMIT = 5_000
 ATTEMPTS = 200
 """Attempted steps between two reports of progress."""
-WORTHWHILE = 20_000
+WORTHWHILE = 10_000
 """Interpreted steps, times arms, after which compiling pays: it takes half a minute, once per installation."""
 NARROW = 0.1
 """Width of a contact that is closing: it narrows as the root of the time that is left."""
