@@ -24,7 +24,7 @@ STEP_LIMIT = 5_000
 ATTEMPTS = 200
 """Attempted steps between two reports of progress."""
 WORTHWHILE = 10_000
-"""Interpreted steps, times arms, after which compiling pays: it takes half a minute, once per installation."""
+"""Interpreted steps, times arms, after which compiling pays: half a minute, once per installation."""
 NARROW = 0.1
 """Width of a contact that is closing: it narrows as the root of the time that is left."""
 SUBDIVISIONS = 4
