@@ -12,8 +12,7 @@ def test_every_relation_of_the_catalogue_has_one_dimension(by_label):
     assert all(reason and label in by_label for label, reason in EXEMPT.items())
 
 
-@pytest.mark.parametrize("factor", [K, 1 / tau, W**2])
-def test_a_wrong_dimension_is_found_in_every_relation(by_label, factor):
+def test_a_wrong_dimension_is_found_in_every_relation(by_label):
     planted = missed = 0
     for record in by_label.values():
         steps = [
@@ -22,6 +21,7 @@ def test_a_wrong_dimension_is_found_in_every_relation(by_label, factor):
             if step.claim and 0 not in (step.claim.lhs, step.claim.rhs)
         ]
         for step in steps if record.label not in EXEMPT else ():
+            factor = (K, 1 / tau, W**2)[planted % 3]
             wrong = replace(step, claim=replace(step.claim, rhs=step.claim.rhs * factor))
             planted += 1
             missed += len(faults(replace(record, steps=(wrong,)), by_label)) != 1

@@ -97,7 +97,7 @@ def test_a_folder_holds_scene_reference_certificate_criteria_and_picture(folders
             error = np.max(certificate["relative_error"][quantity])
             assert 2 * error * unit * largest < allowed
     assert (folder / "reference.png").read_bytes().startswith(b"\x89PNG")
-    assert f"kvtheory scene --problem {name}" in (folder / "README.md").read_text()
+    assert f'kvtheory.problem("{name}")' in (folder / "README.md").read_text()
     assert len((folder / "judge.py").read_text().splitlines()) < 30
 
 

@@ -231,5 +231,6 @@ def course_of(
     reports = np.array(about, dtype=float).reshape(len(after), 5)
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
+    times = np.ascontiguousarray(times)  # the kernels are compiled once, for this layout
     return Course(times, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
                   np.array(limits), over, which)  # fmt: skip
