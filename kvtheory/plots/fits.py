@@ -82,7 +82,7 @@ def _curves(ax: Any, fit: FoundationFit) -> None:
     master = fit.data["shifted"]
     title = "data and fit"
     if master is not None:
-        title += f", master curve at {master.reference - ZERO_CELSIUS:.4g} °C"
+        title = f"master curve at {master.reference - ZERO_CELSIUS:.4g} °C"
     ax.legend()
     ax.set(xlabel=label, ylabel=f"modulus [{unit}]", title=title)
 
@@ -130,7 +130,7 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
             color=BLACK,
             label=law.text,
         )
-        ax.legend(fontsize=6)
+        ax.legend(fontsize="small")
     ax.set(xlabel="temperature [°C]", ylabel=r"$\log_{10} a_T$", title="shift factors")
 
 
