@@ -77,15 +77,14 @@ def chosen(run: Any) -> Callable[..., int]:
 
 
 @cache
-def kernel() -> Any:
+def kernel(perform: Any = bulk.perform, modules: tuple[ModuleType, ...] = MODULES) -> Any:
     """Return the compiled entry of the kernels, which releases the interpreter lock; it needs numba."""
-    for module in MODULES:
+    for module in modules:
         inlined = [*vars(module)] if module in INLINED else SHORT
         compilation.register(module, inlined, **OPTIONS, no_cfunc_wrapper=True)
 
-    perform = bulk.perform
     entry = FunctionType(perform.__code__, perform.__globals__, perform.__name__)
-    entry.__qualname__ = f"perform_{sources()}"
+    entry.__qualname__ = f"perform_{sources(modules)}"
     return compilation.cached(entry, **OPTIONS)
 
 

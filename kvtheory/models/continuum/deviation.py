@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import Run, step_at
 from kvtheory.models.continuum.stepping import TAKE_OFF
 from kvtheory.models.continuum.trial_step import EVENT_RESOLUTION
 
@@ -47,7 +47,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
             worst[HOP_ROUNDING] = max(worst[HOP_ROUNDING], rounding)
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
-        e_.state_at(other, e_.step_at(other, s), s, rows[0])
+        e_.state_at(other, step_at(other, s), s, rows[0])
         shifted = 0
         if alike:
             for f, o in ((last_f, last_o), (next_f, next_o)):
@@ -57,7 +57,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
                 worst[HOPS] = max(worst[HOPS], abs(there - here))
                 if abs(s - here) <= abs(there - here):
                     then = min(max(there + (s - here), 0.0), other.now.s)
-                    e_.state_at(other, e_.step_at(other, then), then, rows[1])
+                    e_.state_at(other, step_at(other, then), then, rows[1])
                     shifted = 1
         _raise(worst, found[i], rows[0], rows[shifted])
         if not alike:
@@ -83,7 +83,7 @@ def next_hop(run: Run, index: int) -> int:
 
 def _hop_rounding(run: Run, s: float, row: Any) -> float:
     """Return the rounding error of the time of a hop; at a landing, the pressure is the closing rate."""
-    index, found = e_.step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
+    index, found = step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
     if row[e_.PEAK_PRESSURE] > 0.0:
         Y = row[e_.LEFT] - run.steps[index].sides[0].X

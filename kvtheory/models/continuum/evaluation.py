@@ -5,7 +5,7 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import FREE, instant, motion
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import Run, step_at
 from kvtheory.scene.base_motion import END, START, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
@@ -51,18 +51,6 @@ def natural(run: Run, times: Any, found: Any) -> int:
 def end_of(run: Run, index: int) -> float:
     """Return the end of a step, where the next one begins."""
     return run.now.s if index + 1 == run.now.steps else run.steps[index + 1].start
-
-
-def step_at(run: Run, s: float) -> int:
-    """Return the index of the last step that begins at `s` or before."""
-    low, high = 0, run.now.steps
-    while high - low > 1:
-        middle = (low + high) // 2
-        if run.steps[middle].start <= s:
-            low = middle
-        else:
-            high = middle
-    return low
 
 
 def state_at(run: Run, index: int, s: float, found: Any) -> None:

@@ -162,6 +162,18 @@ def rest(run: Run) -> None:
         node.step, node.branch, node.next, node.joined = -1, 0.0, -1, False
 
 
+def step_at(run: Any, s: float) -> int:
+    """Return the index of the last step that begins at `s` or before."""
+    low, high = 0, run.now.steps
+    while high - low > 1:
+        middle = (low + high) // 2
+        if run.steps[middle].start <= s:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
 def has_room(run: Run) -> bool:
     """Whether one more step is certain to fit."""
     now = run.now

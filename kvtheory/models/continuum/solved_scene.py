@@ -56,13 +56,13 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
 
 
 @dataclass(frozen=True)
-class SolvedScene:
-    """A solved motion and its scales; evaluates every quantity of a transient in SI.
+class ScaledMotion:
+    """A solved motion and its scales.
 
     `end` is that of the run in scaled time; the motion may extend slightly beyond it.
     """
 
-    motion: Trajectory
+    motion: Any
     drive: BaseMotion
     units: StaticState
     end: float
@@ -74,6 +74,20 @@ class SolvedScene:
         s = s[: np.searchsorted(s, self.end) + 1].copy()
         s[-1] = self.end
         return s * self.units.time
+
+    def scaled(self, time: Any) -> Any:
+        """Return times in units of tau; those beyond the end by rounding only are set to the end."""
+        s, end = np.asarray(time, dtype=float) / self.units.time, self.end
+        if not ((s >= 0.0) & (s <= end * (1.0 + AFTER_END))).all():
+            raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
+        return np.minimum(s, end)[()]
+
+
+@dataclass(frozen=True)
+class SolvedScene(ScaledMotion):
+    """A solved motion; evaluates every quantity of a transient in SI."""
+
+    motion: Trajectory
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -119,13 +133,6 @@ class SolvedScene:
     def energy(self, time: ArrayLike) -> Ledger:
         """Return the energy ledger in J/m at the times (s)."""
         return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
-
-    def scaled(self, time: Any) -> Any:
-        """Return times in units of tau; those beyond the end by rounding only are set to the end."""
-        s, end = np.asarray(time, dtype=float) / self.units.time, self.end
-        if not ((s >= 0.0) & (s <= end * (1.0 + AFTER_END))).all():
-            raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
-        return np.minimum(s, end)[()]
 
 
 def transient(

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.contact import SIDES, instant
-from kvtheory.models.continuum.run import NODE, PLACE, new, structured
+from kvtheory.models.continuum.run import NODE, PLACE, new, step_at, structured
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.scene import base_motion as drive_
 
@@ -49,7 +49,7 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     peeling edge swept. Ground that was never touched has u = 0.
     """
     run, now = motion.interpreted, motion.at(s)
-    Y = instant(run, evaluation.step_at(run, s), s)[3]
+    Y = instant(run, step_at(run, s), s)[3]
     xi = np.asarray(xi, dtype=float)
     X, slack = xi - Y, ROUNDING * (1.0 + abs(Y))
     inside = (now.left - slack <= xi) & (xi <= now.right + slack)  # false in flight: edges are NaN
@@ -116,7 +116,7 @@ def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
 def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
     """Return the nodes that are partial at `s`, with the edge at xi = `edge`, and the next whole one."""
     run = motion.interpreted
-    index = evaluation.step_at(run, s)
+    index = step_at(run, s)
     d, v, _, Y, number, _ = instant(run, index, s)
     step, held, side = run.steps[index], run.steps[index].sides[k], SIDES[k]
     top = held.node

@@ -23,6 +23,7 @@ from kvtheory.models.continuum.prony.contact import (
 from kvtheory.models.continuum.prony.records import Run
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.walk import walk
+from kvtheory.models.continuum.run import step_at
 from kvtheory.scene.base_motion import evaluate
 
 DEPTH, RATE, NUMBER, DRIVE, ALONG_X, ALONG_RATE, LEFT, RIGHT = range(8)
@@ -35,18 +36,6 @@ REFINED, BISECTIONS, SAMPLES = 30, 60, 3
 """Evaluations in the search for the peak between two samples, bisections for the instant at which an edge
 passed a place, and samples in each step of the history."""
 GOLDEN = 0.6180339887498949
-
-
-def step_at(run: Run, s: float) -> int:
-    """Return the index of the last step that begins at `s` or before."""
-    low, high = 0, run.now.steps
-    while high - low > 1:
-        middle = (low + high) // 2
-        if run.steps[middle].start <= s:
-            low = middle
-        else:
-            high = middle
-    return low
 
 
 def states(run: Run, times: Any, found: Any, peaks: bool) -> None:

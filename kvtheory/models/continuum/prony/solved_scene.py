@@ -3,7 +3,6 @@
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,12 +22,11 @@ from kvtheory.models.continuum.prony import evaluation as e_
 from kvtheory.models.continuum.prony.contact import PEELING, TOUCHING
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
-from kvtheory.models.continuum.solved_scene import AFTER_END, end_of, scaled_drive
+from kvtheory.models.continuum.solved_scene import ScaledMotion, end_of, scaled_drive
 from kvtheory.progress import Progress
 from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
-from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -52,28 +50,10 @@ SECOND = COMPARISON._replace(longest=math.inf)
 
 
 @dataclass(frozen=True)
-class SolvedPronyScene:
-    """A solved motion and its scales; evaluates every quantity of a transient in SI."""
+class SolvedPronyScene(ScaledMotion):
+    """A solved motion; evaluates every quantity of a transient in SI."""
 
     motion: Trajectory
-    drive: BaseMotion
-    units: StaticState
-    end: float
-
-    @cached_property
-    def natural_times(self) -> Array:
-        """Times (s) that show the whole series: the solver's steps, subdivided."""
-        s = self.motion.natural
-        s = s[: np.searchsorted(s, self.end) + 1].copy()
-        s[-1] = self.end
-        return s * self.units.time
-
-    def scaled(self, time: Any) -> Any:
-        """Return times in units of tau; those beyond the end by rounding only are set to the end."""
-        s, end = np.asarray(time, dtype=float) / self.units.time, self.end
-        if not ((s >= 0.0) & (s <= end * (1.0 + AFTER_END))).all():
-            raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
-        return np.minimum(s, end)[()]
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and the states of the edges at the given times (s)."""

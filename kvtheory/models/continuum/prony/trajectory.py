@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -43,18 +43,9 @@ class Tally:
     steps = 0
 
 
-@cache
 def kernel() -> Any:
     """Return the compiled entry of the kernels; it needs numba."""
-    modules = b_, contact, step, segments, walk, evaluation
-    for module in modules:
-        compilation.register(module, _nrt=False, no_cfunc_wrapper=True)
-
-    def entry(task: int, run: Any, attempts: int, times: Any, found: Any) -> int:
-        return evaluation.perform(task, run, attempts, times, found)
-
-    entry.__qualname__ = f"perform_{compiled.sources(modules)}"
-    return compilation.cached(entry, _nrt=False)
+    return compiled.kernel(evaluation.perform, (b_, r_, contact, step, segments, walk, evaluation))
 
 
 @dataclass(frozen=True)
@@ -98,10 +89,8 @@ class Trajectory:
         return self._perform(task, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
 
     def _perform(self, task: int, times: Array, found: Array) -> Array:
-        if self.compiled:
-            kernel()(task, self.run, 0, times, found)
-            return found
-        evaluation.perform(task, self.run, 0, times, found)
+        perform = kernel() if self.compiled else evaluation.perform
+        perform(task, self.run, 0, times, found)
         return found
 
 
