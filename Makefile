@@ -71,6 +71,7 @@ benchmark: $(VENV)/.installed
 	$(BIN)/python -m figures.benchmark_calls
 	$(BIN)/python -m figures.benchmark_elements
 	$(BIN)/python -m figures.benchmark_foundation
+	$(BIN)/python -m figures.benchmark_engines
 	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:

@@ -20,7 +20,7 @@ TOPICS = {
     "A spring in the drive": (
         *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),
     ),
-    "Methods": ("ladder", "stability_map", "work_precision"),
+    "Methods": ("ladder", "stability_map", "work_precision", "engines"),
 }
 FIGURES = tuple(name for names in TOPICS.values() for name in names)
 
