@@ -28,9 +28,9 @@ ROOT = Path(__file__).parent.parent
 BRIEF = (
     (onset_maps, "NUMBERS", onset_maps.NUMBERS[::4]),
     (onset_maps, "INERTIAS", onset_maps.INERTIAS[::3]),
-    (stability, "QUICK_POINTS", (3, 3)),
+    (stability, "QUICK_POINTS", (2, 2)),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
-    (drawing, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
+    (drawing, "STYLE", {**STYLE}),
 )
 """Coarse where it takes minutes. `test_charts_stability` and `test_charts_work_precision` test the charts."""
 FORMATS, VECTOR = drawing.FORMATS, ("fig3", "onset_maps", "ball")
@@ -47,6 +47,7 @@ def made(site):
         for name in FIGURES:
             script = importlib.import_module(f"figures.{name}")
             data = script.compute()
+            drawing.STYLE["savefig.dpi"] = gallery.DPI if name in gallery.HERE else 30
             with mpl.rc_context(drawing.STYLE):
                 drawn = script.draw(data)
             patch.setattr(drawing, "FORMATS", FORMATS if name in VECTOR else {"png": {}})
