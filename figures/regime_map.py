@@ -5,6 +5,8 @@ oscillation about the steady state (F12), eps = 3 r/8 with r the trailing edge i
 """
 
 from dataclasses import dataclass
+from functools import cache
+from itertools import product
 
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -27,7 +29,9 @@ CLASSES = {
 indenter leaves the foundation. Colours after Tol, safe in colour blindness."""
 
 NUMBERS = np.geomspace(1e-2, 1e2, 97)
-INERTIAS = np.geomspace(1e-4, 1e2, 91)
+INERTIAS = np.geomspace(1e-4, 1e2, 93)
+BLOCK = 4
+"""Points along a side of a block: where its corners and its centre are of one class, so is the block."""
 RTOL = 1e-6
 QUARTERS = np.arange(4) / 4
 TURN = 1e-5
@@ -44,8 +48,14 @@ class Data:
 
 
 def compute() -> Data:
-    """Solve and classify every point of the map."""
-    classes = np.array([[_class(number, eps) for number in NUMBERS] for eps in INERTIAS])
+    """Solve and classify the points of the map, and every one near the borders of the classes."""
+    classes = np.zeros((INERTIAS.size, NUMBERS.size), dtype=int)
+    solved = cache(lambda i, k: _class(NUMBERS[k], INERTIAS[i]))
+    for i, k in product(range(0, INERTIAS.size - 1, BLOCK), range(0, NUMBERS.size - 1, BLOCK)):
+        corners = product((i, i + BLOCK), (k, k + BLOCK))
+        found = {solved(*at) for at in (*corners, (i + BLOCK // 2, k + BLOCK // 2))}
+        for at in product(range(i, i + BLOCK + 1), range(k, k + BLOCK + 1)):
+            classes[at] = solved(*at) if len(found) > 1 else min(found)
     names = list(CLASSES)
     grid = [(number, eps) for eps in INERTIAS for number in NUMBERS]
     columns = {

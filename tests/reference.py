@@ -8,7 +8,7 @@ digits after the worst cancellation.
 from dataclasses import dataclass, fields
 from types import SimpleNamespace
 
-from flint import acb, arb, ctx
+from flint import arb, ctx
 
 BITS = 600
 """Twelve decades of drive number either way cost up to 250 bits in differences."""
@@ -208,40 +208,6 @@ class PowerLaw:
 
 
 parabola, ball, power_law = steady(Parabola), steady(Ball), steady(PowerLaw)
-
-
-def parabola_integrals(radius, stiffness, retardation_time, velocity, depth):
-    """Enclose W and F of a parabola as integrals of the definitions, for V >= 0."""
-    with ctx.workprec(BITS):
-        R, K, tau, V, depth = map(arb, (radius, stiffness, retardation_time, velocity, depth))
-        ends = Parabola(R).edges(V * tau, depth)
-
-        def pressure(x, _):
-            return K * (depth - x * x / (2 * R) - V * tau * x / R)
-
-        friction = acb.integral(lambda x, _: -x / R * pressure(x, _), *ends)
-        return acb.integral(pressure, *ends).real, friction.real
-
-
-def ball_integrals(radius, across, stiffness, retardation_time, velocity, depth):
-    """Enclose W and F as integrals over the strips, each by its antiderivatives, for V > 0: y = b sin(t)."""
-    with ctx.workprec(100):
-        R, S, K, tau, V, depth = map(
-            arb, (radius, across, stiffness, retardation_time, velocity, depth)
-        )
-        l_r, b = V * tau, (2 * S * depth).sqrt()
-
-        def strip(t, power):
-            d = depth * t.cos() ** 2
-            a = (2 * R * depth).sqrt() * t.cos()
-            x_te = (2 * R * d + l_r * l_r).sqrt() - l_r
-            sums = [x_te**n - (-a) ** n for n in range(5)]
-            load = d * sums[1] - sums[3] / (6 * R) - l_r * sums[2] / (2 * R)
-            friction = -(d * sums[2] / 2 - sums[4] / (8 * R) - l_r * sums[3] / (3 * R)) / R
-            return (friction if power else load) * b * t.cos() * K
-
-        ends = acb(0), acb(arb.pi() / 2)
-        return [2 * acb.integral(lambda t, _, n=n: strip(t, n), *ends).real for n in (0, 1)]
 
 
 def relative_error(value, truth):

@@ -4,6 +4,7 @@
 """
 
 import json
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -12,9 +13,12 @@ from pathlib import Path
 
 import kvtheory as kv
 
+LOG = "log.txt"
+LIBRARIES = ["click", "matplotlib.figure", "numpy", "scipy.optimize", "sympy"]
+"""Loaded once; each command is a fork of the process that holds them, and imports what is ours."""
+
 COMMANDS = {
     "scene --problem wedge": "",
-    "steady --json": "",
     "steady --plot steady.svg": "steady.svg",
     "asymptotes": "",
     "stability": "",
@@ -32,21 +36,35 @@ COMMANDS = {
 """Commands, and the file that each must write."""
 
 
+def command(words: str) -> None:
+    """Run a command in this process; what it prints goes to the file LOG."""
+    from kvtheory.cli import main
+
+    with Path(LOG).open("w") as log:
+        for stream in (1, 2):
+            os.dup2(log.fileno(), stream)
+    sys.argv = ["kvtheory", *words.split()]
+    main()
+
+
 def main() -> None:
     """Run everything; whatever fails ends it."""
     if not Path(kv.__file__).is_relative_to(sys.prefix):
         raise SystemExit(f"{kv.__file__} is not what was installed in {sys.prefix}")
-    program = Path(sys.prefix) / "bin" / "kvtheory"
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # a process with threads had better not fork
+    own = multiprocessing.get_context("forkserver")
+    own.set_forkserver_preload(LIBRARIES)
     with tempfile.TemporaryDirectory() as place:
-        for command, written in COMMANDS.items():
-            done = subprocess.run(
-                [program, *command.split()], cwd=place, capture_output=True, text=True, check=False,
-                env={**os.environ, "PYTHONWARNINGS": "error"},
-            )  # fmt: skip
-            if done.returncode or (written and not (Path(place) / written).stat().st_size):
-                raise SystemExit(f"kvtheory {command}: {done.stdout}{done.stderr}")
-            if command == "steady --json":
-                shown = json.loads(done.stdout)
+        os.chdir(place)
+        for words, written in COMMANDS.items():
+            process = own.Process(target=command, args=[words])
+            process.start()
+            process.join()
+            if process.exitcode or (written and not Path(written).stat().st_size):
+                told = Path(LOG).read_text()
+                raise SystemExit(f"kvtheory {words}: exit status {process.exitcode}: {told}")
+        program = [Path(sys.prefix) / "bin" / "kvtheory", "steady", "--json"]
+        shown = json.loads(subprocess.run(program, capture_output=True, check=True).stdout)
         state = kv.steady()
         for name in ("load", "friction_coefficient", "trailing_edge"):
             if shown[name] != float(getattr(state, name)):

@@ -29,27 +29,6 @@ def test_other_shapes_are_integrated_by_default():
         assert getattr(integrated, name) == pytest.approx(getattr(kv.steady(), name), rel=1e-11)
 
 
-@pytest.mark.parametrize(
-    ("call", "told"),
-    [
-        (lambda: kv.steady(method="exakt"), '"exakt".*did you mean "exact"'),
-        (lambda: kv.steady(over={"drive.velocity": [0.1, np.nan]}), "finite"),
-        (lambda: kv.steady(over={"support.mass": 1e308, "support.gravity": 1e308}), "double precision"),
-        (lambda: kv.steady(over={"drive.velocity": 1e300}), "double precision"),
-        (lambda: kv.steady(over={"drive.velocity": 1e300}, method="quadrature"), "double precision"),
-        (lambda: kv.steady(over={"support.mass": 1e-300}),
-         r"underflow in.*check support\.mass = 1e-300 kg/m$"),
-        (lambda: kv.transient(kv.Scene(foundation=kv.Foundation(1e10, 1e300))),
-         r"check foundation\.retardation_time = 1e\+300 s$"),
-        *((lambda tolerance=tolerance: kv.asymptotes(tolerance=tolerance), "tolerance")
-          for tolerance in (0.0, -1.0, 2.0, np.nan)),
-    ],
-)  # fmt: skip
-def test_mistakes_are_named(call, told):
-    with pytest.raises(ValueError, match=told):
-        call()
-
-
 PUBLIC = (
     kv.steady, kv.asymptotes, kv.transient, kv.elements, kv.compare, kv.solve, kv.sweep, kv.stability,
     kv.footprint, kv.problem, kv.load_scene, kv.to_toml, kv.Scene,

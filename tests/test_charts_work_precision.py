@@ -56,10 +56,9 @@ def test_references_agree_and_each_method_is_right_where_it_says_so(name):
         assert max(errors(found, right.solution).values()) < 1e-5
 
 
-@pytest.mark.parametrize("name", ["table-1", "hop"])
-def test_stored_solutions_are_those_of_their_generator(name):
-    table = json.loads(stored.PATH.read_text())[name]
-    found = stored.solve(name, 1e-7)
+def test_stored_solutions_are_those_of_their_generator():
+    table = json.loads(stored.PATH.read_text())["table-1"]
+    found = stored.solve("table-1", 1e-7)
     assert found["times"] == table["times"]
     assert found["depth"] == pytest.approx(table["depth"], abs=1e-5)
     assert found["friction"] == pytest.approx(table["friction"], abs=1e-5)

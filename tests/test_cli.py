@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.results import STEADY_UNITS
+from tests import REFUSALS
 
 
 def run(*arguments, status=0):
@@ -224,99 +225,29 @@ def test_citing_names_version_and_paper():
 # Mistakes
 
 WEDGE = ["--set", "indenter.shape=wedge", "--set", "indenter.inclination=0.1"]
-CIRCLE = ["--set", "indenter.shape=circle"]
-
-
-FAILURES, PRECISION = ("chart", "failures"), ("chart", "work-precision")
-COMPARE = ("compare", "--report", "r.html", "--plot", "p.png")
-RUBBER = {
-    "indenter.shape": "circle", "foundation.kind": "generalized-maxwell",
-    "foundation.arms": '[["30 GN/m^3", "10 ms"]]',
-}  # fmt: skip
-ON_RUBBER = [part for key, value in RUBBER.items() for part in ("--set", f"{key}={value}")]
-SWEEP = ("sweep", "-o", "a.csv", "--over")
-ONE = (*SWEEP, "drive.velocity=1 m/s")
-THREADS = "concurrent.futures:ThreadPool"
-EXECUTORS = (
-    "sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x", "exits:make",
-    "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x", "fails:make",
-    "imports:make", "misspelt:make", "empty:make",
-)  # fmt: skip
 MODULES = {
     "exits": "raise SystemExit(0)", "fails": "1/0", "imports": "import no_such",
     "misspelt": "syntax error", "empty": "",
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ("steady no-such-file.toml", ["no-such-file.toml", "does not exist"]),
-        ("steady .", ["directory"]),
-        ("steady --method exat", ['--method "exat"', 'did you mean "exact"']),
-        (["steady", "--method", "asymptote", *CIRCLE], ['use --method "quadrature"']),
-        ("steady --set drive.velocity=fast", ["drive.velocity", '"fast"', "quantity in m/s"]),
-        ("steady --set drive.velocity=0.1", ["drive.velocity", "no unit", "100 mm/s"]),
-        ("steady --set drive.velocity", ["KEY=VALUE"]),
-        ("steady --set 'driv.velocity=1 m/s'", ["[driv]", 'did you mean "drive"']),
-        ("steady --set 'support.depth=1 mm'", ["support.depth", "dead-weight"]),
-        ("steady --set support.kind=floating", ["support.kind", '"floating"', "fixed"]),
-        (["steady", *CIRCLE, "--set", "indenter.radius=0.01 mm"], ["reach"]),
-        ("asymptotes --tolerance 0", ["tolerance"]),
-        ("asymptotes --tolerance little", ["--tolerance", "little"]),
-        ("scene --support floating", ["--support", "floating"]),
-        ("scene --support fixed --json", ["--support"]),
-        ("stady", ["stady"]),
-        ("transient --at '1 furlong'", ["--at", "1 furlong", "quantity in s"]),
-        ("transient --at 5", ["--at", "no unit"]),
-        ("transient --at '1 s'", ["after the end", "run.duration"]),
-        ("transient --rtol 0", ["--rtol"]),
-        ("transient -o a.xls", ["a.xls", ".csv"]),
-        ("transient --plot a.doc", ["a.doc", ".png"]),
-        ("transient -o no/such/place.csv", ["no/such"]),
-        (["transient", *WEDGE], ["parabola only"]),
-        ("solve --quantity half_length --at '1 ms'", ["steady sliding; leave out the times"]),
-        ("transient --rtol 5", ["--rtol"]),
-        ("elements --per-length '-1 /mm'", ["--per-length"]),
-        ("solve --quantity depht", ["--quantity"]),
-        ([*FAILURES, "--only", "sawtoth"], ['did you mean "sawtooth"?']),
-        ([*FAILURES, "-o", "atlas.pdf"], ["expected a name that ends in .html"]),
-        ([*PRECISION, "--standard", "hopp"], ['did you mean "hop"?']),
-        ([*PRECISION, "--standard", "hop", "--set", "drive.velocity=1 m/s"], ["does not go with SCENE"]),
-        ([*PRECISION, "-o", "chart.txt"], ["expected a name that ends in"]),
-        ([*PRECISION, *CIRCLE], ["parabola only"]),
-        ("chart stability -o map.txt", ["expected a name that ends in"]),
-        ([*COMPARE, "--plot", "nowhere/p.png"], ['there is no directory "']),
-        ([*COMPARE, "--plot", "p.xyz"], ["ends in"]),
-        ([*COMPARE, "--report", "r.txt"], ["ends in .html"]),
-        ([*COMPARE, "--report", "folder.html"], ["is a directory"]),
-        (["explore", *ON_RUBBER], ['the explorer holds for foundation.kind = "kelvin-voigt" only']),
-        ("sweep -o a.csv", ["--over"]),
-        (["sweep", *ONE[3:]], ["-o"]),
-        ([*SWEEP, "a.b=1"], ["--over"]),
-        ([*SWEEP, "drive.velocity"], ["KEY=VALUES", "drive.velocity=1 mm/s"]),
-        ([*SWEEP, "drive.velocty=1 m/s"], ['did you mean "drive.velocity"']),
-        ([*ONE, "--over", "drive.velocity=2 m/s"], ["swept already"]),
-        ([*ONE, "-o", "a.xls"], ["a.xls", ".csv", ".nc"]),
-        ([*ONE, "-o", "no/such/a.csv"], ["no/such"]),
-        ([*ONE, "--quantity", "friction"], ['"friction"', "did you mean"]),
-        ([*ONE, "--jobs", "0"], ["jobs"]),
-        ([*ONE, "--plot", "a.doc"], ["a.doc", ".png"]),
-        ([*ONE, "--executor", "dask"], ["--executor", "module:factory"]),
-        ([*ONE, "--executor", "no_such:thing"], ["no_such", "imported"]),
-        ([*ONE, "--executor", THREADS], ['did you mean "ThreadPoolExecutor"']),
-        ([*ONE, "--executor", "builtins:list"], ["Executor"]),
-        *(([*ONE, "--executor", text], [f'--executor "{text}"']) for text in EXECUTORS),
-    ],
-)  # fmt: skip
-def test_bad_input_costs_one_message_and_status_2(arguments, words, place, monkeypatch):
+ARMS = """--set 'foundation.arms=[["30 GN/m^3", "10 ms"]]'"""
+ONE = "sweep -o a.csv --over 'drive.velocity=1 m/s'"
+BAD = [(line.replace("$ARMS", ARMS), words) for line, *words in REFUSALS["shell"]["commands"]]
+BAD += [
+    (f"$ONE --executor {name}", [f'--executor "{name}"']) for name in REFUSALS["shell"]["executors"]
+]
+
+
+@pytest.mark.parametrize(("line", "words"), BAD)
+def test_bad_input_costs_one_message_and_status_2(line, words, place, monkeypatch):
     """Nothing is written, and what Python calls an argument is an option there."""
     (place.parent / "modules").mkdir()
     for name, code in MODULES.items():
         (place.parent / "modules" / f"{name}.py").write_text(code)
     monkeypatch.syspath_prepend(str(place.parent / "modules"))
     (place / "folder.html").mkdir()
-    told = refused(shlex.split(arguments) if isinstance(arguments, str) else arguments, words)
+    told = refused(shlex.split(line.replace("$ONE", ONE)), words)
     assert "`" not in told.replace("`kinds`", "") or not words[0].startswith("--")
     assert [path.name for path in place.iterdir()] == ["folder.html"]
     for name in MODULES:

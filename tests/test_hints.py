@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import pytest
 from click.testing import CliRunner
@@ -14,7 +15,9 @@ from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.mistakes import MEANT, closest
 from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.quantities import quantities
+from tests import REFUSALS
 
+V = "drive.velocity"
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1")
 
 
@@ -75,53 +78,11 @@ def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text)
     assert "scene.toml" in found.output or "run." in found.output
 
 
-@pytest.mark.parametrize(
-    ("override", "words"),
-    [
-        ("support.depth=1 mm", ['"1 mm"', 'depth is of kind = "fixed"']),
-        ("support.delta=1 mm", ['depth is of kind = "fixed"']),
-        ("support.weight=3 N/mm", ['did you mean "load"', '"3 N/mm"']),
-        ("foundation.E=5 MPa", ['did you mean "modulus"']),
-        ("foundation.tau=1 s", ['did you mean "retardation_time"', '"1 s"']),
-        ("foundation.height=1 mm", ['did you mean "thickness"']),
-        ("foundation.viscosity=1 Pa s", ['did you mean "retardation_time"']),
-        (["support.kind=fixed", "support.load=3 N/mm"],
-         ['load is of kind = "dead-weight" or "suspended"']),
-        ("indenter.inclination=0.1", ['inclination is of shape = "wedge"']),
-        ("indenter.R=1 mm", ['did you mean "radius"']),
-        ("drive.V=1 m/s", ['did you mean "velocity"']),
-        ("run.end=1 s", ['did you mean "duration"']),
-        ("drive.waveform=sinus", ['drive.waveform = "sinus"', 'did you mean "sine"']),
-        (["drive.waveform=sine", "drive.amplitude=1 mm/s"], ["drive.frequency: missing", "5 Hz"]),
-        (["drive.waveform=sine", "drive.amplitud=1 mm/s"], ["drive.amplitud", '"amplitude"']),
-        (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
-        ("drive.file=none.csv", ["drive.file", "none.csv", "cannot be read"]),
-        (['drive.history=[["0 s", "1 m/s"]]', "drive.file=none.csv"], ["drive.file", "cannot be read"]),
-        ("foundation.kind=maxwell", ['did you mean "generalized-maxwell"']),
-        ("foundation.kind=generalized-maxwell", ["foundation.arms: missing"]),
-        ("foundation.arms=1", ['arms is of kind = "generalized-maxwell"']),
-        (["foundation.kind=fractional-kelvin-voigt", "foundation.order=1.5"], ["of at most 1"]),
-        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], ["no unit"]),
-        (["indenter.shape=sphere", "support.load=3 N/mm"],
-         ["support.load = ", "per unit width", "point contact"]),
-        (["indenter.shape=sphere", "support.mass=1 kg/mm"],
-         ["support.mass = ", "per unit width", "point contact"]),
-        ("tau=3", ['did you mean "foundation.retardation_time"']),
-        ("E=3", ['did you mean "foundation.modulus"']),
-        ("V=3", ['did you mean "drive.velocity"']),
-        ("R=3", ['did you mean "indenter.radius"']),
-        ("mass=3", ['did you mean "support.mass"']),
-        ("load=3", ['did you mean "support.load"']),
-        ("duration=3", ['did you mean "run.duration"']),
-        ("depth=3", ['did you mean "support.depth"']),
-    ],
-)  # fmt: skip
-def test_hints_are_near_in_meaning_and_quote_what_was_given(override, words):
-    overrides = [override] if isinstance(override, str) else override
-    with pytest.raises(kv.SceneError) as error:
-        kv.load_scene(overrides=overrides)
-    for word in words:
-        assert word in str(error.value), error.value
+def test_hints_are_near_in_meaning_and_quote_what_was_given():
+    for given, *words in REFUSALS["keys"]["overrides"]:
+        with pytest.raises(kv.SceneError) as error:
+            kv.load_scene(overrides=[given] if isinstance(given, str) else given)
+        assert all(word in str(error.value) for word in words), error.value
 
 
 LAYER = {"modulus": "5 MPa", "thickness": "0.2 mm", "poisson_ratio": 0.3}
@@ -179,12 +140,44 @@ MISTAKES = [
 ]  # fmt: skip
 
 
+CALLS = [
+    (kv.steady, {"method": "exakt"}, ['"exakt"', 'did you mean "exact"']),
+    (kv.steady, {"over": {V: [0.1, math.nan]}}, ["finite"]),
+    (kv.steady, {"over": {"support.mass": 1e308, "support.gravity": 1e308}}, ["double precision"]),
+    (kv.steady, {"over": {V: 1e300}}, ["double precision"]),
+    (kv.steady, {"over": {V: 1e300}, "method": "quadrature"}, ["double precision"]),
+    (kv.steady, {"over": {"support.mass": 1e-300}}, ["underflow in", "check support.mass = 1e-300 kg/m"]),
+    (kv.transient, {"scene": kv.Scene(foundation=kv.Foundation(1e10, 1e300))},
+     ["check foundation.retardation_time = 1e+300 s"]),
+    *((kv.asymptotes, {"tolerance": each}, ["tolerance"]) for each in (0.0, -1.0, 2.0, math.nan)),
+    (kv.transient, {"at": ["1 mm"]}, ["wrong dimension"]),
+    (kv.transient, {"at": ["-1 ms"]}, ["out of range"]),
+    (kv.transient, {"at": ["300 ms"]}, ["after the end"]),
+    (kv.transient, {"at": []}, ["empty"]),
+    (kv.transient, {"at": [math.nan]}, ["out of range"]),
+    (kv.transient, {"scene": kv.Scene(indenter=kv.Wedge(0.1))}, ["parabola only"]),
+    *((kv.transient, {"rtol": each}, ["rtol"]) for each in (0.0, 1.0, math.nan, 1e-20)),
+    (kv.solve, {"quantity": "frictoin_force"}, ["friction_force"]),
+    (kv.solve, {"quantity": "depth_rate"}, ["a time series; give the times"]),
+    (kv.solve, {"quantity": "load", "at": "1 ms"}, ["steady sliding; leave out"]),
+    (kv.solve, {"quantity": []}, ["is empty"]),
+    (kv.solve, {"quantity": 5}, ["`quantity`"]),
+    (kv.solve, {"rtol": 0.0}, ["`rtol` = 0.0"]),
+    (kv.solve, {"rtol": math.nan}, ["`rtol` = nan"]),
+    (kv.solve, {"at": "1 s"}, ["after the end of the run"]),
+    (kv.solve, {"quantity": "spring_force", "at": "1 ms"}, ['"spring_force": needs drive.stiffness']),
+]  # fmt: skip
+MISTAKES += [(partial(function, **given), words) for function, given, words in CALLS]
+
+
 @pytest.mark.parametrize(("make", "words"), MISTAKES)
 def test_a_mistake_in_python_is_one_message(make, words):
-    with pytest.raises(kv.SceneError) as error:
+    with pytest.raises(ValueError, match=r".") as error:
         make()
-    (told,) = error.value.problems
+    (told,) = getattr(error.value, "problems", [str(error.value)])
     assert all(word in told for word in words), told
+    where = make.keywords if isinstance(make, partial) else {"at"}
+    assert isinstance(error.value, kv.SceneError) or "at" not in where
 
 
 def test_what_is_meant_exists():

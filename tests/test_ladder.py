@@ -129,25 +129,6 @@ def test_a_tolerance_that_nothing_meets_says_how_close_each_model_came(request_,
     assert str(error.value).count("the parabola only") <= 1  # each reason once
 
 
-@pytest.mark.parametrize(
-    ("request_", "message"),
-    [
-        ({"quantity": "frictoin_force"}, "friction_force"),
-        ({"quantity": "depth_rate"}, "a time series; give the times"),
-        ({"quantity": "load", "at": "1 ms"}, "steady sliding; leave out"),
-        ({"quantity": []}, "is empty"),
-        ({"quantity": 5}, "`quantity`"),
-        ({"rtol": 0.0}, "`rtol` = 0.0"),
-        ({"rtol": math.nan}, "`rtol` = nan"),
-        ({"at": "1 s"}, "after the end of the run"),
-        ({"quantity": "spring_force", "at": "1 ms"}, r"\"spring_force\": needs drive.stiffness"),
-    ],
-)
-def test_bad_requests_name_what_is_expected(request_, message):
-    with pytest.raises(ValueError, match=message):
-        kv.solve(**request_)
-
-
 def test_a_drive_that_is_a_function_has_no_steady_sliding():
     scene = kv.Scene(drive=kv.Drive(function=lambda t: 0.1 * math.sin(60 * t)))
     with pytest.raises(kv.SceneError, match=r"drive\.function"):

@@ -198,15 +198,6 @@ def test_f3_is_the_maximum_of_the_quadratures():
     assert [mp.nstr(value, 6) for value in (drive, height(mp.sqrt(3)))] == ["1.60027", "0.507265"]
 
 
-def test_f4_leaves_out_what_it_says():
-    load, friction = parabola(number := mp.mpf("1e-6"))
-    left_out = friction / load - (number - 3 * number**2 / 4 + 9 * number**4 / 16)
-    assert near(left_out / number**5, -mp.mpf(3) / 8, 5)
-    load, friction = parabola(number := mp.mpf("1e6"))
-    left_out = friction / load - (mp.mpf(2) / 3 - 7 / (36 * number) - 1 / (27 * number**2))
-    assert near(left_out * number**3, mp.mpf(41) / (27 * 48), 5)
-
-
 def test_f5_is_where_the_asymptotes_meet():
     alpha = 2 * mp.sqrt(2) / 3
     assert near(exact("F5", sym.Lambda_fixed, {}), alpha)
@@ -215,24 +206,6 @@ def test_f5_is_where_the_asymptotes_meet():
     beyond = exact("F3-values", sym.Lambda_peak, {}) / critical
     assert near(beyond**3, 27 * (1 + mp.sqrt(3)) / 16)
     assert mp.nstr(beyond, 4) == "1.664"
-
-
-def test_the_energy_identity_holds_for_a_shape_with_a_kink():
-    bend, l_r = mp.mpf("0.1"), mp.mpf("0.2")
-
-    def shape(x):
-        return x**2 + abs(x - bend) / 2
-
-    def slope(x):
-        return 2 * x + (mp.mpf("0.5") if x > bend else -mp.mpf("0.5"))
-
-    leading = mp.findroot(lambda x: shape(x) - 1, -0.7)
-    trailing = mp.findroot(lambda x: 1 - shape(x) - l_r * slope(x), 0.6)
-    pieces = [leading, bend, trailing]
-    assert leading < bend < trailing
-    friction = mp.quad(lambda x: -slope(x) * (1 - shape(x) - l_r * slope(x)), pieces)
-    inside = l_r * mp.quad(lambda x: slope(x) ** 2, pieces)
-    assert near(friction, (1 - shape(trailing)) ** 2 / 2 + inside, 30)
 
 
 def asymptotes(number):

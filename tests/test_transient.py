@@ -85,24 +85,6 @@ def test_results_become_json(standard):
     assert record["model"] == "continuum"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"at": ["1 mm"]}, "wrong dimension"),
-        ({"at": ["-1 ms"]}, "out of range"),
-        ({"at": ["300 ms"]}, "after the end"),
-        ({"at": []}, "empty"),
-        ({"at": [math.nan]}, "out of range"),
-        ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola only"),
-        *(({"rtol": rtol}, "rtol") for rtol in (0.0, 1.0, math.nan, 1e-20)),
-    ],
-)
-def test_what_it_does_not_cover_is_refused(arguments, words):
-    with pytest.raises(ValueError, match=words) as error:
-        kv.transient(**arguments)
-    assert isinstance(error.value, kv.SceneError) or "at" not in arguments
-
-
 def test_a_run_that_is_too_long_says_how_long_it_is():
     stops = [[0.01 * (k // 2), 0.1 * (k // 2 % 2)] for k in range(1, 4000)]
     scene = kv.Scene(drive=kv.Drive(history=[[0.0, 0.0], *stops]), run=kv.Run(20.0))

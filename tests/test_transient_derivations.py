@@ -1,7 +1,5 @@
 """The derivations of the transient against quadrature, roots, elements and numerical derivatives."""
 
-from itertools import pairwise
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -73,67 +71,6 @@ def test_both_roots_of_equation_33_and_the_scaled_forces():
     assert close(scaled, value(transient_motion.FRICTION_FORCE, point))
 
 
-# Memory
-
-
-def element(g, steps, duration):
-    """Integrate u' + u = p, p >= 0 where u = g and 0 where u > g, by the implicit Euler method."""
-    step = duration / steps
-    u = max(g(0.0), 0.0)
-    for i in range(1, steps + 1):
-        u = max(g(i * step), u / (1 + step))
-    return u
-
-
-@pytest.mark.parametrize("phase", [0.3, 1.9, 4.0])
-def test_memory_is_a_running_maximum(phase):
-    def g(time):
-        return 0.4 + np.sin(3 * time + phase) - 0.3 * time
-
-    duration = 2.7
-    instants = np.linspace(0, duration, 400_001)
-    exact = np.exp(-duration) * max(0.0, np.max(np.exp(instants) * g(instants)))
-    errors = [element(g, steps, duration) - exact for steps in (4000, 8000)]
-    extrapolated = exact + 2 * errors[1] - errors[0]
-    assert extrapolated == pytest.approx(exact, rel=1e-5)
-
-
-def test_update_fails_only_where_the_pressure_changes_from_plus_to_minus():
-    """Steps with a peak inside are too low by at most h**2/8 max |p + p'|; the others are exact."""
-    seen = {True: 0, False: 0}
-    for start in np.linspace(0, 6, 61):
-        h = 0.37
-        inside = np.linspace(start, start + h, 20_001)
-        g, slope, bend = np.sin(inside), np.cos(inside), -np.sin(inside)
-        pressure = g + slope
-        exact = np.max(np.exp(inside - start - h) * g)
-        missing = exact - max(g[-1], np.exp(-h) * g[0])
-        peak = pressure[0] > 0 > pressure[-1]
-        seen[peak] += 1
-        bound = h**2 / 8 * np.max(np.abs(pressure + slope + bend)) if peak else 1e-15
-        assert missing <= bound
-        assert (missing > 0) == peak
-    assert min(seen.values()) > 3
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_contact_is_one_interval_and_the_gap_is_concave(seed):
-    draw = np.random.default_rng(seed)
-    instants = np.linspace(0, 3, 601)
-    waves = draw.normal(size=(2, 4)) @ np.sin(np.outer(draw.uniform(1, 9, 4), instants))
-    d, travel = 1 + 0.3 * waves[0] - 0.3 * waves[0, 0], waves[1]
-    X = np.linspace(-6, 6, 4001)
-    history = np.exp(instants)[:, None] * (d[:, None] - (X + travel[:, None]) ** 2)
-    history[0] = np.maximum(history[0], 0)
-    for now in (40, 200, 401, 600):
-        gap = history[now] - history[:now].max(axis=0)
-        assert np.all(np.diff(gap, 2) <= 1e-9)
-        touching = np.flatnonzero(gap >= 0)
-        assert touching.size == 0 or np.ptp(touching) == touching.size - 1
-    gap = history[600] - np.maximum.reduce(history[:300])
-    assert np.all(np.diff(gap, 2) < -(np.exp(3) - np.exp(instants[299])) * (X[1] - X[0]) ** 2)
-
-
 # Edges
 
 
@@ -167,19 +104,6 @@ class Slowing:
             return (here - before) / (now - then) ** 2
 
         return mp.findroot(meeting, turn - (now - turn) / 2)
-
-
-def test_an_edge_turns_onto_ground_that_it_left_half_as_long_ago():
-    slowing = Slowing()
-    turn = slowing.turn()
-    curvature = mp.diff(slowing.peel, turn, 2)
-    deviations = []
-    for h in (mp.mpf("1e-3"), mp.mpf("1e-4")):
-        then = slowing.left_at(turn + h)
-        deviations.append((then - turn) / h + mp.mpf(1) / 2)
-        moved = slowing.peel(then) - slowing.peel(turn)
-        assert float(moved / (curvature * h**2 / 2)) == pytest.approx(0.25, rel=5 * float(h))
-    assert float(deviations[0] / deviations[1]) == pytest.approx(10, rel=0.01)
 
 
 def test_pressure_at_an_edge_that_touches_is_its_velocity():
@@ -387,54 +311,3 @@ def test_a_slightly_wrong_balance_is_refused(monkeypatch, by_label, name, prove)
     monkeypatch.setattr(transient_balance, name, wrong)
     with pytest.raises(StepError):
         getattr(transient_balance, prove)()
-
-
-DRIVE, NOW = mp.mpf("0.6"), mp.mpf("0.8")
-with mp.workdps(DIGITS + 10):
-    EDGE = mp.sqrt(1 + DRIVE**2) - DRIVE
-
-
-def over(time, density, parts=slice(None)):
-    """Integrate density(u, u') over the surface after a start of a fixed indenter, d = 1, from rest.
-
-    Its parts are the contact, the wake, and the ground that was left at once.
-    """
-
-    def wake(xi):
-        return (1 - EDGE**2) * mp.exp(-(xi - EDGE) / DRIVE)
-
-    def at_once(xi):
-        return (1 - (xi - DRIVE * time) ** 2) * mp.exp(-time)
-
-    ends = -1, EDGE, EDGE + DRIVE * time, 1 + DRIVE * time
-    surface = (
-        (lambda xi: 1 - xi**2, lambda xi: -2 * DRIVE * xi),
-        (wake, lambda xi: -wake(xi)),
-        (at_once, lambda xi: -at_once(xi)),
-    )
-    intervals = [*zip(pairwise(ends), surface, strict=True)]
-    return sum(
-        mp.quad(lambda xi, u=u, rate=rate: density(u(xi), rate(xi)), interval)
-        for interval, (u, rate) in intervals[parts]
-    )
-
-
-def change_of(density, parts=slice(None)):
-    return mp.diff(lambda time: over(time, density, parts), NOW)
-
-
-def test_momentum_and_energy_of_all_elements():
-    total, change = over(NOW, lambda u, _: u), change_of(lambda u, _: u)
-    motion = mp.mpf(1), mp.mpf(0), DRIVE
-    assert abs(normal(*motion) - 3 * (total + change) / 4) < 1e-20
-    stored = 3 * change_of(lambda u, _: u**2) / 8
-    lost = 3 * over(NOW, lambda _, rate: rate**2) / 4
-    assert abs(DRIVE * friction(*motion) - stored - lost) < 1e-20
-
-
-def test_what_the_contact_hands_over_is_lost_in_the_free_surface():
-    outside = slice(1, None)
-    stored = 3 * over(NOW, lambda u, _: u**2, outside) / 8
-    change = 3 * change_of(lambda u, _: u**2, outside) / 8
-    handed_over = 3 * (1 - EDGE**2) ** 2 * DRIVE / 8
-    assert abs(change + 2 * stored - handed_over) < 1e-20
