@@ -1,6 +1,7 @@
 """The transient on a Prony series without elements: values, limits, certificates, and what it refuses."""
 
 import os
+import sys
 
 import numpy as np
 import pytest
@@ -26,7 +27,8 @@ SERIES = (
 @pytest.fixture(autouse=True)
 def _interpreted(monkeypatch):
     """Compile only where that is tested, for it takes a minute."""
-    monkeypatch.setattr(trajectory, "WORTHWHILE", 10**9)
+    for limit in ("WORTHWHILE", "LOADABLE"):
+        monkeypatch.setattr(trajectory, limit, 10**9)
 
 
 def sliding(arms, velocity=0.05, duration=0.06, **parts):
@@ -154,6 +156,49 @@ def test_the_free_surface_relaxes_behind_the_contact():
     assert (u[1:] > a - x[1:] ** 2 / 0.02).all()
     assert found.surface([found.leading_edge[-1] - 1e-5], 0.06) == [0.0]
     assert (found.pressure(x[1:], 0.06) == 0.0).all()
+
+
+def test_a_reversal_over_ground_that_the_other_edge_left_is_one_interval():
+    """Free ground on one side reaches under the contact, and beyond the edge of the other side."""
+    arms, V = [(7.858e10, 0.2), (12.069e10, 4.2)], 0.0053484
+    drive = kv.Drive(history=[(0.0, V), (1.08, V), (1.08, -V), (3.6, -V)])
+    scene = sliding(arms, drive, 3.6, support=kv.Fixed(depth=1e-4))
+    at = [1.0, 1.5, 1.7, 2.5, 3.6]
+    found = kv.transient(scene, at=at, rtol=1e-4, certify=False)
+    assert apart(found, kv.elements(scene, per_length=1e5, at=at), scene, SERIES[:5]) < 2e-3
+
+
+def test_many_arms_are_interpreted_at_once():
+    """A hundred arms need little more Python than a few, each of which an array would not make faster."""
+    calls = []
+    for count in (4, 100):
+        arms = [(5e10 / count, 0.1 * 10.0 ** (4.0 * i / count - 2.0)) for i in range(count)]
+        scene, called = sliding(arms, duration=0.02), [0]
+
+        def count_call(frame, event, _, called=called):
+            called[0] += event == "call"
+
+        before = sys.getprofile()
+        sys.setprofile(count_call)
+        try:
+            steps = kv.transient(scene, at=[0.02], rtol=1e-4, certify=False).steps
+        finally:
+            sys.setprofile(before)
+        calls.append(called[0] / steps)
+    assert calls[1] < 3.0 * calls[0]
+
+
+def test_compiled_kernels_are_loaded_soon_and_compiled_late(monkeypatch):
+    monkeypatch.undo()
+    monkeypatch.setattr(trajectory.compilation, "available", lambda: True)
+    monkeypatch.setattr(trajectory, "kernel", lambda: None)
+    for steps, on_disk, wanted in (
+        (trajectory.LOADABLE - 1, True, False), (trajectory.LOADABLE, True, True),
+        (trajectory.WORTHWHILE - 1, False, False), (trajectory.WORTHWHILE, False, True),
+    ):  # fmt: skip
+        monkeypatch.setattr(trajectory.Tally, "steps", steps)
+        monkeypatch.setattr(trajectory.compilation, "on_disk", lambda _, found=on_disk: found)
+        assert trajectory.worthwhile() is wanted
 
 
 def test_a_take_off_is_refused():

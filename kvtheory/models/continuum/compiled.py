@@ -81,7 +81,8 @@ def kernel(perform: Any = bulk.perform, modules: tuple[ModuleType, ...] = MODULE
     """Return the compiled entry of the kernels, which releases the interpreter lock; it needs numba."""
     for module in modules:
         inlined = [*vars(module)] if module in INLINED else SHORT
-        compilation.register(module, inlined, **OPTIONS, no_cfunc_wrapper=True)
+        own = getattr(module, "COMPILED", {})
+        compilation.register(module, inlined, own, **OPTIONS, no_cfunc_wrapper=True)
 
     entry = FunctionType(perform.__code__, perform.__globals__, perform.__name__)
     entry.__qualname__ = f"perform_{sources(modules)}"

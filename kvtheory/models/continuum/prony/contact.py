@@ -18,24 +18,27 @@ An edge peels at p = 0, or touches the free surface, d - xi^2 = u: zero on groun
 where an edge left it at sigma, the solution of u + sum s_i = 0, a sum of N modes. It peels as long as p of
 the element there would fall, and touches as long as it rises.
 
-A step stores polynomials over its length, a row for each quantity. The memory is evaluated from them, also
-within the step that is being solved. A segment is ground over which one edge passed one way without a kink:
-it is told from the rows of this edge, and the instants at its ends. The contact is a sequence of segments
-from left to right; the free ground on each side is a list that begins at the edge. An edge that passes the
-end of a segment, or turns, ends a step.
+A step stores polynomials over its length, a row for each quantity, and one of each arm in `memory`. A loop
+`for i in over(count)` runs over arms: compiled, i is one after the other; interpreted, all at once, as a
+slice. The memory is evaluated from them, also within the step that is being solved. A segment is ground
+over which one edge passed one way without a kink: it is told from the rows of this edge, and the instants
+at its ends. The contact is a sequence of segments from left to right; the free ground on each side is a
+list that begins at the edge. An edge that passes the end of a segment, or turns, ends a step.
 """
 
 import math
 from typing import Any
 
+import numpy as np
+
 from kvtheory.scene.base_motion import evaluate
 
-RATE, ALONG, EDGES, PER_ARM = 0, 1, 2, 4
-"""Rows of a step: d', x', both edges xi_e; then those of each arm."""
+RATE, ALONG, EDGES, ROWS = 0, 1, 2, 4
+"""Rows of a step: d', x', both edges xi_e; their number."""
 DEPTHS, SLIDES, STRESSES, FORCES, MOMENTS, OWN = 0, 1, 2, 4, 5, 6
 """Rows of an arm: A_i, B_i, s_e at both edges, F_i, M_i; their number."""
-STIFFNESS, TIME, FALL, SHARE, MODES = range(5)
-"""Columns of an arm: k_i, T_i, rate and share of a free mode; then the N by N matrices to modes and back."""
+STIFFNESS, TIME, FALL, SHARE = range(4)
+"""Columns of an arm: k_i, T_i, rate and share of a free mode."""
 
 PEELING, TOUCHING = 0, 1
 """States of an edge."""
@@ -49,7 +52,24 @@ ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 FARTHEST = 0.1
 """How far an edge is continued beyond the end of a segment."""
 
+SEVERAL = 4
+"""Arms from which on they are evaluated as an array where the kernels are interpreted."""
+
 Run = Any
+
+
+def over(count: int) -> Any:
+    """Return the arms: one by one if compiled or few, else all as one slice."""
+    return (slice(0, count),) if count >= SEVERAL else range(count)
+
+
+def total(values: Any) -> Any:
+    """Return the sum over the arms of a turn of such a loop."""
+    return values.sum()
+
+
+COMPILED = {"over": lambda count: range(count), "total": lambda value: value}  # noqa: PLW0108 - numba needs it
+"""What stands for these functions where they are compiled."""
 
 
 def value(row: Any, theta: float) -> float:
@@ -58,6 +78,14 @@ def value(row: Any, theta: float) -> float:
     for k in range(len(row) - 1, -1, -1):
         total = total * theta + row[k]
     return total
+
+
+def past(run: Run, index: int, i: Any, row: int, theta: float) -> Any:
+    """Return a polynomial of an arm in the step `index` at `theta`."""
+    powers, found = run.memory[index], 0.0 * run.arms[i, STIFFNESS]
+    for k in range(powers.shape[2] - 1, -1, -1):
+        found = found * theta + powers[i, row, k]
+    return found
 
 
 def integral(row: Any, theta: float) -> float:
@@ -102,20 +130,15 @@ def pressed(
         _, _, Y_e, _, theta = motion(run, index, sigma)
         xi_e = value(run.rows[index, EDGES + edge], theta)
         xi = xi_e - Y_e + Y
-    p = d - xi * xi
-    for i in range(len(run.arms)):
-        k, row = run.arms[i, STIFFNESS], run.here[i]
-        stress = k * (row[DEPTHS] - xi * row[SLIDES])
+    p, here = d - xi * xi, run.here
+    for i in over(len(run.arms)):
+        k = run.arms[i, STIFFNESS]
+        here[i, STRESSES] = k * (here[i, DEPTHS] - xi * here[i, SLIDES])
         if index != NEVER:
-            first = PER_ARM + OWN * i
-            A, B = (
-                value(run.rows[index, first], theta),
-                value(run.rows[index, first + SLIDES], theta),
-            )
-            left = value(run.rows[index, first + STRESSES + edge], theta) - k * (A - xi_e * B)
-            stress += left * math.exp(min((sigma - s) / run.arms[i, TIME], 1.0))
-        row[STRESSES] = stress
-        p += stress
+            then = past(run, index, i, DEPTHS, theta) - xi_e * past(run, index, i, SLIDES, theta)
+            left = past(run, index, i, STRESSES + edge, theta) - k * then
+            here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
+        p += total(here[i, STRESSES])
     return p, xi
 
 
@@ -125,21 +148,20 @@ def free(
     """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi; write its s_i."""
     _, _, Y_e, _, theta = motion(run, index, sigma)
     xi_e = value(run.rows[index, EDGES + edge], theta)
-    xi, count, u_e, u = xi_e - Y_e + Y, len(run.arms), 0.0, 0.0
-    for i in range(count):
-        run.here[i, FORCES] = value(run.rows[index, PER_ARM + OWN * i + STRESSES + edge], theta)
-        u_e -= run.here[i, FORCES]
-    for m in range(count):
+    xi, arms, here, u_e, u = xi_e - Y_e + Y, run.arms, run.here, 0.0, 0.0
+    for i in over(len(arms)):
+        here[i, FORCES] = past(run, index, i, STRESSES + edge, theta)
+        u_e -= total(here[i, FORCES])
+    for m in range(len(arms)):
         mode = 0.0
-        for i in range(count):
-            mode += run.arms[m, MODES + i] * (u_e - run.here[i, FORCES] / run.arms[i, STIFFNESS])
-        run.here[m, MOMENTS] = mode * math.exp(min((sigma - s) * run.arms[m, FALL], 1.0))
-        u += run.arms[m, SHARE] * run.here[m, MOMENTS]
-    for i in range(count):
-        damper = 0.0
-        for m in range(count):
-            damper += run.arms[i, MODES + count + m] * run.here[m, MOMENTS]
-        run.here[i, STRESSES] = run.arms[i, STIFFNESS] * (u - damper)
+        for i in over(len(arms)):
+            mode += total(run.to_modes[m, i] * (u_e - here[i, FORCES] / arms[i, STIFFNESS]))
+        here[m, MOMENTS] = mode * math.exp(min((sigma - s) * arms[m, FALL], 1.0))
+        u += arms[m, SHARE] * here[m, MOMENTS]
+    for i in over(len(arms)):
+        here[i, STRESSES] = u * arms[i, STIFFNESS]
+        for m in range(len(arms)):
+            here[i, STRESSES] -= arms[i, STIFFNESS] * run.from_modes[i, m] * here[m, MOMENTS]
     return u - d + xi * xi, xi
 
 
@@ -153,7 +175,7 @@ def edge_at(
     """
     side = run.now.sides[k]
     if side.segment == NEVER:
-        for i in range(len(run.arms)):
+        for i in over(len(run.arms)):
             run.here[i, STRESSES] = 0.0
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
     segment = run.segments[side.segment]
@@ -171,8 +193,8 @@ def edge_at(
     slope, beyond = 2.0 * xi, SIDES[k]
     if side.state == PEELING:
         beyond = -SIDES[k]
-        for i in range(len(run.arms)):
-            slope += run.arms[i, STIFFNESS] * run.here[i, SLIDES]
+        for i in over(len(run.arms)):
+            slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
     return xi + beyond * min(abs(f / slope), FARTHEST), at_far, far
 
 

@@ -10,14 +10,15 @@ from kvtheory.models.continuum.prony.contact import (
     FORCES,
     MOMENTS,
     NEVER,
-    OWN,
     PEELING,
-    PER_ARM,
     SLIDES,
     free,
     integral,
     motion,
+    over,
+    past,
     pressed,
+    total,
     value,
 )
 from kvtheory.models.continuum.prony.records import Run
@@ -46,19 +47,12 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         step, rows = run.steps[index], run.rows[index]
         d, v, Y, number, theta = motion(run, index, s)
         first = second = 0.0
-        for k in range(len(run.arms)):
-            at = PER_ARM + OWN * k
-            first += value(rows[at + FORCES], theta)
-            second += value(rows[at + MOMENTS], theta)
+        for k in over(len(run.arms)):
+            first += total(past(run, index, k, FORCES, theta))
+            second += total(past(run, index, k, MOMENTS, theta))
         l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
-        row[DEPTH], row[RATE], row[NUMBER], row[LEFT], row[RIGHT], row[TRAVEL] = (
-            d,
-            v,
-            number,
-            l,
-            r,
-            Y,
-        )
+        row[DEPTH], row[RATE], row[NUMBER], row[TRAVEL] = d, v, number, Y
+        row[LEFT], row[RIGHT] = l, r
         row[DRIVE] = evaluate(run.pieces[step.piece], s)[1]
         row[ALONG_X] = step.along + step.span * integral(rows[ALONG], theta)
         row[ALONG_RATE] = value(rows[ALONG], theta)
@@ -72,9 +66,9 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
 
 def present(run: Run, index: int, theta: float) -> None:
     """Write the accumulators of the arms at one time into `here`."""
-    for i in range(len(run.arms)):
+    for i in over(len(run.arms)):
         for row in (DEPTHS, SLIDES):
-            run.here[i, row] = value(run.rows[index, PER_ARM + OWN * i + row], theta)
+            run.here[i, row] = past(run, index, i, row, theta)
 
 
 def pressure_of(run: Run, s: float, state: Any, number: int, place: float) -> float:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.prony.contact import NEVER, OWN, PER_ARM, SIDES, TOUCHING
+from kvtheory.models.continuum.prony.contact import NEVER, OWN, ROWS, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.scene.base_motion import BaseMotion
@@ -50,13 +50,14 @@ K_i/K; controls of the step size; number of stages; whether the indenter is fixe
 
 
 class Run(NamedTuple):
-    """A transient in progress; its outcome are `steps`, the polynomials in `rows`, `segments` and `chain`.
+    """A transient in progress; its outcome are `steps`, their polynomials, `segments` and `chain`.
 
-    Outside the kernels `given` and `now` hold one record, inside they are the record itself. `method` has A,
-    its inverse, the powers of theta from the stages, and nodes and row sums of the inverse; `arms` are as in
-    `contact`, `state` has their rows at present. The others are of the step: `stages` are as `rows`, but
-    values at the stages, and what else belongs to a stage; `squares` a filter for each arm, and two for
-    Broyden's method; `vectors` its vectors; `here` is as `state`, of one element.
+    Outside the kernels `given` and `now` hold one record, inside they are the record itself. `rows` are the
+    polynomials of a step, `memory` those of each arm. `method` has A, its inverse, the powers of theta from
+    the stages, and nodes and row sums of the inverse; `arms` are as in `contact`, `state` has their rows at
+    present. The others are of the step: `stages` and `arm_stages` are as `rows` and `memory`, but values at
+    the stages, and what else belongs to a stage; `filters` and `sources` those of the arms; `squares` and
+    `vectors` those of Broyden's method; `here` is as `state`, of one element.
     """
 
     given: Any
@@ -64,18 +65,24 @@ class Run(NamedTuple):
     pieces: Any
     steps: Any
     rows: Any
+    memory: Any
     segments: Any
     chain: Any
     method: Any
     arms: Any
+    to_modes: Any
+    from_modes: Any
     state: Any
     stages: Any
+    arm_stages: Any
+    filters: Any
+    sources: Any
     squares: Any
     vectors: Any
     here: Any
 
 
-PLACES, VECTORS = 12, 7
+PLACES, VECTORS = 12, 6
 """Number of other values of a stage, and of vectors."""
 
 
@@ -86,11 +93,7 @@ def begin(
     """Return a new run at rest; `arms` are pairs k_i, T_i, and `numbers` eps and kappa."""
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
-    unknowns, own, wide = (
-        n * max(2 - fixed - (spring is None), 1),
-        spring or Spring(),
-        PER_ARM + OWN * count,
-    )
+    unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
         float(sum(k for k, _ in arms)), control.first_step, control.longest, control.grow, n, fixed,
@@ -106,14 +109,20 @@ def begin(
         now=r_._blanks(1, NOW),
         pieces=drive.rows,
         steps=r_._blanks(ROOM, STEP),
-        rows=np.zeros((ROOM, wide, n + 1)),
+        rows=np.zeros((ROOM, ROWS, n + 1)),
+        memory=np.zeros((ROOM, count, OWN, n + 1)),
         segments=r_._blanks(2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64),
         method=method,
-        arms=np.hstack([np.stack(columns, axis=1), element.to_modes, element.from_modes]),
+        arms=np.stack(columns, axis=1),
+        to_modes=np.ascontiguousarray(element.to_modes),
+        from_modes=np.ascontiguousarray(element.from_modes),
         state=np.zeros((count, OWN)),
-        stages=np.zeros((wide + PLACES, n)),
-        squares=np.zeros((count + 2, unknowns, unknowns)),
+        stages=np.zeros((ROWS + PLACES, n)),
+        arm_stages=np.zeros((count, OWN, n)),
+        filters=np.zeros((count, n, n)),
+        sources=np.zeros((count, n)),
+        squares=np.zeros((2, unknowns, unknowns)),
         vectors=np.zeros((VECTORS, unknowns)),
         here=np.zeros((count, OWN)),
     )
@@ -157,7 +166,7 @@ def with_more_room(run: Run) -> Run:
     more = {"steps": STEP, "segments": SEGMENT}
     wider: dict[str, Any] = {
         name: np.concatenate([getattr(run, name), np.zeros_like(getattr(run, name))])
-        for name in ("rows", "chain")
+        for name in ("rows", "memory", "chain")
     }
     for name, kind in more.items():
         records = getattr(run, name)

@@ -15,13 +15,15 @@ from kvtheory.models.continuum.prony.contact import (
     EDGES,
     FORCES,
     MOMENTS,
-    OWN,
     PEELING,
-    PER_ARM,
     RATE,
+    ROWS,
     SLIDES,
     STRESSES,
     edge_at,
+    over,
+    total,
+    value,
 )
 from kvtheory.models.continuum.prony.contact import STIFFNESS as STIFF
 from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
@@ -30,8 +32,8 @@ from kvtheory.scene.base_motion import evaluate
 MOMENT, WAY, SPEED, DEPTH, OFFSET, SIGMA, INDEX, FLUX = 0, 1, 2, 3, 4, 5, 7, 9
 """What else belongs to a stage: s; Y and lambda of the base under the indenter; d, x; of both edges the
 instant and the step of the element there, and the velocity through the material."""
-CHANGE, MOVE, RESIDUAL, BEFORE, IMAGE, BACK, SOURCE = range(7)
-"""Vectors of Broyden's method, and the source of a filter."""
+CHANGE, MOVE, RESIDUAL, BEFORE, IMAGE, BACK = range(6)
+"""Vectors of Broyden's method."""
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
 may be the last if it does not fall any more."""
@@ -57,7 +59,7 @@ def forces(l: float, r: float, d: float, first: float, second: float) -> tuple[f
 
 def at(run: Run, what: int, j: int) -> float:
     """Return what else belongs to a stage."""
-    return float(run.stages[PER_ARM + OWN * len(run.arms) + what, j])
+    return float(run.stages[ROWS + what, j])
 
 
 def prepare(run: Run, span: float) -> None:
@@ -69,7 +71,7 @@ def prepare(run: Run, span: float) -> None:
         side, kept = now.sides[k], step.sides[k]
         step.kinked[k] = now.kinked[k]
         kept.state, kept.segment, kept.own, kept.xi = side.state, side.segment, side.own, side.xi
-    other = run.stages[PER_ARM + OWN * len(run.arms) :]
+    other = run.stages[ROWS:]
     for j in range(n):
         after = run.method[OTHER, 0, j] * span
         other[MOMENT, j] = now.s + after
@@ -77,13 +79,28 @@ def prepare(run: Run, span: float) -> None:
             side = now.sides[k]
             other[INDEX + k, j], other[SIGMA + k, j] = side.index, side.sigma + side.pace * after
             run.stages[EDGES + k, j] = side.xi
-    square = run.squares[len(run.arms)]
-    for i in range(len(run.arms)):
+    for i in over(len(run.arms)):
+        filter_of(run, i, span)
+
+
+def filter_of(run: Run, i: Any, span: float) -> None:
+    """Write the inverse of A^-1 + span/T_i, by Gauss-Jordan elimination; it needs no pivoting."""
+    n, found = run.given.stages, run.filters
+    for j in range(n):
+        for k in range(n):
+            found[i, j, k] = run.method[INVERSE, j, k]
+        found[i, j, j] += span / run.arms[i, RELAXATION]
+    for k in range(n):
+        pivot = 1.0 / found[i, k, k]
+        found[i, k, k] = 1.0
         for j in range(n):
-            for k in range(n):
-                square[j, k] = run.method[INVERSE, j, k]
-            square[j, j] += span / run.arms[i, RELAXATION]
-        invert(square, n, run.squares[i])
+            found[i, k, j] *= pivot
+        for m in range(n):
+            if m != k:
+                factor = 1.0 * found[i, m, k]
+                found[i, m, k] = 0.0
+                for j in range(n):
+                    found[i, m, j] -= factor * found[i, k, j]
 
 
 def invert(square: Any, n: int, inverse: Any) -> bool:
@@ -114,17 +131,28 @@ def invert(square: Any, n: int, inverse: Any) -> bool:
     return True
 
 
-def relax(run: Run, i: int, row: int) -> None:
-    """Solve y' = q - y/T_i for a row of an arm at the stages, with q in `SOURCE`."""
-    source, n, begin = run.vectors[SOURCE], run.given.stages, run.state[i, row]
-    span, found = run.steps[run.now.steps].span, run.stages[PER_ARM + OWN * i + row]
+def relax(run: Run, i: Any, row: int) -> None:
+    """Solve y' = q - y/T_i for a row of an arm at the stages, with q in `sources`."""
+    source, n, span = run.sources, run.given.stages, run.steps[run.now.steps].span
     for j in range(n):
-        source[j] = span * source[j] + run.method[OTHER, 1, j] * begin
+        source[i, j] = span * source[i, j] + run.method[OTHER, 1, j] * run.state[i, row]
     for j in range(n):
-        total = 0.0
+        run.arm_stages[i, row, j] = 0.0
         for k in range(n):
-            total += run.squares[i, j, k] * source[k]
-        found[j] = total
+            run.arm_stages[i, row, j] += run.filters[i, j, k] * source[i, k]
+
+
+def interpolate_arm(run: Run, i: Any, row: int) -> Any:
+    """Write the polynomial of an arm through the stages; return its last coefficient in Legendre's."""
+    n, found, share = run.given.stages, run.memory[run.now.steps], 1.0
+    found[i, row, 0] = run.state[i, row]
+    for k in range(n):
+        found[i, row, k + 1] = 0.0
+        for j in range(n):
+            change = run.arm_stages[i, row, j] - run.state[i, row]
+            found[i, row, k + 1] += run.method[POWERS, k, j] * change
+        share *= (4.0 * k + 2.0) / (k + 1.0)  # binomial (2 n, n)
+    return abs(found[i, row, n]) / share
 
 
 def interpolate(run: Run, row: int, begin: float) -> float:
@@ -133,10 +161,9 @@ def interpolate(run: Run, row: int, begin: float) -> float:
     found, share = run.rows[run.now.steps, row], 1.0
     found[0] = begin
     for k in range(n):
-        total = 0.0
+        found[k + 1] = 0.0
         for j in range(n):
-            total += run.method[POWERS, k, j] * (values[j] - begin)
-        found[k + 1] = total
+            found[k + 1] += run.method[POWERS, k, j] * (values[j] - begin)
         share *= (4.0 * k + 2.0) / (k + 1.0)  # binomial (2 n, n)
     return abs(found[n]) / share
 
@@ -145,26 +172,25 @@ def solve(run: Run) -> bool:
     """Solve the stages of a step that is prepared; return whether Broyden's method converged."""
     given, now = run.given, run.now
     free, change, move = 0 if given.fixed else given.stages, run.vectors[CHANGE], run.vectors[MOVE]
-    size, inverse = free + (given.stages if given.sprung else 0), run.squares[len(run.arms) + 1]
+    size, inverse = free + (given.stages if given.sprung else 0), run.squares[1]
     guess(run, free)
     if not evaluate_stages(run, free):
         return False
     if size == 0:
         return True
     linearize(run, free, size)
-    if not invert(run.squares[len(run.arms)], size, inverse):
+    if not invert(run.squares[0], size, inverse):
         return False
     balance(run, free)
     allowed, previous = given.rtol * (1.0 + max(abs(now.v), abs(now.w))), math.inf
     for _ in range(ITERATIONS):
         largest = 0.0
         for i in range(size):
-            total = 0.0
+            move[i] = 0.0
             for j in range(size):
-                total -= inverse[i, j] * run.vectors[RESIDUAL, j]
-            move[i] = total
-            change[i] += total
-            largest = max(largest, abs(total))
+                move[i] -= inverse[i, j] * run.vectors[RESIDUAL, j]
+            change[i] += move[i]
+            largest = max(largest, abs(move[i]))
         if not largest < math.inf or not evaluate_stages(run, free):
             return False
         if largest <= SHARE * allowed or 0.5 * previous <= largest <= STALL * allowed:
@@ -176,11 +202,7 @@ def solve(run: Run) -> bool:
 
 def update(run: Run, free: int, size: int) -> None:
     """Evaluate the residuals after a move, and update the inverse Jacobian by Broyden's formula."""
-    inverse, move, residual = (
-        run.squares[len(run.arms) + 1],
-        run.vectors[MOVE],
-        run.vectors[RESIDUAL],
-    )
+    inverse, move, residual = run.squares[1], run.vectors[MOVE], run.vectors[RESIDUAL]
     before, image, back = run.vectors[BEFORE], run.vectors[IMAGE], run.vectors[BACK]
     for i in range(size):
         before[i] = residual[i]
@@ -209,13 +231,8 @@ def guess(run: Run, free: int) -> None:
             for j in range(given.stages):
                 change[first + j] = 0.0
                 if now.smooth:
-                    theta, total = (
-                        (at(run, MOMENT, j) - run.steps[last].start) / run.steps[last].span,
-                        0.0,
-                    )
-                    for k in range(given.stages, -1, -1):
-                        total = total * theta + run.rows[last, row, k]
-                    change[first + j] = total - begin
+                    theta = (at(run, MOMENT, j) - run.steps[last].start) / run.steps[last].span
+                    change[first + j] = value(run.rows[last, row], theta) - begin
 
 
 def evaluate_stages(run: Run, free: int) -> bool:
@@ -239,8 +256,8 @@ def evaluate_stages(run: Run, free: int) -> bool:
 def place(run: Run, free: int) -> bool:
     """Evaluate the motion at the stages, and the accumulators; return whether the depth is positive."""
     now, given, n, change = run.now, run.given, run.given.stages, run.vectors[CHANGE]
-    span, stages, source = run.steps[now.steps].span, run.stages, run.vectors[SOURCE]
-    other = stages[PER_ARM + OWN * len(run.arms) :]
+    span, stages, source = run.steps[now.steps].span, run.stages, run.sources
+    other = stages[ROWS:]
     for j in range(n):
         node = span * run.method[OTHER, 0, j]
         d, x = now.d + node * now.v, now.x + node * now.w
@@ -258,32 +275,26 @@ def place(run: Run, free: int) -> bool:
             return False
     interpolate(run, RATE, now.v)
     interpolate(run, ALONG, now.w)
-    for i in range(len(run.arms)):
-        first = PER_ARM + OWN * i
+    for i in over(len(run.arms)):
         for j in range(n):
-            source[j] = 2.0 * other[SPEED, j]
+            source[i, j] = 2.0 * other[SPEED, j]
         relax(run, i, SLIDES)
         for j in range(n):
-            source[j] = stages[RATE, j] + other[SPEED, j] * stages[first + SLIDES, j]
+            source[i, j] = stages[RATE, j] + other[SPEED, j] * run.arm_stages[i, SLIDES, j]
         relax(run, i, DEPTHS)
-        interpolate(run, first + SLIDES, run.state[i, SLIDES])
-        interpolate(run, first + DEPTHS, run.state[i, DEPTHS])
+        interpolate_arm(run, i, SLIDES)
+        interpolate_arm(run, i, DEPTHS)
     return True
 
 
 def find_edge(run: Run, k: int) -> bool:
     """Find an edge at the stages, its stresses, and its velocity through the material."""
-    n, stages, side, span = (
-        run.given.stages,
-        run.stages,
-        run.now.sides[k],
-        run.steps[run.now.steps].span,
-    )
-    other = stages[PER_ARM + OWN * len(run.arms) :]
+    n, stages, side = run.given.stages, run.stages, run.now.sides[k]
+    span, other, everything = run.steps[run.now.steps].span, stages[ROWS:], over(len(run.arms))
     for j in range(n):
-        for i in range(len(run.arms)):
+        for i in everything:
             for row in range(STRESSES):
-                run.here[i, row] = stages[PER_ARM + OWN * i + row, j]
+                run.here[i, row] = run.arm_stages[i, row, j]
         xi, index, sigma = edge_at(
             run, k, other[MOMENT, j], other[DEPTH, j], other[WAY, j], stages[EDGES + k, j],
             int(other[INDEX + k, j]), other[SIGMA + k, j],
@@ -291,11 +302,11 @@ def find_edge(run: Run, k: int) -> bool:
         if not abs(xi) < math.inf:
             return False
         stages[EDGES + k, j], other[INDEX + k, j], other[SIGMA + k, j] = xi, index, sigma
-        for i in range(len(run.arms)):
-            stages[PER_ARM + OWN * i + STRESSES + k, j] = run.here[i, STRESSES]
+        for i in everything:
+            run.arm_stages[i, STRESSES + k, j] = run.here[i, STRESSES]
     interpolate(run, EDGES + k, side.xi)
-    for i in range(len(run.arms)):
-        interpolate(run, PER_ARM + OWN * i + STRESSES + k, run.state[i, STRESSES + k])
+    for i in everything:
+        interpolate_arm(run, i, STRESSES + k)
     for j in range(n):
         speed = 0.0
         for m in range(n):
@@ -306,29 +317,30 @@ def find_edge(run: Run, k: int) -> bool:
 
 def collect(run: Run) -> None:
     """Evaluate the moments at the stages."""
-    n, stages, source = run.given.stages, run.stages, run.vectors[SOURCE]
-    other = stages[PER_ARM + OWN * len(run.arms) :]
-    for i in range(len(run.arms)):
-        first = PER_ARM + OWN * i
-        for row in (FORCES, MOMENTS):
-            for j in range(n):
-                l, r, v, number = (
-                    stages[EDGES, j],
-                    stages[EDGES + 1, j],
-                    stages[RATE, j],
-                    other[SPEED, j],
-                )
-                I_0, I_1, I_2, _ = moments(l, r)
-                left = stages[first + STRESSES, j] * other[FLUX, j]
-                right = stages[first + STRESSES + 1, j] * other[FLUX + 1, j]
-                if row == FORCES:
-                    total = run.arms[i, STIFF] * (v * I_0 - 2.0 * number * I_1) + right - left
-                else:
-                    total = (
-                        run.arms[i, STIFF] * (v * I_1 - 2.0 * number * I_2) + r * right - l * left
-                    )
-                    total += number * stages[first + FORCES, j]
-                source[j] = total
+    n, stages, arm = run.given.stages, run.stages, run.arm_stages
+    other = stages[ROWS:]
+    for row in (FORCES, MOMENTS):
+        for j in range(n):
+            l, r, v, number = (
+                stages[EDGES, j],
+                stages[EDGES + 1, j],
+                stages[RATE, j],
+                other[SPEED, j],
+            )
+            I_0, I_1, I_2, _ = moments(l, r)
+            first, second, change = (
+                -other[FLUX, j],
+                other[FLUX + 1, j],
+                v * I_0 - 2.0 * number * I_1,
+            )
+            if row == MOMENTS:
+                first, second, change = l * first, r * second, v * I_1 - 2.0 * number * I_2
+            for i in over(len(run.arms)):
+                run.sources[i, j] = run.arms[i, STIFF] * change
+                run.sources[i, j] += first * arm[i, STRESSES, j] + second * arm[i, STRESSES + 1, j]
+                if row == MOMENTS:
+                    run.sources[i, j] += number * arm[i, FORCES, j]
+        for i in over(len(run.arms)):
             relax(run, i, row)
 
 
@@ -338,9 +350,9 @@ def balance(run: Run, free: int) -> None:
     span, residual = run.steps[run.now.steps].span, run.vectors[RESIDUAL]
     for j in range(n):
         first = second = 0.0
-        for i in range(len(run.arms)):
-            first += run.stages[PER_ARM + OWN * i + FORCES, j]
-            second += run.stages[PER_ARM + OWN * i + MOMENTS, j]
+        for i in over(len(run.arms)):
+            first += total(run.arm_stages[i, FORCES, j])
+            second += total(run.arm_stages[i, MOMENTS, j])
         d, x = at(run, DEPTH, j), at(run, OFFSET, j)
         f_z, f_x = forces(run.stages[EDGES, j], run.stages[EDGES + 1, j], d, first, second)
         down = along = 0.0
@@ -358,7 +370,7 @@ def balance(run: Run, free: int) -> None:
 
 def linearize(run: Run, free: int, size: int) -> None:
     """Write the derivatives of the residuals by the changes, for edges that do not move."""
-    given, n, square = run.given, run.given.stages, run.squares[len(run.arms)]
+    given, n, square = run.given, run.given.stages, run.squares[0]
     span = run.steps[run.now.steps].span
     for j in range(size):
         for k in range(size):
@@ -366,11 +378,11 @@ def linearize(run: Run, free: int, size: int) -> None:
     for j in range(n):
         I_0, I_1, _, _ = moments(run.stages[EDGES, j], run.stages[EDGES + 1, j])
         for k in range(n):
-            of_v = of_w = across = 0.0
+            share = 0.0
             J_0, J_1, J_2, _ = moments(run.stages[EDGES, k], run.stages[EDGES + 1, k])
-            for i in range(len(run.arms)):
-                share = span * run.arms[i, STIFF] * run.squares[i, j, k]
-                of_v, across, of_w = of_v + share * J_0, across + share * J_1, of_w + share * J_2
+            for i in over(len(run.arms)):
+                share += span * total(run.arms[i, STIFF] * run.filters[i, j, k])
+            of_v, across, of_w = share * J_0, share * J_1, share * J_2
             step = span * run.method[A, j, k]
             if free:
                 square[j, k] = given.eps * run.method[INVERSE, j, k]
@@ -397,10 +409,9 @@ def size_of(run: Run) -> float:
         largest = max(largest, interpolate(run, EDGES + k, now.sides[k].xi))
         moving = max(moving, abs(now.sides[k].xi))
     remembered = first = second = 0.0
-    for i in range(len(run.arms)):
-        k, row, state = run.arms[i, STIFF], PER_ARM + OWN * i, run.state[i]
-        remembered += k * interpolate(run, row + DEPTHS, state[DEPTHS])
-        remembered += k * moving * interpolate(run, row + SLIDES, state[SLIDES])
-        first += interpolate(run, row + FORCES, state[FORCES])
-        second += interpolate(run, row + MOMENTS, state[MOMENTS])
+    for i in over(len(run.arms)):
+        compressed = interpolate_arm(run, i, DEPTHS) + moving * interpolate_arm(run, i, SLIDES)
+        remembered += total(run.arms[i, STIFF] * compressed)
+        first += total(interpolate_arm(run, i, FORCES))
+        second += total(interpolate_arm(run, i, MOMENTS))
     return max(rate, along, largest, remembered, first, second) / given.rtol

@@ -21,10 +21,11 @@ from kvtheory.scene.base_motion import BaseMotion
 Array = NDArray[np.float64]
 
 STEP_LIMIT = 5_000
-ATTEMPTS = 200
+ATTEMPTS = 100
 """Attempted steps between two reports of progress."""
-WORTHWHILE = 10_000
-"""Interpreted steps, times arms, after which compiling pays: half a minute, once per installation."""
+WORTHWHILE, LOADABLE = 5_000, 300
+"""Interpreted steps after which compiling pays, half a minute once per installation, and after which loading
+kernels that are compiled does, a second."""
 NARROW = 0.1
 """Width of a contact that is closing: it narrows as the root of the time that is left."""
 SUBDIVISIONS = 4
@@ -38,7 +39,7 @@ REFUSED = {
 
 
 class Tally:
-    """Number of steps interpreted in this process, times arms."""
+    """Number of steps interpreted in this process."""
 
     steps = 0
 
@@ -46,6 +47,13 @@ class Tally:
 def kernel() -> Any:
     """Return the compiled entry of the kernels; it needs numba."""
     return compiled.kernel(evaluation.perform, (b_, r_, contact, step, segments, walk, evaluation))
+
+
+def worthwhile() -> bool:
+    """Return whether to use compiled kernels from now on."""
+    if Tally.steps < min(LOADABLE, WORTHWHILE) or not compilation.available():
+        return False
+    return Tally.steps >= WORTHWHILE or compilation.on_disk(kernel())
 
 
 @dataclass(frozen=True)
@@ -119,15 +127,14 @@ def solve(
     run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=bool(fast))
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
     while status != walk.DONE:
-        compile_now = fast is None and Tally.steps >= WORTHWHILE and compilation.available()
-        if compile_now and isinstance(run.steps, list):
+        if fast is None and isinstance(run.steps, list) and worthwhile():
             run = as_arrays(run)
         interpreted = isinstance(run.steps, list)
         perform = evaluation.perform if interpreted else kernel()
         status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
         before, left = left, max_steps - now.steps - now.rejected
-        Tally.steps += (before - left) * len(arms) if interpreted else 0
+        Tally.steps += before - left if interpreted else 0
         if status in REFUSED:
             edges = [r_.value(r_.value(run.now[0], "sides")[k], "xi") for k in range(2)]
             closes = edges[1] - edges[0] < NARROW and status == walk.STUCK

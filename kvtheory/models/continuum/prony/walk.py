@@ -10,7 +10,6 @@ from kvtheory.models.continuum.prony.contact import (
     NEVER,
     OWN,
     PEELING,
-    PER_ARM,
     RATE,
     SIDES,
     SLIDES,
@@ -19,8 +18,11 @@ from kvtheory.models.continuum.prony.contact import (
     free,
     integral,
     motion,
+    over,
+    past,
     pressed,
     step_of,
+    total,
     value,
 )
 from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
@@ -131,8 +133,8 @@ def _jump(run: Run) -> None:
     _, number, _ = b_.evaluate(run.pieces[now.piece], now.s)
     for k in range(2):
         relaxing = 0.0
-        for i in range(len(run.arms)):
-            relaxing += run.state[i, STRESSES + k] / run.arms[i, RELAXATION]
+        for i in over(len(run.arms)):
+            relaxing += total(run.state[i, STRESSES + k] / run.arms[i, RELAXATION])
         side = now.sides[k]
         if _slack(run, side.state, side.xi, now.v, number - now.w, relaxing) < 0.0:
             turn(run, k)
@@ -162,11 +164,10 @@ def _watch(
     run: Run, k: int, theta: float, v: float, Y: float, number: float
 ) -> tuple[float, float]:
     """Return whether an edge may keep its state, and how far it is from the end of its segment."""
-    side, rows, relaxing = run.now.sides[k], run.rows[run.now.steps], 0.0
-    for i in range(len(run.arms)):
-        stress = value(rows[PER_ARM + OWN * i + STRESSES + k], theta)
-        relaxing += stress / run.arms[i, RELAXATION]
-    xi, ground = value(rows[EDGES + k], theta), math.inf
+    side, index, relaxing = run.now.sides[k], run.now.steps, 0.0
+    for i in over(len(run.arms)):
+        relaxing += total(past(run, index, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
+    xi, ground = value(run.rows[index, EDGES + k], theta), math.inf
     if side.segment != NEVER:
         segment = run.segments[side.segment]
         inward = SIDES[k] if side.state == PEELING else -SIDES[k]
@@ -258,7 +259,7 @@ def _one_interval(run: Run) -> bool:
     now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
     least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
     Y = b_.evaluate(run.pieces[now.piece], now.s)[0] - now.x
-    for i in range(len(run.arms)):
+    for i in over(len(run.arms)):
         for row in (DEPTHS, SLIDES):
             run.here[i, row] = run.state[i, row]
     for i in range(now.first, now.first + now.count):
@@ -283,7 +284,7 @@ def _one_interval(run: Run) -> bool:
                 x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
                 index = step_of(run, segment.edge, segment.step, x)
                 gap, xi = free(run, now.s, now.d, Y, segment.edge, index, x)
-                if (xi < l or xi > r) and gap < least:
+                if SIDES[k] * (xi - side.xi) > 0.0 and gap < least:
                     return False
             number, count = segment.next, count + 1
     return True
@@ -301,17 +302,18 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
         now.x += span * integral(rows[ALONG], theta)
     now.v = run.stages[RATE, n - 1] if whole else value(rows[RATE], theta)
     now.w = run.stages[ALONG, n - 1] if whole else value(rows[ALONG], theta)
-    for i in range(len(run.arms)):
-        for k in range(OWN):
-            row = PER_ARM + OWN * i + k
-            run.state[i, k] = run.stages[row, n - 1] if whole else value(rows[row], theta)
+    for i in over(len(run.arms)):
+        for row in range(OWN):
+            run.state[i, row] = past(run, now.steps, i, row, theta)
+            if whole:
+                run.state[i, row] = run.arm_stages[i, row, n - 1]
     Y, _, _ = b_.evaluate(run.pieces[now.piece], end)
     for k in range(2):
         side, before = now.sides[k], now.sides[k].sigma
         index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
         side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
         if not whole and side.segment != NEVER:
-            for i in range(len(run.arms)):
+            for i in over(len(run.arms)):
                 for row in (DEPTHS, SLIDES):
                     run.here[i, row] = run.state[i, row]
             xi, index, sigma = edge_at(
@@ -319,7 +321,7 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
             )
             if abs(xi) < math.inf:
                 side.xi = xi
-                for i in range(len(run.arms)):
+                for i in over(len(run.arms)):
                     run.state[i, STRESSES + k] = run.here[i, STRESSES]
         side.index, side.sigma = index, sigma
         if side.segment != NEVER:
