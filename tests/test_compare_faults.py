@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.checks.fitting import scaled_scene
+from kvtheory.checks.hypotheses import scaled_scene
 from tests import SCENES as MANY
 from tests import engine
 from tests.confusion import SCENES, by_points, plants, quick, series

@@ -12,7 +12,7 @@ from kvtheory.checks import faults
 from kvtheory.checks.checklist import SAMPLING, judge
 from kvtheory.checks.comparison_case import COARSE, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
+from kvtheory.checks.hypotheses import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.reading import Series
 from kvtheory.checks.settling import PHASE
 from kvtheory.checks.theory import Theory

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed
+from kvtheory.checks.hypotheses import Bench, Hypothesis, Pair, fixed
 from kvtheory.checks.theory import CURVES, Array, Curves
 from kvtheory.checks.trial_elements import Rule, changes
 from kvtheory.scene import Scene

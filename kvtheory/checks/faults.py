@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.fitting import VELOCITY, Bench, Hypothesis, Pair, fixed, scaled_scene
+from kvtheory.checks.hypotheses import VELOCITY, Bench, Hypothesis, Pair, fixed, scaled_scene
 from kvtheory.checks.theory import CURVES
 from kvtheory.scene import Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell

@@ -11,6 +11,7 @@ import numpy as np
 from kvtheory.checks.allowances import Band
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import CURVES, TRIAL_RTOL, Array, Curves
+from kvtheory.fitting.least_squares import covariance, descend
 from kvtheory.scene import Scene
 
 Pair = tuple[Curves, Curves]
@@ -28,9 +29,8 @@ PRECISION, STEP = 1e-4, 1e-3
 """Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
 FAR = 0.7
 """Logarithm of the largest factor by which a parameter is changed at once, for the sake of time."""
-EVALUATIONS, FARTHEST, WORSE = 8, 1.0, 1.2
-"""Most steps to fit one unknown, its longest step, and the growth of the difference that ends it: a step of
-Gauss and Newton, with the slope between the last two points, takes one evaluation."""
+EVALUATIONS = 8
+"""Most evaluations to fit one unknown."""
 PROMISING = 0.03
 """Part of the squared difference that must be along the slope of an unknown for a fit from zero to go on."""
 NO_EFFECT = 1e-6
@@ -121,38 +121,24 @@ class Bench(Case):
     def tried(self, hypothesis: Hypothesis, starts: Sequence[float] | None = None) -> Trial:
         """Return how a hypothesis fits, its unknown fitted from the best of its starts."""
         starts = hypothesis.starts if starts is None else starts
-        if not starts:
-            return self.rated(hypothesis, hypothesis.make(0.0))
-        found = [(x, hypothesis.make(x)) for x in starts]
-        x, pair = min(found, key=lambda each: self.rated(hypothesis, each[1]).score)
-        best = self.rated(hypothesis, pair, x)
-        ratios, step = self.ratios(pair).reshape(-1), STEP
-        moved = self.ratios(hypothesis.make(x + step)).reshape(-1)
-        for count in range(EVALUATIONS):
-            slope = (moved - ratios) / step
-            if count:
-                x, ratios = x + step, moved
-            weight = 1.0 / np.hypot(
-                1.0, ratios
-            )  # values that a fault cannot explain distort the fit less
-            across, along = float((weight * slope) @ ratios), float((weight * slope) @ slope)
-            left = along * float((weight * ratios) @ ratios)
-            if left == 0.0 or (
-                len(starts) == 1 and across * across < PROMISING * left and not count
-            ):
-                break
-            step = float(np.clip(-across / along, -FARTHEST, FARTHEST))
-            if abs(step) < PRECISION or (hypothesis.powers and abs(x + step - best.value) > FAR):
-                break
-            pair = hypothesis.make(x + step)
-            trial = self.rated(hypothesis, pair, x + step)
-            if trial.score >= best.score * WORSE:
-                break
-            best, moved = (
-                min(best, trial, key=lambda each: each.score),
-                self.ratios(pair).reshape(-1),
-            )
-        return best
+        trials: dict[float, tuple[Trial, Array]] = {}
+
+        def residuals(points: Array) -> Array:
+            for x in (x for x in points[:, 0].tolist() if x not in trials):
+                pair = hypothesis.make(x)
+                trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair).reshape(-1)
+            return np.array([trials[x][1] for x in points[:, 0].tolist()])
+
+        residuals(np.array(starts or [0.0])[:, None])
+        best = min(trials, key=lambda x: trials[x][0].score)
+        if starts:
+            far = FAR if hypothesis.powers else math.inf
+            descend(
+                residuals, np.array([[best]]), best - far, best + far, EVALUATIONS, step=STEP,
+                costly=True, robust=True, precision=PRECISION,
+                promising=PROMISING if len(starts) == 1 else 0.0,
+            )  # fmt: skip
+        return min((trial for trial, _ in trials.values()), key=lambda trial: trial.score)
 
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
         """Return the data and the theory of another scene, or None where it has none."""
@@ -211,18 +197,15 @@ class Bench(Case):
         pairs = [
             (o, s) for o, s in zip(others, slopes[1:], strict=True) if np.linalg.norm(s) > least
         ]
-        return tuple(o.name for o, s in pairs if uncertainty(slopes[0], s) >= abs(best.value))
+        return tuple(o.name for o, s in pairs if deviation(slopes[0], s) >= abs(best.value))
 
 
-def uncertainty(slope: Array, other: Array) -> float:
-    """Return the standard deviation of an unknown while another is free too, by the slopes of n values.
+def deviation(*slopes: Array) -> float:
+    """Return the standard deviation of the first unknown while the others are free, by the slopes of n values.
 
-    It is the root of the first entry of n (J^T J)^-1, infinite for a singular matrix. The slopes are in units
-    of what is allowed, an error that all n values may share: hence the n.
+    The slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
     """
-    across = float(slope @ other)
-    left = float(slope @ slope) - (across * across / float(other @ other) if across else 0.0)
-    return math.sqrt(slope.size / left) if left > 0.0 else math.inf
+    return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 
 def bench(case: Case) -> Bench:
