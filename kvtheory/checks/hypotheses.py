@@ -201,7 +201,7 @@ class Bench(Case):
 
 
 def deviation(*slopes: Array) -> float:
-    """Return the standard deviation of the first unknown while the others are free, by the slopes of n values.
+    """Return the standard deviation of an unknown while others are free too, by the slopes of n values.
 
     The slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
     """
