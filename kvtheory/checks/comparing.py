@@ -10,7 +10,7 @@ import numpy as np
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
 from kvtheory.checks.checklist import SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSE, UNSTABLE, Case, make_case
+from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.hypotheses import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.reading import Series
@@ -55,6 +55,8 @@ INCONCLUSIVE = {
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
+GIVEN = "depth_rate", "velocity", "sliding_velocity"
+"""Columns that test nothing where the depth and the velocity are given."""
 SLOW, FAST, LIGHT = 0.03, 30.0, 0.02
 """Retardation length over half length, below which the damper, and above which the stiffness, hardly counts;
 and
@@ -63,25 +65,32 @@ the time constant of the inertia over that of the foundation, below which the mo
 
 def _untested(case: Case) -> str:
     """Say what the scene and the data cannot test, and the reference problem that does."""
-    theory, scene, columns = case.theory, case.theory.scene, case.columns
-    length = (
-        abs(theory.motion.highest_speed * scene.foundation.retardation_time)
-        / theory.static.half_length
-    )
-    one_way = scene.drive.constant and scene.drive.rigid
-    flies = bool(np.isnan(case.now["leading_edge"]).any())
+    theory, scene, held = case.theory, case.theory.scene, case.theory.scene.held
+    speed, half = abs(theory.motion.highest_speed), theory.static.half_length
+    length = speed * scene.foundation.retardation_time / half
     fast = theory.rates is not None and abs(theory.rates.fast) < LIGHT * abs(theory.rates.slow)
-    missing = [
-        n.replace("_", " ") for n in ("depth", "normal_force", "friction_force") if n not in columns
+    needed = ("depth", "normal_force", "friction_force")
+    missing = [name.replace("_", " ") for name in needed if name not in case.columns]
+    parts = [
+        ("everything but the state at rest, as the base never moves", "paper-dead-weight", True)
     ]
-    parts = (
-        ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
-        ("the damper, as the drive is slow", "high-velocity", length < SLOW),
-        ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
-        ("the inertia, as the indenter is fixed", "paper-dead-weight", scene.held),
-        ("the inertia, which hardly counts", "heavy-mass", not scene.held and fast),
-        ("a flight and a landing", "take-off", not scene.held and not flies),
-        (f"the {' and the '.join(missing)}, which the data do not hold", "", bool(missing)),
+    if speed:
+        one_way, flies = (
+            scene.drive.constant and scene.drive.rigid,
+            np.isnan(case.now["leading_edge"]).any(),
+        )
+        parts = [
+            ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
+            ("the damper, as the drive is slow", "high-velocity", length < SLOW),
+            ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
+            ("the inertia, as the indenter is fixed", "paper-dead-weight", held),
+            ("the inertia, which hardly counts", "heavy-mass", not held and fast),
+            ("a flight and a landing", "take-off", not held and not flies),
+        ]
+    if held and len(missing) == len(needed) - 1 and not set(case.names) - {"depth", *GIVEN}:
+        parts = [("anything, as the depth of a fixed indenter is given", "", True)]
+    parts.append(
+        (f"the {' and the '.join(missing)}, which the data do not hold", "", bool(missing))
     )
     told = [f"{what} ({name})" if name else what for what, name, untested in parts if untested]
     problems = " (in brackets, the reference problem that does)" if told else ""
@@ -97,12 +106,19 @@ def compare(
     try:
         case = make_case(theory, series, per_length, tolerance, case_of.COARSEST)
     except ArithmeticError as error:
+        power = round(math.log10(theory.scene.run.duration / float(series.time[-1])))
+        if power in faults.DECADES:
+            times = {**series.columns, "time": series.time * 10.0**power}
+            found = compare(theory, replace(series, columns=times), per_length, scheme, tolerance)
+            return _off_by(power, found, series)
         until = f"up to t = {series.time[-1]:.6g} s, where the data end ({error})"
         told = f"{series.source}: the theory cannot be computed {until}; is the unit of the time right?"
         raise ArithmeticError(told) from None
     checks = judge(case)
     others = {check.name for check in checks if check.ok is False} - {COARSE}
-    if others and case.resolution.spacing_read:  # a large noise is then not that of elements alone
+    if (
+        others and case.resolution.spacing_read == SAWTOOTH
+    ):  # a large noise is then not that of elements alone
         case = make_case(theory, series, per_length, tolerance, case_of.LARGEST_SAWTOOTH)
         checks = judge(case)
     text, explanations = diagnose(case, checks)
@@ -110,6 +126,21 @@ def compare(
     return Comparison(
         verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
+    )  # fmt: skip
+
+
+def _off_by(power: int, found: Comparison, series: Series) -> Comparison:
+    """Return the verdict on a series that was judged with its times multiplied by a power of ten."""
+    text = faults.TIME_UNIT.format(-power)
+    check = Check(
+        "unit of time", 10.0**-power, 1.0, False, "", "times of the data over those of the run"
+    )
+    then = f"With the times in that unit: {found.diagnosis}"
+    enough = found.verdict == "agrees"
+    fault = Explanation("unit of time", text, 1.0, enough, 10.0**-power)
+    return replace(
+        found, verdict="disagrees", checks=(check, *found.checks), diagnosis=f"{_sentence(text)}. {then}",
+        explanations=(fault, *found.explanations), series={**found.series, "time": series.time},
     )  # fmt: skip
 
 

@@ -43,6 +43,8 @@ COMMON = 0.5
 """Squared correlation of the noise of both forces, from which it counts as the sawtooth of F15."""
 LOUD = 4.0
 """Multiple of the median: larger differences are jumps, and are clipped to it."""
+SAWTOOTH = "the sawtooth"
+"""What the spacing is read from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
@@ -132,7 +134,9 @@ def make_case(
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
     edges = [edge_jumps(case.columns[n] - case.now[n]) for n in EDGES if n in names]
-    read, seen = seen != MARGIN, max([seen, *(jump / fine.spacing for jump in edges)])
+    jump, read = max(edges, default=0.0) / fine.spacing, SAWTOOTH if seen != MARGIN else ""
+    if jump > seen:
+        seen, read = jump, "the edges"
     wider = min(seen, max(largest, MARGIN))
     return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
 
@@ -192,7 +196,8 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
 def elements(case: Case) -> tuple[float, float, str]:
     """Compare one element at the leading edge with the load."""
     fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
-    if not fine.spacing_known and not fine.spacing_read:
+    unread = not fine.spacing_read or "normal_force" not in case.names
+    if not fine.spacing_known and unread:
         told = (
             "the element density is not given (per_length), and cannot be estimated from the forces"
         )
@@ -200,10 +205,25 @@ def elements(case: Case) -> tuple[float, float, str]:
     if not case.theory.scene.indenter.per_width:
         told = f"{b:.2g} of the load if all strips gain an element at the same time"
         raise NotMade(f"for a ball only an upper bound is known, {told}")
+    limit = case.tolerance * LARGEST_SAWTOOTH
     if fine.spacing_known:
-        return b, case.tolerance * LARGEST_SAWTOOTH, ""
-    note = f"about {1e-3 * IN_STEP / fine.spacing:.2g} /mm, estimated from the sawtooth"
-    return b / IN_STEP, case.tolerance * LARGEST_SAWTOOTH, note
+        return b, limit, ""
+    if fine.spacing_read == SAWTOOTH:
+        b /= IN_STEP
+    else:  # edges may jump by noise too: what counts is the smooth part of the difference
+        force = "normal_force"
+        off, random = (
+            rms(case.excess(force)),
+            rms(case.bands[force].noise) / case.theory.static.load,
+        )
+        b = math.sqrt(max(off * off - random * random, 0.0))
+    return b, limit, f"about {_density(case):.2g} /mm, estimated from {fine.spacing_read}"
+
+
+def _density(case: Case) -> float:
+    """Return the elements per mm, as known or estimated."""
+    fine = case.resolution
+    return 1e-3 * (IN_STEP if fine.spacing_read == SAWTOOTH else 1.0) / fine.spacing
 
 
 def _stability_number(case: Case, step: float) -> float:
@@ -230,9 +250,7 @@ def stability(case: Case) -> tuple[float, float, str]:
 
 def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     """Yield the faults that show without a trial: by a failed check of elements or steps, or by growth."""
-    known, density = case.resolution.spacing_known, 1e-3 / case.resolution.spacing
-    if not known:
-        density *= IN_STEP
+    known, density = case.resolution.spacing_known, _density(case)
     for check in failed:
         measured, allowed = check.measured or 0.0, check.allowed or 1.0
         if check.name == NUMBER:

@@ -95,6 +95,7 @@ POWER_OF_TEN = 0.02
 """A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
+TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
 LONGEST = 30.0
 """Longest motion on a spring that is computed to try a unit, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
@@ -181,7 +182,10 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
         )
         rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
         yield other("rigid drive instead of a spring", text, drive=rigid)
-        if not scene.drive.damping:
+        if scene.drive.damping:
+            text = "the spring in the drive has no damper beside it, which the scene has"
+            yield other(f"{WRONG}c_x", text, drive=scene.drive.changed(damping=0.0))
+        else:
             critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
             damped = replace(scene, drive=scene.drive.changed(damping=critical))
             words = "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring, which has none"
@@ -294,9 +298,8 @@ def time_units(bench: Bench) -> Iterator[Hypothesis]:
     scene, end = bench.theory.scene, float(bench.time[-1])
     longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
     for power in (power for power in DECADES if end * 10.0**power <= longest):
-        text = f"time: off by a power of ten, 10^{-power}; check the unit"
         pair = bench.against(scene, bench.time * 10.0**power)
-        yield fixed("unit of time", text, pair, 10.0**-power)
+        yield fixed("unit of time", TIME_UNIT.format(-power), pair, 10.0**-power)
 
 
 def delays(bench: Bench) -> Iterator[Hypothesis]:
