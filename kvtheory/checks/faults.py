@@ -12,7 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.hypotheses import VELOCITY, Bench, Hypothesis, Pair, fixed, scaled_scene
+from kvtheory.checks.hypotheses import (
+    VELOCITY,
+    WRONG,
+    Bench,
+    Hypothesis,
+    Pair,
+    fixed,
+    scaled_scene,
+)
 from kvtheory.checks.theory import CURVES, Array
 from kvtheory.scene import Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
@@ -63,8 +71,6 @@ def parameters_of(scene: Scene) -> Iterator[Parameter]:
             yield Parameter(f"all {symbol}_i", dict.fromkeys(keys, 1.0), words)
 
 
-WRONG = "wrong "
-"""Prefix of the names of faults that are a wrong parameter."""
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
     "friction_coefficient": ("friction_coefficient",),

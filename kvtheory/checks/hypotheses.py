@@ -39,8 +39,9 @@ LATE_START = 3.0
 """End of the data, over their span, from which the times must be off."""
 DENSE, SOON, AFTER = 1200, 60, 1e-4
 """Instants at which theory is interpolated: evenly; after each change of the drive; the first of these,
-relative
-to the span."""
+relative to the span."""
+WRONG = "wrong "
+"""Prefix of the names of faults that are a wrong parameter."""
 VELOCITY = "drive.velocity"
 """The key that stands for all velocities of a drive."""
 
@@ -70,15 +71,13 @@ def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) 
 class Trial(NamedTuple):
     """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
 
-    `enough` says whether the remaining difference is allowed, `value` is the unknown, and `alike` are the
-    parameters that the data cannot distinguish from the one that it names.
+    `enough` says whether the remaining difference is allowed; `value` is the unknown.
     """
 
     hypothesis: Hypothesis
     score: float = math.inf
     enough: bool = False
     value: float = 0.0
-    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -179,25 +178,29 @@ class Bench(Case):
         }
         return self.columns, {**self.now, **moved}
 
-    def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
-        """Return the names of the parameters that the data cannot distinguish from the best one.
+    def indistinguishable(self, best: Trial, trials: Sequence[Trial]) -> tuple[str, ...]:
+        """Return the parameters among `trials` that the data cannot distinguish from the best one.
 
         With such a parameter free too, the uncertainty of the best fault's unknown exceeds its value: the
         data do not need it. The slopes are those of theory at the best fit.
         """
-        at = best.hypothesis
-        scene = scaled_scene(self.theory.scene, at.powers or {}, math.exp(best.value))
-        here, slopes = self.against(scene), []
-        for other in (at, *others):
-            there = self.against(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
+        powers = {t.hypothesis.name: t.hypothesis.powers for t in trials if t.hypothesis.powers}
+        fitted = powers.pop(best.hypothesis.name)
+        scene = scaled_scene(self.theory.scene, fitted, math.exp(best.value))
+        here, scale = self.against(scene), self._units[0] + self._units[1]
+
+        def slope(powers: Mapping[str, float]) -> Array:
+            there = self.against(scaled_scene(scene, powers, math.exp(STEP)))
             if here is None or there is None:
-                return ()
-            slopes.append((self._gaps((there[1], here[1])) / sum(self._units)).reshape(-1) / STEP)
-        least = NO_EFFECT * float(np.linalg.norm(slopes[0]))
-        pairs = [
-            (o, s) for o, s in zip(others, slopes[1:], strict=True) if np.linalg.norm(s) > least
-        ]
-        return tuple(o.name for o, s in pairs if deviation(slopes[0], s) >= abs(best.value))
+                return np.zeros(scale.size)
+            return np.asarray((self._gaps((there[1], here[1])) / scale).reshape(-1) / STEP)
+
+        own, alike = slope(fitted), []
+        for name, other in ((name, slope(each)) for name, each in powers.items()):
+            matters = np.linalg.norm(other) > NO_EFFECT * np.linalg.norm(own) > 0.0
+            if matters and deviation(own, other) >= abs(best.value):
+                alike.append(name.removeprefix(WRONG))
+        return tuple(alike)
 
 
 def deviation(*slopes: Array) -> float:
