@@ -13,9 +13,9 @@ from kvtheory.checks import hypotheses
 from kvtheory.checks.checklist import judge, windows
 from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.noise import noise, rounded, time_rounding
-from kvtheory.checks.reading import read
 from kvtheory.checks.theory import Rates, Theory
 from kvtheory.checks.trial_elements import Rule, simulate
+from kvtheory.fitting.series import read
 from tests.test_compare import BALL
 
 DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])

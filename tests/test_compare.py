@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.checks.reading import MOST_ROWS, SPELLINGS, read
 from kvtheory.cli import main
+from kvtheory.fitting.series import MOST_ROWS, SPELLINGS, read
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
 from tests import SCENES as MANY

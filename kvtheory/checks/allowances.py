@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Fixed, Scene
 

@@ -13,8 +13,8 @@ from kvtheory.checks.checklist import PHASE, SAMPLING, judge
 from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Trial, bench
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results import TRANSIENT_UNITS, DivergenceError
 from kvtheory.results.comparison import Check, Comparison, Explanation
 
@@ -238,7 +238,8 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
         )
         alike = rows.indistinguishable(best, ordered) if trial is best and enough else ()
         found.setdefault(fault.name, Explanation(
-            fault.name, fault.text(x), rank, enough and explained >= NAMED, fault.factor(x), explained, alike,
+            fault.name, fault.words(x), rank, enough and explained >= NAMED, fault.number(x),
+            explained, alike,
         ))  # fmt: skip
     return [each for each in found.values() if each.rank > 0.0]
 

@@ -16,8 +16,8 @@ from kvtheory.checks.allowances import (
     resolution,
 )
 from kvtheory.checks.noise import SURE, gaps, noise
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Explanation
 from kvtheory.results.schemes import SCHEME_ROWS
 
@@ -41,6 +41,8 @@ ROUNDED = 1.64
 """Gap due to rounding, as `gaps` measures it, in units of half the last digit."""
 COMMON = 0.5
 """Squared correlation of the noise of both forces, from which it counts as the sawtooth of F15."""
+QUIET = 0.1
+"""Noise of an edge over its jumps, below which these are elements: between jumps it moves with the base."""
 LOUD = 4.0
 """Multiple of the median: larger differences are jumps, and are clipped to it."""
 SAWTOOTH = "the sawtooth"
@@ -133,10 +135,13 @@ def make_case(
         return case
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
-    edges = [edge_jumps(case.columns[n] - case.now[n]) for n in EDGES if n in names]
-    jump, read = max(edges, default=0.0) / fine.spacing, SAWTOOTH if seen != MARGIN else ""
-    if jump > seen:
-        seen, read = jump, "the edges"
+    edges = [
+        (edge_jumps(case.columns[n] - case.now[n]), rms(case.bands[n].noise))
+        for n in EDGES if n in names
+    ]  # fmt: skip
+    (jump, loud), read = max(edges, default=(0.0, 0.0)), SAWTOOTH if seen != MARGIN else ""
+    if jump > seen * fine.spacing:
+        seen, read = jump / fine.spacing, "the edges" if loud < QUIET * jump else ""
     wider = min(seen, max(largest, MARGIN))
     return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
 

@@ -158,5 +158,4 @@ def _fitted(
             return None
         return changed(dict(zip(CURVES, between(x), strict=True)))
 
-    starts = strengths.tolist()
-    return Hypothesis(mistake.name, mistake.text.format, make, starts, factor=float)
+    return Hypothesis(mistake.name, mistake.text, make, strengths.tolist())

@@ -5,7 +5,7 @@ lever arm, or wrong times.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -19,8 +19,9 @@ from kvtheory.checks.hypotheses import (
     Hypothesis,
     Pair,
     fixed,
+    power_of_ten,
     scaled_scene,
-)
+)  # fmt: skip
 from kvtheory.checks.theory import CURVES, Array
 from kvtheory.scene import Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
@@ -97,8 +98,6 @@ LARGEST_FACTOR = 2e3
 """Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
-POWER_OF_TEN = 0.02
-"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
@@ -119,36 +118,26 @@ ONSET = 0.1
 """Fraction of the range of a force: once the force has changed by this much, the drive has started."""
 
 
-def _power_of_ten(factor: float) -> int | None:
-    """Return the power if a factor is a power of ten, or its negative."""
-    power = math.log10(abs(factor))
-    return round(power) if abs(power - round(power)) < POWER_OF_TEN else None
-
-
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
     """Fit each parameter of the scene."""
     theory, scene = bench.theory, bench.theory.scene
     values = {**scene.values(), VELOCITY: theory.final_velocity or theory.motion.highest_speed}
 
-    def scaled(x: float, powers: Mapping[str, float]) -> Pair | None:
-        if x == 0.0 or abs(x) > math.log(LARGEST_FACTOR):
-            return None if x else (bench.columns, bench.now)
-        return bench.against(scaled_scene(scene, powers, math.exp(x)))
-
-    def text(x: float, parameter: Parameter) -> str:
-        key, factor = next(iter(parameter.powers)), math.exp(x)
-        si = scene.replaceable[key].unit
-        unit, per_si = USUAL.get(si, (si.replace("*", " "), 1.0))
-        new, old = (f"{part * values[key] * per_si:.4g} {unit}" for part in (factor, 1.0))
-        ten = " (a power of ten: check its unit)" if _power_of_ten(factor) else ""
-        size = f"{new} rather than {old}, {factor:.4g} times"
-        return f"the data fit {parameter.symbol} = {size}{parameter.words}{ten}"
+    def scaled(factor: float, powers: Mapping[str, float]) -> Pair | None:
+        if factor == 1.0 or not 1.0 / LARGEST_FACTOR < factor < LARGEST_FACTOR:
+            return (bench.columns, bench.now) if factor == 1.0 else None
+        return bench.against(scaled_scene(scene, powers, factor))
 
     remote = np.log(FACTORS[:2] if theory.by_elements else FACTORS).tolist()
-    for each in parameters_of(scene):
+    for symbol, powers, words in parameters_of(scene):
+        key = next(iter(powers))
+        si = scene.replaceable[key].unit
+        unit, per_si = USUAL.get(si, (si.replace("*", " "), 1.0))
+        old = values[key] * per_si
+        size = f"{{1:.4g}} {unit} rather than {old:.4g} {unit}, {{0:.4g}} times"
         yield Hypothesis(
-            f"{WRONG}{each.symbol}", partial(text, parameter=each), partial(scaled, powers=each.powers),
-            [0.0], remote, factor=math.exp, powers=each.powers,
+            f"{WRONG}{symbol}", f"the data fit {symbol} = {size}{words}", partial(scaled, powers=powers),
+            [0.0], shown=old, log=True, remote=remote, powers=powers,
         )  # fmt: skip
 
 
@@ -192,20 +181,19 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
             text = "the spring in the drive has no damper beside it, which the scene has"
             yield other(f"{WRONG}c_x", text, drive=scene.drive.changed(damping=0.0))
         else:
-            critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
-            damped = replace(scene, drive=scene.drive.changed(damping=critical))
-            words = "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring, which has none"
+            text = "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring, which has none"
             yield Hypothesis(
-                f"{WRONG}c_x", lambda x: words.format(critical * math.exp(x)),
-                lambda x: bench.against(scaled_scene(damped, {"drive.damping": 1.0}, math.exp(x))),
-                np.log(DAMPING_SHARES).tolist(),
+                f"{WRONG}c_x", text,
+                lambda c_x: bench.against(replace(scene, drive=scene.drive.changed(damping=c_x))),
+                np.log(DAMPING_SHARES).tolist(), log=True,
+                unit=2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass),
             )  # fmt: skip
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
     """Try wrong signs and units, exchanged edges, and a reversed drive."""
     for title, factor, exact, pair in _factors(bench):
-        power, names = _power_of_ten(factor), title.replace("_", " ")
+        power, names = power_of_ten(factor), title.replace("_", " ")
         if power == 0 and exact < 0.0:
             text = f"{names}: has the wrong sign{SIGNS.get(title, '')}"
             yield fixed(f"sign of {title}", text, pair, exact)
@@ -232,10 +220,9 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     """Fit scale, offset and drift of columns, and what may be added to the friction force."""
     theory, columns, now, friction = bench.theory, bench.columns, bench.now, "friction_force"
     for title, factor, exact, pair in _factors(bench):
-        if _power_of_ten(factor) in (None, 0) and factor > 0.0:
-            text = (
-                f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
-            )
+        if power_of_ten(factor) in (None, 0) and factor > 0.0:
+            words = title.replace("_", " ")
+            text = f"{words}: {1.0 / exact:.4g} times theory, while the rest agrees"
             yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
     share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
     added = [
@@ -260,24 +247,17 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
         added += [("lever arm", friction, half, pressed / theory.radius, arm),
                   ("dry friction", friction, 1.0, against * pressed, dry)]  # fmt: skip
 
-    def shown(x: float, text: str, unit: float) -> str:
-        return text.format(x * unit, 1e3 * x * unit)
+    def without(part: float, name: str, by: Array) -> Pair:
+        return {**columns, name: columns[name] - part * by}, now
 
-    def without(x: float, name: str, by: Array) -> Pair:
-        return {**columns, name: columns[name] - x * by}, now
-
-    for title, name, unit, by, words in added:  # x times `unit` is shown, and multiplies `by`
-        text = f"{name.replace('_', ' ')}: {words}"
-        yield Hypothesis(
-            f"{title} of {name}", partial(shown, text=text, unit=unit),
-            partial(without, name=name, by=unit * by), [0.0], factor=partial(float.__mul__, unit),
-        )  # fmt: skip
+    for title, name, unit, by, words in added:
+        text, make = f"{name.replace('_', ' ')}: {words}", partial(without, name=name, by=by)
+        yield Hypothesis(f"{title} of {name}", text, make, [0.0], unit)
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in bench.names}
     if any(half.any() for half in digits.values()):
         cut = {name: x + np.sign(x) * digits.get(name, 0.0) for name, x in columns.items()}
-        yield fixed(
-            "digits cut off", "the last digits of the data are cut off, not rounded", (cut, now)
-        )
+        text = "the last digits of the data are cut off, not rounded"
+        yield fixed("digits cut off", text, (cut, now))
 
 
 def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
@@ -292,7 +272,7 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
         square = float(data[known] @ data[known])
         factor = float(data[known] @ theory[known]) / square if square else math.nan
         if math.isfinite(factor) and factor != 0.0:
-            power = _power_of_ten(factor)
+            power = power_of_ten(factor)
             plain = power is None or (power == 0 and factor > 0.0)
             exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
             changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
@@ -318,34 +298,18 @@ def delays(bench: Bench) -> Iterator[Hypothesis]:
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
     starts = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
     starts += [share / HUNDREDTH for part in SHIFTS for share in (part, -part)]
-    offset = "the times are off by {:.6g} ms: in the data the drive starts at that time"
-    yield Hypothesis(
-        "time offset", lambda x: offset.format(x * unit * 1e3), lambda x: bench.late(x * unit), starts,
-        factor=partial(float.__mul__, unit),
+    text = "the times are off by {1:.6g} ms: in the data the drive starts at that time"
+    yield Hypothesis("time offset", text, bench.late, starts, unit)
+    kinds: Any = (
+        ("delay", "late by {1:.4g} ms, while the rest agrees", bench.late),
+        ("low pass", "filtered by a low pass, its time constant {1:.4g} ms", partial(_filtered, bench)),
     )  # fmt: skip
-
-    def shown(x: float, text: str) -> str:
-        return text.format(math.exp(x) * unit * 1e3)
-
-    def later(x: float, names: Sequence[str], make: Callable[..., Pair]) -> Pair:
-        return make(math.exp(x) * unit, names=names)
-
     for title, names in (("both forces", FORCES), *((name, (name,)) for name in FORCES)):
-        words = title.replace("_", " ")
-        for name, text, make in (
-            ("delay", "late by {:.4g} ms, while the rest agrees", bench.late),
-            (
-                "low pass",
-                "filtered by a low pass, its time constant {:.4g} ms",
-                partial(_filtered, bench),
-            ),
-        ):
-            others = len(bench.names) > len(names)  # else it is an offset of the time
-            if set(names) <= set(bench.names) and (others or name == "low pass"):
+        for kind, words, make in kinds if set(names) <= set(bench.names) else ():
+            if kind != "delay" or len(bench.names) > len(names):  # else it is an offset of the time
                 yield Hypothesis(
-                    f"{name} of {title}", partial(shown, text=f"{words}: {text}"),
-                    partial(later, names=names, make=make), np.log(DELAYS).tolist(),
-                    factor=lambda x: math.exp(x) * unit,
+                    f"{kind} of {title}", f"{title.replace('_', ' ')}: {words}",
+                    partial(make, names=names), np.log(DELAYS).tolist(), unit, log=True,
                 )  # fmt: skip
 
 
@@ -353,10 +317,8 @@ def _filtered(bench: Bench, time_constant: float, names: Sequence[str]) -> Pair:
     """Return the data, and theory with curves that went through a low pass of the first order."""
     known, now = bench.dense, {}
     z = np.diff(known["time"]) / time_constant
-    kept, mean = (
-        np.exp(-z),
-        np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z),
-    )
+    kept = np.exp(-z)
+    mean = np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z)
     for name in names:
         x, value, found = known[name], float(bench.columns[name][0]), []
         for k in range(z.size):  # exact for a straight line between two instants

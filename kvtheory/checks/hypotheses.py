@@ -27,10 +27,11 @@ LEFT_OVER = 1.5
 """Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP = 1e-4, 1e-3
 """Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
-FAR = 0.7
-"""Logarithm of the largest factor by which a parameter is changed at once, for the sake of time."""
+FAR, WALKS = 0.7, 4
+"""Logarithm of the largest factor by which a parameter is changed in one descent, as theory is slow far away;
+and most descents, the next one where the one before reached that factor."""
 EVALUATIONS = 8
-"""Most evaluations to fit one unknown."""
+"""Most evaluations of a descent."""
 PROMISING = 0.03
 """Part of the squared difference that must be along the slope of an unknown for a fit from zero to go on."""
 NO_EFFECT = 1e-6
@@ -40,6 +41,8 @@ LATE_START = 3.0
 DENSE, SOON, AFTER = 1200, 60, 1e-4
 """Instants at which theory is interpolated: evenly; after each change of the drive; the first of these,
 relative to the span."""
+POWER_OF_TEN = 0.02
+"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
 WRONG = "wrong "
 """Prefix of the names of faults that are a wrong parameter."""
 VELOCITY = "drive.velocity"
@@ -50,22 +53,47 @@ class Hypothesis(NamedTuple):
     """A possible fault: its name, its description, and the data and theory that it compares.
 
     With `starts` it has an unknown x, fitted by least squares, from the best of them if there are several;
-    `remote` are starts that are tried if nothing else explains the data. Without, x is 0. `factor` is the
-    number that is reported for x. `powers` are those of the quantities of the scene that scale with e^x.
+    `remote` are starts that are tried if nothing else explains the data. Its number is `unit` times x, or
+    times e^x with `log`: `make` takes it, {0} in the text is it, and {1} is `shown` times it. Without an
+    unknown, `factor` is what is reported. `powers` are those of the quantities of the scene that scale.
     """
 
     name: str
-    text: Callable[[float], str]
+    text: str
     make: Callable[[float], Pair | None]
     starts: Sequence[float] = ()
+    unit: float = 1.0
+    shown: float = 1e3
+    log: bool = False
     remote: Sequence[float] = ()
-    factor: Callable[[float], float | None] = lambda _x: None
     powers: Mapping[str, float] | None = None
+    factor: float | None = None
+
+    def number(self, x: float) -> float | None:
+        """Return what is reported for the unknown."""
+        return self.unit * (math.exp(x) if self.log else x) if self.starts else self.factor
+
+    def words(self, x: float) -> str:
+        """Return the description with its number."""
+        number = self.number(x) or 0.0
+        ten = bool(self.powers) and power_of_ten(number)
+        remark = " (a power of ten: check its unit)" if ten else ""
+        return self.text.format(number, number * self.shown) + remark
+
+    def pair(self, x: float) -> Pair | None:
+        """Return the data and theory for the unknown."""
+        return self.make(self.number(x) or 0.0)
 
 
 def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) -> Hypothesis:
     """Return a hypothesis without an unknown."""
-    return Hypothesis(name, lambda _x: text, lambda _x: pair, factor=lambda _x: factor)
+    return Hypothesis(name, text, lambda _number: pair, factor=factor)
+
+
+def power_of_ten(factor: float) -> int | None:
+    """Return the power if a factor is a power of ten, or its negative."""
+    power = math.log10(abs(factor)) if factor else POWER_OF_TEN
+    return round(power) if abs(power - round(power)) < POWER_OF_TEN else None
 
 
 class Trial(NamedTuple):
@@ -124,19 +152,22 @@ class Bench(Case):
 
         def residuals(points: Array) -> Array:
             for x in (x for x in points[:, 0].tolist() if x not in trials):
-                pair = hypothesis.make(x)
+                pair = hypothesis.pair(x)
                 trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair).reshape(-1)
             return np.array([trials[x][1] for x in points[:, 0].tolist()])
 
         residuals(np.array(starts or [0.0])[:, None])
         best = min(trials, key=lambda x: trials[x][0].score)
-        if starts:
-            far = FAR if hypothesis.powers else math.inf
-            descend(
+        far = FAR if hypothesis.powers else math.inf
+        for _ in range(WALKS if starts else 0):
+            found, _ = descend(
                 residuals, np.array([[best]]), best - far, best + far, EVALUATIONS, step=STEP,
                 costly=True, robust=True, precision=PRECISION,
                 promising=PROMISING if len(starts) == 1 else 0.0,
             )  # fmt: skip
+            moved, best = abs(found[0, 0] - best), float(found[0, 0])
+            if moved < far:
+                break
         return min((trial for trial, _ in trials.values()), key=lambda trial: trial.score)
 
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.checks.theory import Array
-from kvtheory.fitting.tables import Reader, Table
+from kvtheory.fitting.tables import Array, Reader, Table
 from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.tables import parts, plain
 
