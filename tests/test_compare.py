@@ -262,6 +262,17 @@ def test_agreement_says_where_the_memory_was_not_tested(given, untested):
     ) == untested
 
 
+def test_a_base_that_never_moves_and_a_given_depth_test_nothing_else():
+    time = np.linspace(0.0, 0.2, 50)
+    still, fixed = scene(velocity=0.0), kv.Scene.table1("fixed")
+    alone = {"time": time, "depth": np.full(50, float(kv.steady(still).depth))}
+    rest = kv.compare(still, alone).diagnosis
+    assert "everything but the state at rest, as the base never moves" in rest
+    assert "the normal force and the friction force, which the data do not hold" in rest
+    given = kv.compare(fixed, {**alone, "depth": np.full(50, fixed.support.depth)})
+    assert "anything, as the depth of a fixed indenter is given" in given.diagnosis
+
+
 def test_where_the_phase_is_lost_agreement_says_nothing():
     """Coarse elements, and swings enough to be anywhere."""
     given = replace(SCENES["stick-slip"], run=kv.Run(20.0))
