@@ -191,7 +191,7 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
         sound = (common_noise(case) or 0.0) < COMMON
         limit = LARGEST_UNCORRELATED if sound else COARSEST
         kind = "not that of elements" if sound else "common to both forces, as that of elements"
-        how = "estimated from them" if fine.spacing_read else "assumed"
+        how = f"estimated from {fine.spacing_read}" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
     allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
     b = float(np.median(case.edge_force)) / W
