@@ -40,7 +40,7 @@ REFINED, FLEXIBLE = 3, 0.1
 """Most remote starts that are followed; and the part of the remaining difference by which a fault with an
 unknown must fit better than one without. A parameter has to fit the better, the further it is from its
 value."""
-NAMED = 0.4
+NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Largest number of explanations that are kept."""
