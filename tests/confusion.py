@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.checks.fitting import scaled_scene
+from kvtheory.checks.hypotheses import scaled_scene
 from tests.faulty_simulator import simulate
 
 STOP_AND_GO = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "-60 mm/s"], ["100 ms", "-60 mm/s"],

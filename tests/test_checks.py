@@ -9,13 +9,13 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.api._compare import METHODS
-from kvtheory.checks import fitting
+from kvtheory.checks import hypotheses
 from kvtheory.checks.checklist import judge, windows
 from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.noise import noise, rounded, time_rounding
-from kvtheory.checks.reading import read
 from kvtheory.checks.theory import Rates, Theory
 from kvtheory.checks.trial_elements import Rule, simulate
+from kvtheory.fitting.series import read
 from tests.test_compare import BALL
 
 DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
@@ -84,8 +84,8 @@ def test_rounding_is_read_from_digits_and_from_repeated_times():
 def test_the_uncertainty_is_the_covariance_of_a_fit_of_both():
     slopes = np.random.default_rng(3).normal(size=(50, 2))
     expected = 50 * np.linalg.inv(slopes.T @ slopes)[0, 0]
-    assert fitting.uncertainty(*slopes.T) ** 2 == pytest.approx(expected, rel=1e-12)
-    assert fitting.uncertainty(slopes[:, 0], 2.0 * slopes[:, 0]) > 1e6
+    assert hypotheses.deviation(*slopes.T) ** 2 == pytest.approx(expected, rel=1e-12)
+    assert hypotheses.deviation(slopes[:, 0], 2.0 * slopes[:, 0]) > 1e6
 
 
 def test_time_constants_of_any_number_of_motions():

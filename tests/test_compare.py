@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.checks.reading import MOST_ROWS, SPELLINGS, read, recognise
 from kvtheory.cli import main
+from kvtheory.fitting.series import MOST_ROWS, SPELLINGS, read
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
 from tests import SCENES as MANY
@@ -262,6 +262,17 @@ def test_agreement_says_where_the_memory_was_not_tested(given, untested):
     ) == untested
 
 
+def test_a_base_that_never_moves_and_a_given_depth_test_nothing_else():
+    time = np.linspace(0.0, 0.2, 50)
+    still, fixed = scene(velocity=0.0), kv.Scene.table1("fixed")
+    alone = {"time": time, "depth": np.full(50, float(kv.steady(still).depth))}
+    rest = kv.compare(still, alone).diagnosis
+    assert "everything but the state at rest, as the base never moves" in rest
+    assert "the normal force and the friction force, which the data do not hold" in rest
+    given = kv.compare(fixed, {**alone, "depth": np.full(50, fixed.support.depth)})
+    assert "anything, as the depth of a fixed indenter is given" in given.diagnosis
+
+
 def test_where_the_phase_is_lost_agreement_says_nothing():
     """Coarse elements, and swings enough to be anywhere."""
     given = replace(SCENES["stick-slip"], run=kv.Run(20.0))
@@ -339,14 +350,16 @@ def test_few_rows_cannot_tell(tmp_path, sound):
      ("Federkraft [N/mm]", "spring_force", 1e3)],
 )  # fmt: skip
 def test_columns_are_recognised_by_name_and_unit(header, quantity, factor):
-    column = recognise(header)
-    assert (column.quantity, column.factor) == (quantity, pytest.approx(factor, rel=1e-15))
+    others = {"time": range(8), "normal_force": range(8)}
+    data = {header: range(8), **{key: x for key, x in others.items() if key != quantity}}
+    assert read(data).columns[quantity][1] == pytest.approx(factor, rel=1e-15)
 
 
 def test_no_spelling_has_two_meanings_and_si_is_read_exactly():
     spellings = [s.casefold() for names in SPELLINGS.values() for s in names.split(", ")]
     assert len(spellings) == len(set(spellings))
-    assert (recognise("F_z [N/m]").factor, recognise("z_A [m]").factor) == (1.0, -1.0)
+    exact = read({"t [s]": range(8), "F_z [N/m]": range(8), "z_A [m]": range(8)}).columns
+    assert exact["normal_force"].tolist() == list(range(8)) == (-exact["depth"]).tolist()
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
@@ -394,7 +407,7 @@ def rows(*lines):
 
 GOOD = [f"{k},-0.3,9.8,0" for k in range(12)]
 BAD = {
-    "empty": ("", "holds no header"),
+    "empty": ("", "no row names the columns that are needed"),
     "header only": (HEADS, "holds a header and no rows"),
     "no header": (rows(*GOOD), "line 1 holds numbers"),
     "short": (rows(HEADS, *GOOD[:5]), "at least 8"),
@@ -405,13 +418,14 @@ BAD = {
     "brief": (rows(HEADS, *[f"{k}e-297,-0.3,9.8,0" for k in range(12)]), "do not span a transient"),
     "standing": (rows(HEADS, *["1,-0.3,9.8,0"] * 12), "do not span a transient"),
     "text": (rows(HEADS, *GOOD, "12,abc,9.8,0"), '"abc" is not a number'),
-    "quotation": (rows(HEADS, *GOOD[:5], '"5,-0.3,9.8,0', *GOOD[6:]), "a quotation mark is opened"),
+    "quotation": (rows(HEADS, *GOOD[:5], '"5,-0.3,9.8,0', *GOOD[6:]), "is not a number"),
     "too long": (rows(HEADS, *[f"{k}e300,-0.3,9.8,0" for k in range(12)]), "is the unit of the time right"),
-    "ragged": (rows(HEADS, *GOOD, "12,-0.3"), "has 2 cells, the header has 4"),
+    "ragged": (rows(HEADS, *GOOD, "12,-0.3"), "the first in line 14"),
+    "too many cells": (rows(HEADS, *GOOD, "12,-0,3,9,8,0"), "has 6 cells, the header has 4"),
     "decimal comma": (rows(HEADS, '0,"-0,3",9,0'), "write the decimal mark as a point"),
     "two marks": (rows(HEADS.replace(",", ";"), "0;-1.000,3;9;0"), "write the decimal mark as a point"),
     "endless cell": (rows(HEADS, "0," + "9" * 200_000 + ",9,0"), "not a table of numbers: field larger"),
-    "nothing known": (rows("a,b", "1,2"), "no column is known: a, b"),
+    "nothing known": (rows("a,b", "1,2"), '"a,b" names none that is known'),
     "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
     "wrong unit": (rows("t [ms],F_z [N]", "0,1"), '"F_z [N]": the unit "N" has the wrong dimension'),
     "unknown unit": (rows("t [ms],z_A [furlongz]", "0,1"), '"furlongz" is not a known unit'),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.checks.fitting import scaled_scene
+from kvtheory.checks.hypotheses import scaled_scene
 from tests import SCENES as MANY
 from tests import engine
 from tests.confusion import SCENES, by_points, plants, quick, series
@@ -178,6 +178,21 @@ def test_an_offset_of_any_size_is_named_and_of_equal_ones_the_smallest(scene, la
     data = series(scene, {})
     found = kv.compare(scene, {**data, "time": data["time"] + late})
     assert first_of(found, "time offset").factor == pytest.approx(late, rel=error)
+    assert found.diagnosis.startswith("The times are off by ")
+
+
+def test_a_unit_of_the_time_is_named_where_so_long_a_run_is_not_simulated():
+    data = by_elements(RUBBER, "200 /mm")
+    found = kv.compare(RUBBER, {**data, "time": 1e3 * data["time"]})
+    assert first_of(found, "unit of time").factor == 1e3
+    assert "With the times in that unit: All " in found.diagnosis
+    assert found.series["time"][-1] == pytest.approx(8.0)
+
+
+def test_a_damper_that_the_data_lack_is_named():
+    scene = SPRINGS["stable"]
+    without = replace(scene, drive=scene.drive.changed(damping=0.0))
+    first_of(kv.compare(scene, exact(without), per_length="20000 /mm"), "wrong c_x")
 
 
 def test_what_cannot_be_told_apart_is_said():
@@ -235,6 +250,16 @@ def test_an_indenter_thrown_off_early_is_called_unstable():
     thrown = kv.compare(slow, {**data, "depth": depth, "normal_force": force})
     first_of(thrown, "unstable time step")
     first_of(kv.compare(slow, {**data, "depth": 100.0 * data["depth"]}), "unit of depth")
+
+
+def test_a_mesh_that_is_too_coarse_shows_by_edges_that_jump_but_not_by_their_noise():
+    coarse = by_engine("line", per_a=10)
+    found = kv.compare(engine_scene("line"), coarse)
+    assert failed(found) == ["elements enough"]
+    first_of(found, "too few elements")
+    rng, fine = np.random.default_rng(0), by_engine("line")
+    noisy = {n: x * (1.0 + 0.01 * rng.normal(size=x.size)) for n, x in fine.items() if n != "time"}
+    assert failed(kv.compare(engine_scene("line"), {**noisy, "time": fine["time"]})) == []
 
 
 def test_too_few_elements_of_a_line_are_still_an_error():

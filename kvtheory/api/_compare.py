@@ -135,7 +135,7 @@ def compare(
     from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as compare_series
     from kvtheory.checks.measured_curve import compare as compare_curve
-    from kvtheory.checks.reading import read
+    from kvtheory.fitting.series import read
 
     report = progress or METHODS.tell
     own = 0.5 if data is None else 0.0

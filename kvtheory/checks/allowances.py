@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Fixed, Scene
 
@@ -64,13 +64,13 @@ QUARTER = 0.5 * math.pi
 
 
 class Resolution(NamedTuple):
-    """Spacing of elements (m) and time step (s): known or assumed, the spacing also read from a sawtooth."""
+    """Spacing of elements (m) and time step (s): known or assumed; or what the spacing is read from."""
 
     spacing: float
     time_step: float
     spacing_known: bool
     step_known: bool
-    spacing_read: bool = False
+    spacing_read: str = ""
 
 
 def resolution(theory: Theory, series: Series, per_length: float | None) -> Resolution:

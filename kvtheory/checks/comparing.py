@@ -9,13 +9,12 @@ import numpy as np
 
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
-from kvtheory.checks.checklist import SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSE, UNSTABLE, Case, make_case
+from kvtheory.checks.checklist import PHASE, SAMPLING, judge
+from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
-from kvtheory.checks.reading import Series
-from kvtheory.checks.settling import PHASE
+from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Trial, bench
 from kvtheory.checks.theory import Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results import TRANSIENT_UNITS, DivergenceError
 from kvtheory.results.comparison import Check, Comparison, Explanation
 
@@ -39,9 +38,9 @@ TIE = 3.0
 """Factor on the remaining difference of the best explanation up to which another is as likely."""
 REFINED, FLEXIBLE = 3, 0.1
 """Most remote starts that are followed; and the part of the remaining difference by which a fault with an
-unknown
-must fit better than one without. A parameter has to fit the better, the further it is from its value."""
-NAMED = 0.4
+unknown must fit better than one without. A parameter has to fit the better, the further it is from its
+value."""
+NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Largest number of explanations that are kept."""
@@ -55,34 +54,38 @@ INCONCLUSIVE = {
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
+GIVEN = "depth_rate", "velocity", "sliding_velocity"
+"""Columns that test nothing where the depth and the velocity are given."""
 SLOW, FAST, LIGHT = 0.03, 30.0, 0.02
 """Retardation length over half length, below which the damper, and above which the stiffness, hardly counts;
-and
 the time constant of the inertia over that of the foundation, below which the motion is without inertia."""
 
 
 def _untested(case: Case) -> str:
     """Say what the scene and the data cannot test, and the reference problem that does."""
-    theory, scene, columns = case.theory, case.theory.scene, case.columns
-    length = (
-        abs(theory.motion.highest_speed * scene.foundation.retardation_time)
-        / theory.static.half_length
-    )
-    one_way = scene.drive.constant and scene.drive.rigid
-    flies = bool(np.isnan(case.now["leading_edge"]).any())
+    theory, scene, held = case.theory, case.theory.scene, case.theory.scene.held
+    speed, half = abs(theory.motion.highest_speed), theory.static.half_length
+    length = speed * scene.foundation.retardation_time / half
     fast = theory.rates is not None and abs(theory.rates.fast) < LIGHT * abs(theory.rates.slow)
-    missing = [
-        n.replace("_", " ") for n in ("depth", "normal_force", "friction_force") if n not in columns
-    ]
-    parts = (
-        ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
-        ("the damper, as the drive is slow", "high-velocity", length < SLOW),
-        ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
-        ("the inertia, as the indenter is fixed", "paper-dead-weight", scene.held),
-        ("the inertia, which hardly counts", "heavy-mass", not scene.held and fast),
-        ("a flight and a landing", "take-off", not scene.held and not flies),
-        (f"the {' and the '.join(missing)}, which the data do not hold", "", bool(missing)),
-    )
+    needed = ("depth", "normal_force", "friction_force")
+    missing = [name.replace("_", " ") for name in needed if name not in case.columns]
+    still = "everything but the state at rest, as the base never moves"
+    parts = [(still, "paper-dead-weight", True)]
+    if speed:
+        one_way = scene.drive.constant and scene.drive.rigid
+        flies = bool(np.isnan(case.now["leading_edge"]).any())
+        parts = [
+            ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
+            ("the damper, as the drive is slow", "high-velocity", length < SLOW),
+            ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
+            ("the inertia, as the indenter is fixed", "paper-dead-weight", held),
+            ("the inertia, which hardly counts", "heavy-mass", not held and fast),
+            ("a flight and a landing", "take-off", not held and not flies),
+        ]
+    if held and len(missing) == len(needed) - 1 and not set(case.names) - {"depth", *GIVEN}:
+        parts = [("anything, as the depth of a fixed indenter is given", "", True)]
+    absent = f"the {' and the '.join(missing)}, which the data do not hold"
+    parts.append((absent, "", bool(missing)))
     told = [f"{what} ({name})" if name else what for what, name, untested in parts if untested]
     problems = " (in brackets, the reference problem that does)" if told else ""
     return f" Not tested{problems}: {'; '.join(told)}." if told else ""
@@ -97,19 +100,41 @@ def compare(
     try:
         case = make_case(theory, series, per_length, tolerance, case_of.COARSEST)
     except ArithmeticError as error:
+        power = round(math.log10(theory.scene.run.duration / float(series.time[-1])))
+        if power in faults.DECADES:
+            times = {**series.columns, "time": series.time * 10.0**power}
+            found = compare(theory, replace(series, columns=times), per_length, scheme, tolerance)
+            return _off_by(power, found, series)
         until = f"up to t = {series.time[-1]:.6g} s, where the data end ({error})"
         told = f"{series.source}: the theory cannot be computed {until}; is the unit of the time right?"
         raise ArithmeticError(told) from None
     checks = judge(case)
     others = {check.name for check in checks if check.ok is False} - {COARSE}
-    if others and case.resolution.spacing_read:  # a large noise is then not that of elements alone
+    if others and case.resolution.spacing_read == SAWTOOTH:  # noise is not of elements alone
         case = make_case(theory, series, per_length, tolerance, case_of.LARGEST_SAWTOOTH)
+        checks = judge(case)
+    elif others and case.resolution.spacing_read:  # the edges may be wrong themselves
+        case = replace(case, resolution=case.resolution._replace(spacing_read=""))
         checks = judge(case)
     text, explanations = diagnose(case, checks)
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
         verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
+    )  # fmt: skip
+
+
+def _off_by(power: int, found: Comparison, series: Series) -> Comparison:
+    """Return the verdict on a series that was judged with its times multiplied by a power of ten."""
+    text = faults.TIME_UNIT.format(-power)
+    unit = "times of the data over those of the run"
+    check = Check("unit of time", 10.0**-power, 1.0, False, "", unit)
+    then = f"With the times in that unit: {found.diagnosis}"
+    enough = found.verdict == "agrees"
+    fault = Explanation("unit of time", text, 1.0, enough, 10.0**-power)
+    return replace(
+        found, verdict="disagrees", checks=(check, *found.checks), diagnosis=f"{_sentence(text)}. {then}",
+        explanations=(fault, *found.explanations), series={**found.series, "time": series.time},
     )  # fmt: skip
 
 
@@ -204,25 +229,17 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
         far = abs(trial.value) if trial.hypothesis.powers else 0.0
         return trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
 
-    ordered = sorted(trials, key=unlikely)
-    parameters = [trial for trial in ordered if trial.hypothesis.powers]
-    if parameters and parameters[0].enough:
-        best, others = parameters[0], {t.hypothesis.name: t.hypothesis for t in parameters}
-        alike = tuple(
-            n.removeprefix(faults.WRONG)
-            for n in rows.indistinguishable(
-                best, [h for n, h in others.items() if n != best.hypothesis.name]
-            )
-        )
-        ordered = [t._replace(alike=alike) if t is best else t for t in ordered]
-    found: dict[str, Explanation] = {}
+    ordered, found = sorted(trials, key=unlikely), dict[str, Explanation]()
+    best = next((trial for trial in ordered if trial.hypothesis.powers), None)
     for trial in ordered:
-        fault, score, enough, x, alike = trial
+        fault, score, enough, x = trial
         explained, rank = (
             1.0 - left / rows.start if rows.start else 0.0 for left in (score, unlikely(trial))
         )
+        alike = rows.indistinguishable(best, ordered) if trial is best and enough else ()
         found.setdefault(fault.name, Explanation(
-            fault.name, fault.text(x), rank, enough and explained >= NAMED, fault.factor(x), explained, alike,
+            fault.name, fault.words(x), rank, enough and explained >= NAMED, fault.number(x),
+            explained, alike,
         ))  # fmt: skip
     return [each for each in found.values() if each.rank > 0.0]
 
@@ -233,9 +250,9 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     if not named:
         return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
-    symbol, text, also = first.name.removeprefix(faults.WRONG), _sentence(first.text), ""
+    symbol, text, also = first.name.removeprefix(WRONG), _sentence(first.text), ""
     if first.enough:
-        alike = {faults.WRONG + name for name in first.alike} | {*first.alike}
+        alike = {WRONG + name for name in first.alike} | {*first.alike}
         others = [each.text for each in rest if each.enough and each.name not in alike]
         also = f" Also possible: {'; '.join(others)}." if others else ""
     else:

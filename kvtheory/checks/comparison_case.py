@@ -16,8 +16,8 @@ from kvtheory.checks.allowances import (
     resolution,
 )
 from kvtheory.checks.noise import SURE, gaps, noise
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Explanation
 from kvtheory.results.schemes import SCHEME_ROWS
 
@@ -41,8 +41,12 @@ ROUNDED = 1.64
 """Gap due to rounding, as `gaps` measures it, in units of half the last digit."""
 COMMON = 0.5
 """Squared correlation of the noise of both forces, from which it counts as the sawtooth of F15."""
+QUIET = 0.1
+"""Noise of an edge over its jumps, below which these are elements: between jumps it moves with the base."""
 LOUD = 4.0
 """Multiple of the median: larger differences are jumps, and are clipped to it."""
+SAWTOOTH = "the sawtooth"
+"""What the spacing is read from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
@@ -131,8 +135,13 @@ def make_case(
         return case
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
-    edges = [edge_jumps(case.columns[n] - case.now[n]) for n in EDGES if n in names]
-    read, seen = seen != MARGIN, max([seen, *(jump / fine.spacing for jump in edges)])
+    edges = [
+        (edge_jumps(case.columns[n] - case.now[n]), rms(case.bands[n].noise))
+        for n in EDGES if n in names
+    ]  # fmt: skip
+    (jump, loud), read = max(edges, default=(0.0, 0.0)), SAWTOOTH if seen != MARGIN else ""
+    if jump > seen * fine.spacing:
+        seen, read = jump / fine.spacing, "the edges" if loud < QUIET * jump else ""
     wider = min(seen, max(largest, MARGIN))
     return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
 
@@ -182,7 +191,7 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
         sound = (common_noise(case) or 0.0) < COMMON
         limit = LARGEST_UNCORRELATED if sound else COARSEST
         kind = "not that of elements" if sound else "common to both forces, as that of elements"
-        how = "estimated from them" if fine.spacing_read else "assumed"
+        how = f"estimated from {fine.spacing_read}" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
     allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
     b = float(np.median(case.edge_force)) / W
@@ -192,7 +201,8 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
 def elements(case: Case) -> tuple[float, float, str]:
     """Compare one element at the leading edge with the load."""
     fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
-    if not fine.spacing_known and not fine.spacing_read:
+    unread = not fine.spacing_read or "normal_force" not in case.names
+    if not fine.spacing_known and unread:
         told = (
             "the element density is not given (per_length), and cannot be estimated from the forces"
         )
@@ -200,10 +210,25 @@ def elements(case: Case) -> tuple[float, float, str]:
     if not case.theory.scene.indenter.per_width:
         told = f"{b:.2g} of the load if all strips gain an element at the same time"
         raise NotMade(f"for a ball only an upper bound is known, {told}")
+    limit = case.tolerance * LARGEST_SAWTOOTH
     if fine.spacing_known:
-        return b, case.tolerance * LARGEST_SAWTOOTH, ""
-    note = f"about {1e-3 * IN_STEP / fine.spacing:.2g} /mm, estimated from the sawtooth"
-    return b / IN_STEP, case.tolerance * LARGEST_SAWTOOTH, note
+        return b, limit, ""
+    if fine.spacing_read == SAWTOOTH:
+        b /= IN_STEP
+    else:  # edges may jump by noise too: what counts is the smooth part of the difference
+        force = "normal_force"
+        off, random = (
+            rms(case.excess(force)),
+            rms(case.bands[force].noise) / case.theory.static.load,
+        )
+        b = math.sqrt(max(off * off - random * random, 0.0))
+    return b, limit, f"about {_density(case):.2g} /mm, estimated from {fine.spacing_read}"
+
+
+def _density(case: Case) -> float:
+    """Return the elements per mm, as known or estimated."""
+    fine = case.resolution
+    return 1e-3 * (IN_STEP if fine.spacing_read == SAWTOOTH else 1.0) / fine.spacing
 
 
 def _stability_number(case: Case, step: float) -> float:
@@ -230,9 +255,7 @@ def stability(case: Case) -> tuple[float, float, str]:
 
 def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     """Yield the faults that show without a trial: by a failed check of elements or steps, or by growth."""
-    known, density = case.resolution.spacing_known, 1e-3 / case.resolution.spacing
-    if not known:
-        density *= IN_STEP
+    known, density = case.resolution.spacing_known, _density(case)
     for check in failed:
         measured, allowed = check.measured or 0.0, check.allowed or 1.0
         if check.name == NUMBER:

@@ -4,13 +4,13 @@ What each changes in the curves is simulated (`trial_elements`), and added to th
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed
+from kvtheory.checks.hypotheses import Bench, Hypothesis, Pair, fixed
 from kvtheory.checks.theory import CURVES, Array, Curves
 from kvtheory.checks.trial_elements import Rule, changes
 from kvtheory.scene import Scene
@@ -19,46 +19,31 @@ from kvtheory.scene import Scene
 class Mistake(NamedTuple):
     """A fault: its name, its description, and its rules, of which the best counts.
 
-    `shows` says for which scenes it can show. With `strengths`, one for each rule, the strength is an
-    unknown,
-    between the rules; `right` is the one that changes nothing, if there is one. The text may show it.
+    `shows` is the kind of scenes in which it can show (`SHOWS`). With `strengths`, one for each rule, the
+    strength is an unknown, between the rules, which the text may show; `right` is the one that changes
+    nothing, if there is one.
     """
 
     name: str
     text: str
     rules: Sequence[Rule]
-    shows: Callable[[Scene], bool] = lambda _scene: True
+    shows: str = ""
     strengths: Sequence[float] = ()
     right: float | None = None
 
 
-def _kelvin_voigt(scene: Scene) -> bool:
-    return not scene.foundation.arms
-
-
-def _comes_back(scene: Scene) -> bool:
-    return not (scene.drive.constant and scene.drive.rigid)
-
-
-def _has_arms(scene: Scene) -> bool:
-    return bool(scene.foundation.arms)
-
-
-def _moves(scene: Scene) -> bool:
-    return not scene.held
-
-
-def _ball(scene: Scene) -> bool:
-    return not scene.indenter.per_width
-
-
+SHOWS: Mapping[str, Callable[[Scene], bool]] = {
+    "Kelvin-Voigt": lambda scene: not scene.foundation.arms,
+    "arms": lambda scene: bool(scene.foundation.arms),
+    "moves": lambda scene: not scene.held,
+    "comes back": lambda scene: not (scene.drive.constant and scene.drive.rigid),
+    "ball": lambda scene: not scene.indenter.per_width,
+    "": lambda _scene: True,
+}
+"""Kinds of scenes, in which a mistake can show."""
 FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
-TIMES, PARTS, STARTS, LOSSES = (
-    (0.4, 0.7, 1.4),
-    (0.03, 0.1, 0.25),
-    (0.85, 1.15),
-    (0.3, 0.6, 0.8, 0.95),
-)
+TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
+STARTS, LOSSES = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95)
 """Strengths at which mistakes are simulated: factors of damping and time, parts of the half length and
 depth."""
 HUGE, BEYOND = 1e100, 0.02
@@ -71,87 +56,78 @@ MISTAKES = (
             [Rule(slide_rate=0.0), Rule(slide_rate=0.0, decay=FORGETFUL)]),
     Mistake("no depth term in the compression rate",
             "the compression rate is -h' V alone: an indenter that sinks or rises adds delta' (Eq. 7)",
-            [Rule(depth_rate=0.0), Rule(depth_rate=0.0, decay=FORGETFUL)], _moves),
+            [Rule(depth_rate=0.0), Rule(depth_rate=0.0, decay=FORGETFUL)], "moves"),
     Mistake("sign of the compression rate",
             "the pressure falls with the compression rate: it is p = K u + C u' (Eq. 5)",
             [Rule(depth_rate=-1.0, slide_rate=-1.0, decay=FORGETFUL)]),
     Mistake("sign of the sliding term",
             "the sliding term of the compression rate has the wrong sign: it is u' = delta' - h' V (Eq. 7), "
-            "so "
-            "that the pressure is higher where the foundation enters",
+            "so that the pressure is higher where the foundation enters",
             [Rule(slide_rate=-1.0), Rule(slide_rate=-1.0, decay=FORGETFUL)]),
     Mistake("no damper", "the pressure is K u, without a damper (Eq. 5)",
             [Rule(depth_rate=0.0, slide_rate=0.0, decay=FORGETFUL)]),
     Mistake("Hunt-Crossley damping",
             "the damping grows with the compression, p = K u (1 + c u') with c = {:.3g} tau/delta_0, as in "
-            "the "
-            "law of Hunt and Crossley: that of Kelvin and Voigt is constant, p = K u + C u' (Eq. 5)",
-            [Rule(hunt=c, decay=FORGETFUL) for c in DAMPERS], _kelvin_voigt, DAMPERS),
+            "the law of Hunt and Crossley: that of Kelvin and Voigt is constant, p = K u + C u' (Eq. 5)",
+            [Rule(hunt=c, decay=FORGETFUL) for c in DAMPERS], "Kelvin-Voigt", DAMPERS),
     Mistake("sign of the slope in friction",
             "friction is computed from a pressure with the wrong sign of h' V (Eqs. 7 and 15)",
-            [Rule(friction=-1.0)], _kelvin_voigt),
+            [Rule(friction=-1.0)], "Kelvin-Voigt"),
     Mistake("friction by the normal in the middle",
             "friction is F_z times the slope in the middle of the contact patch, as for a single contact "
-            "point: "
-            "it is the integral of p h' (Eq. 15)", [Rule(central=True)]),
+            "point: it is the integral of p h' (Eq. 15)", [Rule(central=True)]),
     Mistake("tension allowed at the trailing edge",
             "the foundation stays attached where it would pull (no peeling): an element must detach where "
             "its pressure vanishes (Eqs. 23, 24 and 33)", [Rule(pulls=True)]),
     Mistake("contact lost while rising",
             "elements lose contact where the indenter rises, for the surface of the last step is taken for "
-            "the "
-            "present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
-            [Rule(stale=part) for part in LOSSES], _moves, LOSSES, 0.0),
+            "the present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
+            [Rule(stale=part) for part in LOSSES], "moves", LOSSES, 0.0),
     Mistake("contact lost while rising",
             "contact is lost from the equation of motion while the indenter rises, by {:.2g} of the force, "
-            "as where "
-            "an element counts as free once the indenter is above where the last step left it (Eqs. 24 and "
-            "25, F8)",
-            [Rule(drops=part) for part in LOSSES], _moves, LOSSES, 0.0),
+            "as where an element counts as free once the indenter is above where the last step left it "
+            "(Eqs. 24 and 25, F8)",
+            [Rule(drops=part) for part in LOSSES], "moves", LOSSES, 0.0),
     Mistake("no relaxation of the free surface",
             "the free surface does not relax where the indenter recedes from it or comes back to it: it "
-            "decays "
-            "as exp(-t/tau) (Eqs. 20 and 25, F8)", [Rule(decay=0.0), Rule(freezes=True)]),
+            "decays as exp(-t/tau) (Eqs. 20 and 25, F8)", [Rule(decay=0.0), Rule(freezes=True)]),
     Mistake("memory forgotten where sliding reverses",
-            "the indenter meets an undeformed foundation where it re-enters ground that it left: the surface "
-            "there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
-            [Rule(decay=FORGETFUL)], _comes_back),
+            "the indenter meets an undeformed foundation where it re-enters ground that it left: the "
+            "surface there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
+            [Rule(decay=FORGETFUL)], "comes back"),
     Mistake("wrong time of the free surface",
             "the free surface relaxes {:.3g} times as fast as exp(-t/tau) (Eq. 20)",
-            [Rule(decay=factor) for factor in TIMES], _kelvin_voigt, TIMES, 1.0),
+            [Rule(decay=factor) for factor in TIMES], "Kelvin-Voigt", TIMES, 1.0),
     Mistake("half of the contact",
             "only half of the contact presses: all of its elements count (Eqs. 14 and 15)",
             [Rule(front=0.5, back=0.5), Rule(back=0.0), Rule(front=0.0)]),
     Mistake("elements lost at the leading edge",
             "elements at the leading edge do not count, over {:.2g} of the half length: the foundation "
-            "enters "
-            "there, and the pressure is largest (Eqs. 14 and 32)", [Rule(lost=part) for part in PARTS],
+            "enters there, and the pressure is largest (Eqs. 14 and 32)", [Rule(lost=part) for part in PARTS],
             strengths=PARTS, right=0.0),
     Mistake("a ball by the formulas of a line",
-            "every strip of the ball is as deep as its middle plane: a strip at y is at the depth "
-            "delta - y^2/(2 R) (F20)", [Rule(flat=True)], _ball),
+            "every strip of the ball is as deep as its middle plane: a strip at y is at the depth delta - "
+            "y^2/(2 R) (F20)", [Rule(flat=True)], "ball"),
     Mistake("extra vertical damper",
             "the indenter is damped by {:.2g} C A beside the foundation, A being its contact at rest (Eq. "
-            "17): "
-            "as a damper of its own, or as the damping of a time integration",
-            [Rule(damper=share) for share in DAMPERS], _moves, DAMPERS, 0.0),
+            "17): as a damper of its own, or as the damping of a time integration",
+            [Rule(damper=share) for share in DAMPERS], "moves", DAMPERS, 0.0),
     Mistake("undeformed at the start",
             "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
-            "static depth (Eq. 40)", [Rule(start=0.0)], _moves),
+            "static depth (Eq. 40)", [Rule(start=0.0)], "moves"),
     Mistake("wrong initial depth",
             "the depth at t = 0 is {:.4g} times the static depth, at which theory starts (Eq. 40)",
-            [Rule(start=start) for start in STARTS], _moves, STARTS, 1.0),
+            [Rule(start=start) for start in STARTS], "moves", STARTS, 1.0),
     Mistake("arms loaded at the start",
             "the arms bear load at t = 0, as if the indenter had been pressed in at that instant: at rest "
-            "they "
-            "have relaxed (Eq. 40)", [Rule(loaded=True)], _has_arms),
+            "they have relaxed (Eq. 40)", [Rule(loaded=True)], "arms"),
 )  # fmt: skip
 """Every mistake that is tried."""
 
 
 def mistakes(bench: Bench) -> Iterator[Hypothesis]:
     """Yield each mistake that can show in the scene: what it changes in a simulation is added to theory."""
-    tried = [mistake for mistake in MISTAKES if mistake.shows(bench.theory.scene)]
+    tried = [mistake for mistake in MISTAKES if SHOWS[mistake.shows](bench.theory.scene)]
     made = iter(changes(bench.theory, [rule for each in tried for rule in each.rules], bench.time))
 
     def changed(change: Curves) -> Pair:
@@ -182,5 +158,4 @@ def _fitted(
             return None
         return changed(dict(zip(CURVES, between(x), strict=True)))
 
-    starts = strengths.tolist()
-    return Hypothesis(mistake.name, mistake.text.format, make, starts, factor=float)
+    return Hypothesis(mistake.name, mistake.text, make, strengths.tolist())

@@ -5,73 +5,73 @@ lever arm, or wrong times.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.fitting import VELOCITY, Bench, Hypothesis, Pair, fixed, scaled_scene
-from kvtheory.checks.theory import CURVES
+from kvtheory.checks.hypotheses import (
+    VELOCITY,
+    WRONG,
+    Bench,
+    Hypothesis,
+    Pair,
+    fixed,
+    power_of_ten,
+    scaled_scene,
+)  # fmt: skip
+from kvtheory.checks.theory import CURVES, Array
 from kvtheory.scene import Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
 
 
 class Parameter(NamedTuple):
-    """A quantity of a scene: its symbol, the keys that it scales with their powers, and how it is shown."""
+    """A quantity of a scene: its symbol, the keys that it scales with their powers, and a remark."""
 
     symbol: str
     powers: Mapping[str, float]
-    unit: str
-    per_si: float
     words: str = ""
 
 
 PARAMETERS = (
-    Parameter("tau", {"foundation.retardation_time": 1.0}, "ms", 1e3),
-    Parameter("K", {"foundation.stiffness": 1.0}, "GN/m^3", 1e-9),
-    Parameter("R", {"indenter.radius": 1.0}, "mm", 1e3),
-    Parameter("M", {"support.mass": 1.0}, "kg/mm", 1e-3),
-    Parameter("g", {"support.gravity": 1.0}, "m/s^2", 1.0),
-    Parameter("inertia", {"support.mass": 1.0, "support.gravity": -1.0}, "kg/mm", 1e-3,
+    Parameter("tau", {"foundation.retardation_time": 1.0}),
+    Parameter("K", {"foundation.stiffness": 1.0}),
+    Parameter("R", {"indenter.radius": 1.0}),
+    Parameter("M", {"support.mass": 1.0}),
+    Parameter("g", {"support.gravity": 1.0}),
+    Parameter("inertia", {"support.mass": 1.0, "support.gravity": -1.0},
               " as inertia alone (Eq. 17), the weight being right"),
-    Parameter("k_s", {"support.stiffness": 1.0}, "MN/m^2", 1e-6),
-    Parameter("delta", {"support.depth": 1.0}, "mm", 1e3),
-    Parameter("V", {"drive.velocity": 1.0}, "mm/s", 1e3),
-    Parameter("k_x", {"drive.stiffness": 1.0}, "MN/m^2", 1e-6, " (the spring in the drive)"),
-    Parameter("M_x", {"drive.mass": 1.0}, "kg/mm", 1e-3, " (what moves along x)"),
-    Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
-    Parameter("R_y", {"indenter.radius_across": 1.0}, "mm", 1e3, " (across the motion)"),
+    Parameter("k_s", {"support.stiffness": 1.0}),
+    Parameter("delta", {"support.depth": 1.0}),
+    Parameter("V", {VELOCITY: 1.0}),
+    Parameter("k_x", {"drive.stiffness": 1.0}, " (the spring in the drive)"),
+    Parameter("M_x", {"drive.mass": 1.0}, " (what moves along x)"),
+    Parameter("c_x", {"drive.damping": 1.0}, " (beside the spring in the drive)"),
+    Parameter("R_y", {"indenter.radius_across": 1.0}, " (across the motion)"),
 )  # fmt: skip
 """The parameters that may be wrong; those that the scene does not have are left out."""
+USUAL = {"s": ("ms", 1e3), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "N/m^3": ("GN/m^3", 1e-9),
+         "kg/m": ("kg/mm", 1e-3), "N/m^2": ("MN/m^2", 1e-6), "N/m": ("MN/m", 1e-6)}  # fmt: skip
+"""The units in which parameters are shown, by their SI unit."""
 
 
 def parameters_of(scene: Scene) -> Iterator[Parameter]:
     """Yield the parameters of a scene, those of each arm among them."""
     values, arms = scene.values(), range(len(scene.foundation.arms))
-    stiffness, time = "foundation.arms[{}].stiffness", "foundation.arms[{}].relaxation_time"
-    yield from (
-        each
-        for each in PARAMETERS
-        if all(values.get(key) or key == VELOCITY for key in each.powers)
-    )
-    for i in arms:
-        yield Parameter(f"K_{i + 1}", {stiffness.format(i): 1.0}, "GN/m^3", 1e-9, f" (arm {i + 1})")
-        yield Parameter(f"tau_{i + 1}", {time.format(i): 1.0}, "ms", 1e3, f" (arm {i + 1})")
-    if len(arms) > 1:
-        both = (("all K_i", stiffness, "GN/m^3", 1e-9), ("all tau_i", time, "ms", 1e3))
-        for symbol, key, unit, per_si in both:
-            powers = {key.format(i): 1.0 for i in arms}
-            yield Parameter(
-                symbol, powers, unit, per_si, " (that of the first arm, the others alike)"
-            )
+    for each in PARAMETERS:
+        if all(values.get(key) or key == VELOCITY for key in each.powers):
+            yield each
+    for symbol, name in (("K", "stiffness"), ("tau", "relaxation_time")):
+        keys = [f"foundation.arms[{i}].{name}" for i in arms]
+        for i, key in enumerate(keys, start=1):
+            yield Parameter(f"{symbol}_{i}", {key: 1.0}, f" (arm {i})")
+        if len(arms) > 1:
+            words = " (that of the first arm, the others alike)"
+            yield Parameter(f"all {symbol}_i", dict.fromkeys(keys, 1.0), words)
 
 
-PER_WIDTH = {"kg/mm": ("kg", 1.0), "MN/m^2": ("MN/m", 1e-6), "N s/m^2": ("N s/m", 1.0)}
-"""Units of a line contact, and those of a ball in their place."""
-WRONG = "wrong "
-"""Prefix of the names of faults that are a wrong parameter."""
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
     "friction_coefficient": ("friction_coefficient",),
@@ -98,10 +98,9 @@ LARGEST_FACTOR = 2e3
 """Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
-POWER_OF_TEN = 0.02
-"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
+TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
 LONGEST = 30.0
 """Longest motion on a spring that is computed to try a unit, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
@@ -109,7 +108,7 @@ SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 HUNDREDTH = 0.01
 """Unit in which an offset of the time is fitted, as a fraction of the span."""
 FORCES = "normal_force", "friction_force"
-"""Columns that may be late or filtered beside the others."""
+"""Columns that may be late or filtered beside the others, together or one of them."""
 SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
 """Columns whose sign follows that of the velocity."""
 DELAYS, SMALL = (0.05, 0.3, 2.0, 10.0), 1e-6
@@ -119,66 +118,58 @@ ONSET = 0.1
 """Fraction of the range of a force: once the force has changed by this much, the drive has started."""
 
 
-def _power_of_ten(factor: float) -> int | None:
-    """Return the power if a factor is a power of ten, or its negative."""
-    power = math.log10(abs(factor))
-    return round(power) if abs(power - round(power)) < POWER_OF_TEN else None
-
-
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
     """Fit each parameter of the scene."""
     theory, scene = bench.theory, bench.theory.scene
     values = {**scene.values(), VELOCITY: theory.final_velocity or theory.motion.highest_speed}
 
-    def scaled(x: float, powers: Mapping[str, float]) -> Pair | None:
-        if x == 0.0 or abs(x) > math.log(LARGEST_FACTOR):
-            return None if x else (bench.columns, bench.now)
-        return bench.against(scaled_scene(scene, powers, math.exp(x)))
-
-    def text(x: float, parameter: Parameter) -> str:
-        unit, per_si = parameter.unit, parameter.per_si
-        if not scene.indenter.per_width:
-            unit, per_si = PER_WIDTH.get(unit, (unit, per_si))
-        old, factor = values[next(iter(parameter.powers))] * per_si, math.exp(x)
-        ten = " (a power of ten: check its unit)" if _power_of_ten(factor) else ""
-        size = f"{factor * old:.4g} {unit} rather than {old:.4g} {unit}, {factor:.4g} times"
-        return f"the data fit {parameter.symbol} = {size}{parameter.words}{ten}"
+    def scaled(factor: float, powers: Mapping[str, float]) -> Pair | None:
+        if factor == 1.0 or not 1.0 / LARGEST_FACTOR < factor < LARGEST_FACTOR:
+            return (bench.columns, bench.now) if factor == 1.0 else None
+        return bench.against(scaled_scene(scene, powers, factor))
 
     remote = np.log(FACTORS[:2] if theory.by_elements else FACTORS).tolist()
-    for each in parameters_of(scene):
+    for symbol, powers, words in parameters_of(scene):
+        key = next(iter(powers))
+        si = scene.replaceable[key].unit
+        unit, per_si = USUAL.get(si, (si.replace("*", " "), 1.0))
+        old = values[key] * per_si
+        size = f"{{1:.4g}} {unit} rather than {old:.4g} {unit}, {{0:.4g}} times"
         yield Hypothesis(
-            f"{WRONG}{each.symbol}", partial(text, parameter=each), partial(scaled, powers=each.powers),
-            [0.0], remote, factor=math.exp, powers=each.powers,
+            f"{WRONG}{symbol}", f"the data fit {symbol} = {size}{words}", partial(scaled, powers=powers),
+            [0.0], shown=old, log=True, remote=remote, powers=powers,
         )  # fmt: skip
 
 
 def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
-    """Replace arms by a damper or leave one out, and the spring in the drive by a rigid drive."""
-    scene, arms = bench.theory.scene, bench.theory.scene.foundation.arms
+    """Replace arms by a damper or leave one out, the spring in the drive by a rigid one, or add a damper."""
+    scene = bench.theory.scene
+    K, arms = (
+        scene.foundation.stiffness,
+        [(a.stiffness, a.relaxation_time) for a in scene.foundation.arms],
+    )
+
+    maxwell: Any = GeneralizedMaxwell  # takes pairs
 
     def other(name: str, text: str, **parts: Any) -> Hypothesis:
         return fixed(name, text, bench.against(replace(scene, **parts)))
 
     if arms:
-        stiffness = scene.foundation.stiffness
-        plain = Foundation(stiffness, scene.foundation.retardation_time)
         text = (
             "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have "
             "no stiffness and no relaxation times, which count unless the motion is slow (F18)"
         )
-        yield other("Kelvin-Voigt instead of arms", text, foundation=plain)
-        pairs: Any = [(arm.stiffness, arm.relaxation_time) for arm in arms]
-        relaxed = stiffness - sum(K_i for K_i, _ in pairs)
+        damper = Foundation(K, scene.foundation.retardation_time)
+        yield other("Kelvin-Voigt instead of arms", text, foundation=damper)
+        relaxed = K - sum(K_i for K_i, _ in arms)
         if relaxed > 0.0:
             text = "the stiffness of the scene is taken for the glassy one: it is the relaxed one"
-            yield other("glassy stiffness", text, foundation=GeneralizedMaxwell(relaxed, pairs))
-        for i in range(len(pairs)):
-            left = pairs[:i] + pairs[i + 1 :]
+            yield other("glassy stiffness", text, foundation=maxwell(relaxed, arms))
+        for i, (K_i, tau_i) in enumerate(arms):
+            left, which = arms[:i] + arms[i + 1 :], f"arm {i + 1}"
             if left:
-                text = f"arm {i + 1} is missing: {pairs[i][0]:.4g} N/m^3 with {pairs[i][1] * 1e3:.4g} ms"
-                yield other(
-                    f"arm {i + 1} missing", text, foundation=GeneralizedMaxwell(stiffness, left)
-                )
+                text = f"{which} is missing: {K_i:.4g} N/m^3 with {tau_i * 1e3:.4g} ms"
+                yield other(f"{which} missing", text, foundation=maxwell(K, left))
     if not scene.drive.rigid:
         text = (
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "
@@ -186,30 +177,23 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
         )
         rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
         yield other("rigid drive instead of a spring", text, drive=rigid)
-        if not scene.drive.damping:
-            yield _damper(bench)
-
-
-def _damper(bench: Bench) -> Hypothesis:
-    """Fit a damper beside a spring that has none."""
-    scene = bench.theory.scene
-    critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
-    text = (
-        "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring in the drive, which has none"
-    )
-
-    def damped(x: float) -> Pair | None:
-        drive = scene.drive.changed(damping=math.exp(x) * critical)
-        return bench.against(replace(scene, drive=drive))
-
-    starts = np.log(DAMPING_SHARES).tolist()
-    return Hypothesis(f"{WRONG}c_x", lambda x: text.format(math.exp(x) * critical), damped, starts)
+        if scene.drive.damping:
+            text = "the spring in the drive has no damper beside it, which the scene has"
+            yield other(f"{WRONG}c_x", text, drive=scene.drive.changed(damping=0.0))
+        else:
+            text = "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring, which has none"
+            yield Hypothesis(
+                f"{WRONG}c_x", text,
+                lambda c_x: bench.against(replace(scene, drive=scene.drive.changed(damping=c_x))),
+                np.log(DAMPING_SHARES).tolist(), log=True,
+                unit=2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass),
+            )  # fmt: skip
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
     """Try wrong signs and units, exchanged edges, and a reversed drive."""
     for title, factor, exact, pair in _factors(bench):
-        power, names = _power_of_ten(factor), title.replace("_", " ")
+        power, names = power_of_ten(factor), title.replace("_", " ")
         if power == 0 and exact < 0.0:
             text = f"{names}: has the wrong sign{SIGNS.get(title, '')}"
             yield fixed(f"sign of {title}", text, pair, exact)
@@ -234,53 +218,46 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
 
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     """Fit scale, offset and drift of columns, and what may be added to the friction force."""
-    theory, columns = bench.theory, bench.columns
+    theory, columns, now, friction = bench.theory, bench.columns, bench.now, "friction_force"
     for title, factor, exact, pair in _factors(bench):
-        if _power_of_ten(factor) in (None, 0) and factor > 0.0:
-            text = (
-                f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
-            )
+        if power_of_ten(factor) in (None, 0) and factor > 0.0:
+            words = title.replace("_", " ")
+            text = f"{words}: {1.0 / exact:.4g} times theory, while the rest agrees"
             yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
-
-    def shifted(title: str, name: str, by: object, words: str, unit: float) -> Hypothesis:
-        """Return the fault of a column that is off by x times `by`; the text shows x times `unit`."""
-        return Hypothesis(
-            f"{title} of {name}", lambda x: words.format(x * unit, 1e3 * x * unit),
-            lambda x: ({**columns, name: columns[name] - x * np.asarray(by)}, bench.now), [0.0],
-            factor=partial(float.__mul__, unit),
-        )  # fmt: skip
-
     share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
-    for name in (name for name in bench.names if name in MEASURED):
-        unit, words = theory.units.get(name, ""), f"{name.replace('_', ' ')}: off by {{:.4g}}"
-        for title, by, off in (
-            ("offset", 1.0, f"{words} {unit} throughout, while the rest agrees"),
-            ("drift", share, f"{words} {unit} at the end, in proportion to the time"),
-        ):
-            scale = theory.scales[name]
-            yield shifted(title, name, scale * np.asarray(by), off, scale)
-    if "friction_force" in bench.names:
-        half = theory.static.half_length
-        pressed = columns.get("normal_force", bench.now["normal_force"])
-        words = (
-            "friction force: its lever arm is off by {1:.3g} mm, F_x being the moment of the pressure about "
-            "another point than the lowest of the indenter (Eqs. 13 and 15)"
+    added = [
+        (title, name, theory.scales[name], by, f"off by {{:.4g}} {theory.units.get(name, '')} {where}")
+        for name in bench.names if name in MEASURED
+        for title, by, where in (
+            ("offset", np.ones_like(share), "throughout, while the rest agrees"),
+            ("drift", share, "at the end, in proportion to the time"),
         )
-        yield shifted("lever arm", "friction_force", half / theory.radius * pressed, words, half)
-        words = (
-            "friction force: holds a dry friction of {:.3g} F_z beside that of the foundation, which is all "
-            "that a smooth indenter has (Eq. 15)"
+    ]  # fmt: skip
+    if friction in bench.names:
+        pressed = columns.get("normal_force", now["normal_force"])
+        half, against = theory.static.half_length, np.sign(now["sliding_velocity"])
+        arm = (
+            "its lever arm is off by {1:.3g} mm, F_x being the moment of the pressure about another point "
+            "than the lowest of the indenter (Eqs. 13 and 15)"
         )
-        against = np.sign(bench.now["sliding_velocity"]) * pressed
-        yield shifted("dry friction", "friction_force", against, words, 1.0)
+        dry = (
+            "holds a dry friction of {:.3g} F_z beside that of the foundation, which is all that a smooth "
+            "indenter has (Eq. 15)"
+        )
+        added += [("lever arm", friction, half, pressed / theory.radius, arm),
+                  ("dry friction", friction, 1.0, against * pressed, dry)]  # fmt: skip
+
+    def without(part: float, name: str, by: Array) -> Pair:
+        return {**columns, name: columns[name] - part * by}, now
+
+    for title, name, unit, by, words in added:
+        text, make = f"{name.replace('_', ' ')}: {words}", partial(without, name=name, by=by)
+        yield Hypothesis(f"{title} of {name}", text, make, [0.0], unit)
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in bench.names}
     if any(half.any() for half in digits.values()):
-        cut = {
-            name: values + np.sign(values) * digits.get(name, 0.0)
-            for name, values in columns.items()
-        }
+        cut = {name: x + np.sign(x) * digits.get(name, 0.0) for name, x in columns.items()}
         text = "the last digits of the data are cut off, not rounded"
-        yield fixed("digits cut off", text, (cut, bench.now))
+        yield fixed("digits cut off", text, (cut, now))
 
 
 def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
@@ -295,7 +272,7 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
         square = float(data[known] @ data[known])
         factor = float(data[known] @ theory[known]) / square if square else math.nan
         if math.isfinite(factor) and factor != 0.0:
-            power = _power_of_ten(factor)
+            power = power_of_ten(factor)
             plain = power is None or (power == 0 and factor > 0.0)
             exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
             changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
@@ -307,9 +284,8 @@ def time_units(bench: Bench) -> Iterator[Hypothesis]:
     scene, end = bench.theory.scene, float(bench.time[-1])
     longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
     for power in (power for power in DECADES if end * 10.0**power <= longest):
-        text = f"time: off by a power of ten, 10^{-power}; check the unit"
         pair = bench.against(scene, bench.time * 10.0**power)
-        yield fixed("unit of time", text, pair, 10.0**-power)
+        yield fixed("unit of time", TIME_UNIT.format(-power), pair, 10.0**-power)
 
 
 def delays(bench: Bench) -> Iterator[Hypothesis]:
@@ -320,42 +296,29 @@ def delays(bench: Bench) -> Iterator[Hypothesis]:
     values = bench.columns[next(name for name in MEASURED if name in bench.columns)]
     change = np.abs(values - values[0])
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
-    known = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
-    text = "the times are off by {:.6g} ms: in the data the drive starts at that time"
-    yield Hypothesis(
-        "time offset", lambda x: text.format(x * unit * 1e3), lambda x: bench.late(x * unit),
-        [*known, *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))],
-        factor=partial(float.__mul__, unit),
+    starts = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
+    starts += [share / HUNDREDTH for part in SHIFTS for share in (part, -part)]
+    text = "the times are off by {1:.6g} ms: in the data the drive starts at that time"
+    yield Hypothesis("time offset", text, bench.late, starts, unit)
+    kinds: Any = (
+        ("delay", "late by {1:.4g} ms, while the rest agrees", bench.late),
+        ("low pass", "filtered by a low pass, its time constant {1:.4g} ms", partial(_filtered, bench)),
     )  # fmt: skip
-
-    def delayed(name: str, words: str, make: Callable[[float], Pair]) -> Hypothesis:
-        """Return a fault with a time as its unknown, fitted by its logarithm."""
-        return Hypothesis(
-            name, lambda x: words.format(math.exp(x) * unit * 1e3), lambda x: make(math.exp(x) * unit),
-            np.log(DELAYS).tolist(), factor=lambda x: math.exp(x) * unit,
-        )  # fmt: skip
-
-    pairs = {"both forces": ("normal_force", "friction_force")} | {name: (name,) for name in FORCES}
-    for title, group in pairs.items():
-        names = [name for name in group if name in bench.names]
-        if len(names) == len(group) and len(bench.names) > len(names):
-            words = f"{title.replace('_', ' ')}: late by {{:.4g}} ms, while the rest agrees"
-            yield delayed(f"delay of {title}", words, partial(bench.late, names=names))
-        if len(names) == len(group):
-            words = (
-                f"{title.replace('_', ' ')}: filtered by a low pass, its time constant {{:.4g}} ms"
-            )
-            yield delayed(f"low pass of {title}", words, partial(_filtered, bench, names=names))
+    for title, names in (("both forces", FORCES), *((name, (name,)) for name in FORCES)):
+        for kind, words, make in kinds if set(names) <= set(bench.names) else ():
+            if kind != "delay" or len(bench.names) > len(names):  # else it is an offset of the time
+                yield Hypothesis(
+                    f"{kind} of {title}", f"{title.replace('_', ' ')}: {words}",
+                    partial(make, names=names), np.log(DELAYS).tolist(), unit, log=True,
+                )  # fmt: skip
 
 
 def _filtered(bench: Bench, time_constant: float, names: Sequence[str]) -> Pair:
     """Return the data, and theory with curves that went through a low pass of the first order."""
     known, now = bench.dense, {}
     z = np.diff(known["time"]) / time_constant
-    kept, mean = (
-        np.exp(-z),
-        np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z),
-    )
+    kept = np.exp(-z)
+    mean = np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z)
     for name in names:
         x, value, found = known[name], float(bench.columns[name][0]), []
         for k in range(z.size):  # exact for a straight line between two instants

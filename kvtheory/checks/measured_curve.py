@@ -14,8 +14,8 @@ from kvtheory.checks.allowances import Band, Resolution
 from kvtheory.checks.checklist import RELATIVE, largest, root_mean_square
 from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.noise import SURE, noise, rounded
-from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Array, Theory
+from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Comparison
 
 NAMES = ("friction_coefficient", "friction_force", "normal_force", "depth", "leading_edge", "trailing_edge",

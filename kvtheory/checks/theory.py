@@ -27,6 +27,8 @@ TRIAL_RTOL = 1e-5
 """Tolerance of the theory in the trials of a diagnosis."""
 DECAYED, LONGEST = 40.0, 1e9
 """Time constants after which a change has decayed below rounding, and beyond which series are refused."""
+MOST_RUNS = 10.0
+"""Longest series, in durations of the run, where theory is a simulation by elements."""
 SHALLOWEST = 1e-3
 """Fraction of the static depth used for the length and the width of a contact that vanishes."""
 NO_VELOCITY = 1e-9
@@ -192,7 +194,9 @@ class Theory:
 
         On a spring there may be none: the motion may end in a cycle.
         """
-        foundation = self.scene.foundation
+        foundation, run = self.scene.foundation, self.scene.run.duration
+        if self.by_elements and end > MOST_RUNS * run:
+            raise ArithmeticError(f"that is {end / run:.3g} times run.duration")
         slow = foundation.retardation_time
         if foundation.arms:  # no retardation takes longer than this
             glassy = 1.0 + sum(arm.stiffness for arm in foundation.arms) / foundation.stiffness

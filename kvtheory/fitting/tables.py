@@ -7,8 +7,10 @@ read, or could be read in two ways, raises ValueError with the column and the li
 """
 
 import csv
+import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -18,12 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.mistakes import shown
-from kvtheory.scene.tables import number, parts, plain, read_text
+from kvtheory.scene.tables import SEPARATED, SEPARATORS, number, parts, plain, read_text
 from kvtheory.scene.units import bare, to_si
 
 Array = NDArray[np.float64]
 
-SEPARATORS = "\t;,"
 STARTS = re.compile(r"[\s,;\"]*(?:[-+.]*\d|nan\b)", re.IGNORECASE)
 """The beginning of a row of numbers; its first cells may be empty."""
 UNITLESS = "", "-", "1"
@@ -123,24 +124,30 @@ Found = dict[int, tuple[str, str, str]]
 class Reader:
     """Reads the tables of a subject by the names of its columns.
 
-    `needed` tells from the quantities of a row whether it is a header; `example` is one, for messages.
+    `needed` tells from the quantities of a row whether it is a header; `example` is one, for messages. Cells
+    of the quantities in `partial` may be empty or not finite; an empty one is NaN.
     """
 
     names: Names
     needed: Callable[[set[str]], bool]
     example: str
+    partial: Container[str] = ()
 
     def read(self, data: Any) -> Table:
         """Return the table that a file, or a mapping of arrays by header, holds."""
         if isinstance(data, (str, PathLike)):
-            table = self._of_file(Path(data))
+            try:
+                table = self._of_file(Path(data))
+            except csv.Error as error:
+                raise ValueError(f"{data}: not a table of numbers: {error}") from None
         elif isinstance(data, Mapping) or hasattr(data, "columns"):
             table = self._of_arrays(data)
         else:
             told = f"expected a path or a mapping of arrays; got {type(data).__name__}"
             raise TypeError(f"`data`: {told}")
         for name, column in table.columns.items():
-            table.require(name, np.isfinite(column.values), "is not a finite number")
+            if name not in self.partial:
+                table.require(name, np.isfinite(column.values), "is not a finite number")
         return table
 
     def _of_arrays(self, data: Any) -> Table:
@@ -155,7 +162,7 @@ class Reader:
                 array = np.asarray(values, dtype=float).ravel()
             except (TypeError, ValueError) as error:
                 raise ValueError(f'`data`: column "{shown(head)}": {error}') from None
-            columns[name] = Column(head, unit or written or "", array)
+            columns[name] = Column(head, written or unit, array)
         sizes = {column.values.size for column in columns.values()}
         if len(sizes) > 1:
             told = " and ".join(map(str, sorted(sizes)))
@@ -170,18 +177,20 @@ class Reader:
             text = "\0"
         if "\0" in text:
             raise ValueError(f"{path}: not a text file in UTF-8 or UTF-16; expected {self.example}")
-        lines, at, skipped = text.splitlines(), 0, []
+        lines, at, header = text.splitlines(), 0, None
+        skipped: list[str] = []
         tables: list[tuple[Found, list[Array], list[int], tuple[str, ...]]] = []
         while at < len(lines):
-            header = None if _blank(lines[at]) else self._header(lines[at], str(path))
-            if header is None:
+            found_here = None if _blank(lines[at]) else self._header(lines[at], lines[0])
+            if found_here is None:
                 if STARTS.match(lines[at]) and not _blank(lines[at]):
                     told = f"line {at + 1} holds numbers that no row of names precedes"
+                    told += f'; "{shown(skipped[-1])}" names none that is known' if skipped else ""
                     raise ValueError(f"{path}: {told}; expected {self.example}")
                 skipped += [] if _blank(lines[at]) else [lines[at]]
                 at += 1
                 continue
-            cells, separator = header
+            cells, separator = header = found_here
             units, at = _units_below(lines, at + 1, separator, len(cells))
             found = self._known(cells, str(path), units)
             rows = []
@@ -192,8 +201,10 @@ class Reader:
                     break
                 at += 1
             if rows:
-                values = _numbers(path, lines, rows, separator, found)
+                values = _numbers(path, lines, rows, header, found, self.partial)
                 tables.append((found, values, rows, self._others(cells, found)))
+        if header and not tables:
+            raise ValueError(f"{path}: holds a header and no rows")
         if not tables:
             raise ValueError(f"{path}: {self._unknown(skipped)}")
         kinds = {
@@ -215,14 +226,18 @@ class Reader:
         numbers = np.concatenate([np.array(rows) + 1 for _, _, rows, _ in tables])
         return Table(str(path), columns, numbers, tables[0][3])
 
-    def _header(self, line: str, source: str) -> tuple[list[str], str] | None:
-        """Return the cells and the separator of a row of text that names what is needed."""
-        for separator in SEPARATORS:
+    def _header(self, line: str, first: str) -> tuple[list[str], str] | None:
+        """Return the cells and the separator of a row of text that names what is needed.
+
+        The separator is that of a first line such as ``sep=;``, or the one by which most names are known.
+        """
+        told, best, most = SEPARATED.match(first), None, 0
+        for separator in told[1] if told else SEPARATORS:
             cells = _split(line, separator)
-            known = {self._quantity(cell)[0] for cell in cells if cell}
-            if self.needed({name for name in known if name}):
-                return cells, separator
-        return None
+            known = {self._quantity(cell)[0] for cell in cells if cell} - {None}
+            if len(known) > most and self.needed({name for name in known if name}):
+                best, most = (cells, separator), len(known)
+        return best
 
     def _quantity(self, cell: str) -> tuple[str | None, str]:
         """Return the quantity that a header names, and its unit; "G(t)" and "tan(delta)" are names."""
@@ -286,25 +301,31 @@ def _units_below(
 
 
 def _numbers(
-    path: Path, lines: Sequence[str], rows: Sequence[int], separator: str, found: Found
-) -> list[Array]:
+    path: Path, lines: Sequence[str], rows: Sequence[int], header: tuple[list[str], str], found: Found,
+    partial: Container[str],
+) -> list[Array]:  # fmt: skip
     """Return the known columns; if the fast reader fails, find the cell that is no number."""
-    comma = separator != ","
-    try:
-        texts = (lines[k].replace(",", ".") if comma else lines[k] for k in rows)
-        options: Any = {"delimiter": separator, "usecols": list(found), "quotechar": '"'}
-        return list(np.loadtxt(texts, ndmin=2, **options).T)
-    except ValueError:
-        pass
+    (heads, separator), decimal = header, "." if header[1] == "," else ","
+    texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in rows]
+    if all(text.count(separator) < len(heads) for text in texts):
+        with suppress(ValueError):
+            options: Any = {"delimiter": separator, "usecols": list(found), "quotechar": '"'}
+            return list(np.loadtxt(texts, ndmin=2, **options).T)
     values = []
     for k in rows:
         cells = _split(lines[k], separator)
+        while len(cells) > len(heads) and not cells[-1]:
+            del cells[-1]
+        if len(cells) > len(heads):
+            told = f"line {k + 1} has {len(cells)} cells, the header has {len(heads)}"
+            raise ValueError(f"{path}: {told}")
         row = []
-        for i, (_, head, _) in found.items():
+        for i, (name, head, _) in found.items():
             cell = cells[i] if i < len(cells) else ""
-            value = number(cell, "," if comma else ".")
+            value = math.nan if not cell and name in partial else number(cell, decimal)
             if value is None:
-                told = f'"{shown(cell)}" is not a number' if cell else "the cell is empty"
+                hint = "; write the decimal mark as a point" if "," in cell else ""
+                told = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
                 raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {told}')
             row.append(value)
         values.append(row)

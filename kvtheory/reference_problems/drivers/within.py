@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.checks.reading import read
+from kvtheory.fitting.series import read
 from kvtheory.results import SERIES_UNITS, units_for
 
 here = Path(__file__).parent

@@ -11,6 +11,7 @@ import numpy as np
 from kvtheory.checks.allowances import Band
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import CURVES, TRIAL_RTOL, Array, Curves
+from kvtheory.fitting.least_squares import covariance, descend
 from kvtheory.scene import Scene
 
 Pair = tuple[Curves, Curves]
@@ -26,11 +27,11 @@ LEFT_OVER = 1.5
 """Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP = 1e-4, 1e-3
 """Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
-FAR = 0.7
-"""Logarithm of the largest factor by which a parameter is changed at once, for the sake of time."""
-EVALUATIONS, FARTHEST, WORSE = 8, 1.0, 1.2
-"""Most steps to fit one unknown, its longest step, and the growth of the difference that ends it: a step of
-Gauss and Newton, with the slope between the last two points, takes one evaluation."""
+FAR, WALKS = 0.7, 4
+"""Logarithm of the largest factor by which a parameter is changed in one descent, as theory is slow far away;
+and most descents, the next one where the one before reached that factor."""
+EVALUATIONS = 8
+"""Most evaluations of a descent."""
 PROMISING = 0.03
 """Part of the squared difference that must be along the slope of an unknown for a fit from zero to go on."""
 NO_EFFECT = 1e-6
@@ -39,8 +40,11 @@ LATE_START = 3.0
 """End of the data, over their span, from which the times must be off."""
 DENSE, SOON, AFTER = 1200, 60, 1e-4
 """Instants at which theory is interpolated: evenly; after each change of the drive; the first of these,
-relative
-to the span."""
+relative to the span."""
+POWER_OF_TEN = 0.02
+"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
+WRONG = "wrong "
+"""Prefix of the names of faults that are a wrong parameter."""
 VELOCITY = "drive.velocity"
 """The key that stands for all velocities of a drive."""
 
@@ -49,36 +53,59 @@ class Hypothesis(NamedTuple):
     """A possible fault: its name, its description, and the data and theory that it compares.
 
     With `starts` it has an unknown x, fitted by least squares, from the best of them if there are several;
-    `remote` are starts that are tried if nothing else explains the data. Without, x is 0. `factor` is the
-    number that is reported for x. `powers` are those of the quantities of the scene that scale with e^x.
+    `remote` are starts that are tried if nothing else explains the data. Its number is `unit` times x, or
+    times e^x with `log`: `make` takes it, {0} in the text is it, and {1} is `shown` times it. Without an
+    unknown, `factor` is what is reported. `powers` are those of the quantities of the scene that scale.
     """
 
     name: str
-    text: Callable[[float], str]
+    text: str
     make: Callable[[float], Pair | None]
     starts: Sequence[float] = ()
+    unit: float = 1.0
+    shown: float = 1e3
+    log: bool = False
     remote: Sequence[float] = ()
-    factor: Callable[[float], float | None] = lambda _x: None
     powers: Mapping[str, float] | None = None
+    factor: float | None = None
+
+    def number(self, x: float) -> float | None:
+        """Return what is reported for the unknown."""
+        return self.unit * (math.exp(x) if self.log else x) if self.starts else self.factor
+
+    def words(self, x: float) -> str:
+        """Return the description with its number."""
+        number = self.number(x) or 0.0
+        ten = bool(self.powers) and power_of_ten(number)
+        remark = " (a power of ten: check its unit)" if ten else ""
+        return self.text.format(number, number * self.shown) + remark
+
+    def pair(self, x: float) -> Pair | None:
+        """Return the data and theory for the unknown."""
+        return self.make(self.number(x) or 0.0)
 
 
 def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) -> Hypothesis:
     """Return a hypothesis without an unknown."""
-    return Hypothesis(name, lambda _x: text, lambda _x: pair, factor=lambda _x: factor)
+    return Hypothesis(name, text, lambda _number: pair, factor=factor)
+
+
+def power_of_ten(factor: float) -> int | None:
+    """Return the power if a factor is a power of ten, or its negative."""
+    power = math.log10(abs(factor)) if factor else POWER_OF_TEN
+    return round(power) if abs(power - round(power)) < POWER_OF_TEN else None
 
 
 class Trial(NamedTuple):
     """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
 
-    `enough` says whether the remaining difference is allowed, `value` is the unknown, and `alike` are the
-    parameters that the data cannot distinguish from the one that it names.
+    `enough` says whether the remaining difference is allowed; `value` is the unknown.
     """
 
     hypothesis: Hypothesis
     score: float = math.inf
     enough: bool = False
     value: float = 0.0
-    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,38 +148,27 @@ class Bench(Case):
     def tried(self, hypothesis: Hypothesis, starts: Sequence[float] | None = None) -> Trial:
         """Return how a hypothesis fits, its unknown fitted from the best of its starts."""
         starts = hypothesis.starts if starts is None else starts
-        if not starts:
-            return self.rated(hypothesis, hypothesis.make(0.0))
-        found = [(x, hypothesis.make(x)) for x in starts]
-        x, pair = min(found, key=lambda each: self.rated(hypothesis, each[1]).score)
-        best = self.rated(hypothesis, pair, x)
-        ratios, step = self.ratios(pair).reshape(-1), STEP
-        moved = self.ratios(hypothesis.make(x + step)).reshape(-1)
-        for count in range(EVALUATIONS):
-            slope = (moved - ratios) / step
-            if count:
-                x, ratios = x + step, moved
-            weight = 1.0 / np.hypot(
-                1.0, ratios
-            )  # values that a fault cannot explain distort the fit less
-            across, along = float((weight * slope) @ ratios), float((weight * slope) @ slope)
-            left = along * float((weight * ratios) @ ratios)
-            if left == 0.0 or (
-                len(starts) == 1 and across * across < PROMISING * left and not count
-            ):
+        trials: dict[float, tuple[Trial, Array]] = {}
+
+        def residuals(points: Array) -> Array:
+            for x in (x for x in points[:, 0].tolist() if x not in trials):
+                pair = hypothesis.pair(x)
+                trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair).reshape(-1)
+            return np.array([trials[x][1] for x in points[:, 0].tolist()])
+
+        residuals(np.array(starts or [0.0])[:, None])
+        best = min(trials, key=lambda x: trials[x][0].score)
+        far = FAR if hypothesis.powers else math.inf
+        for _ in range(WALKS if starts else 0):
+            found, _ = descend(
+                residuals, np.array([[best]]), best - far, best + far, EVALUATIONS, step=STEP,
+                costly=True, robust=True, precision=PRECISION,
+                promising=PROMISING if len(starts) == 1 else 0.0,
+            )  # fmt: skip
+            moved, best = abs(found[0, 0] - best), float(found[0, 0])
+            if moved < far:
                 break
-            step = float(np.clip(-across / along, -FARTHEST, FARTHEST))
-            if abs(step) < PRECISION or (hypothesis.powers and abs(x + step - best.value) > FAR):
-                break
-            pair = hypothesis.make(x + step)
-            trial = self.rated(hypothesis, pair, x + step)
-            if trial.score >= best.score * WORSE:
-                break
-            best, moved = (
-                min(best, trial, key=lambda each: each.score),
-                self.ratios(pair).reshape(-1),
-            )
-        return best
+        return min((trial for trial, _ in trials.values()), key=lambda trial: trial.score)
 
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
         """Return the data and the theory of another scene, or None where it has none."""
@@ -193,36 +209,37 @@ class Bench(Case):
         }
         return self.columns, {**self.now, **moved}
 
-    def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
-        """Return the names of the parameters that the data cannot distinguish from the best one.
+    def indistinguishable(self, best: Trial, trials: Sequence[Trial]) -> tuple[str, ...]:
+        """Return the parameters among `trials` that the data cannot distinguish from the best one.
 
         With such a parameter free too, the uncertainty of the best fault's unknown exceeds its value: the
         data do not need it. The slopes are those of theory at the best fit.
         """
-        at = best.hypothesis
-        scene = scaled_scene(self.theory.scene, at.powers or {}, math.exp(best.value))
-        here, slopes = self.against(scene), []
-        for other in (at, *others):
-            there = self.against(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
+        powers = {t.hypothesis.name: t.hypothesis.powers for t in trials if t.hypothesis.powers}
+        fitted = powers.pop(best.hypothesis.name)
+        scene = scaled_scene(self.theory.scene, fitted, math.exp(best.value))
+        here, scale = self.against(scene), self._units[0] + self._units[1]
+
+        def slope(powers: Mapping[str, float]) -> Array:
+            there = self.against(scaled_scene(scene, powers, math.exp(STEP)))
             if here is None or there is None:
-                return ()
-            slopes.append((self._gaps((there[1], here[1])) / sum(self._units)).reshape(-1) / STEP)
-        least = NO_EFFECT * float(np.linalg.norm(slopes[0]))
-        pairs = [
-            (o, s) for o, s in zip(others, slopes[1:], strict=True) if np.linalg.norm(s) > least
-        ]
-        return tuple(o.name for o, s in pairs if uncertainty(slopes[0], s) >= abs(best.value))
+                return np.zeros(scale.size)
+            return np.asarray((self._gaps((there[1], here[1])) / scale).reshape(-1) / STEP)
+
+        own, alike = slope(fitted), []
+        for name, other in ((name, slope(each)) for name, each in powers.items()):
+            matters = np.linalg.norm(other) > NO_EFFECT * np.linalg.norm(own) > 0.0
+            if matters and deviation(own, other) >= abs(best.value):
+                alike.append(name.removeprefix(WRONG))
+        return tuple(alike)
 
 
-def uncertainty(slope: Array, other: Array) -> float:
-    """Return the standard deviation of an unknown while another is free too, by the slopes of n values.
+def deviation(*slopes: Array) -> float:
+    """Return the standard deviation of an unknown while others are free too, by the slopes of n values.
 
-    It is the root of the first entry of n (J^T J)^-1, infinite for a singular matrix. The slopes are in units
-    of what is allowed, an error that all n values may share: hence the n.
+    The slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
     """
-    across = float(slope @ other)
-    left = float(slope @ slope) - (across * across / float(other @ other) if across else 0.0)
-    return math.sqrt(slope.size / left) if left > 0.0 else math.inf
+    return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 
 def bench(case: Case) -> Bench:

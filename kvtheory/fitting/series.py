@@ -9,16 +9,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from os import PathLike
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from kvtheory.checks.theory import Array
+from kvtheory.fitting.tables import Array, Reader, Table
 from kvtheory.results.table import SERIES_UNITS
-from kvtheory.scene.mistakes import shown
-from kvtheory.scene.tables import numbers, parts, plain, read_table
-from kvtheory.scene.units import bare, to_si
+from kvtheory.scene.tables import parts, plain
 
 PRESSURE = {"peak_pressure": "N/m^2"}
 """The unit as `kvtheory.scene.units` spells it."""
@@ -70,42 +67,8 @@ MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """Quantities that do not exist in flight: some of their cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""
-
-
-class Column(NamedTuple):
-    """What a column of a file holds: `quantity` = `factor` times its numbers, in SI."""
-
-    header: str
-    quantity: str
-    factor: float
-
-
-def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
-    """Return what a column holds; None if its name is not similar to that of any quantity.
-
-    `units` are those of the scene: the forces of a ball are totals. `ValueError` names the column, what it
-    lacks or which unit is expected, and the nearest known name.
-    """
-    header = header.strip()
-    name, unit = (header, "") if plain(header) in KNOWN else parts(header)  # "dz_A/dt" is a name
-    if plain(name) not in KNOWN:
-        near = get_close_matches(plain(name), KNOWN, n=1, cutoff=MISSPELT)
-        if not near:
-            return None
-        known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
-        told = f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
-        raise ValueError(f"{told}; known names are {known}; rename a column that is something else")
-    quantity = KNOWN[plain(name)][0]
-    sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
-    si = units[quantity]
-    if si == "1" and unit in ("", "-", "%"):
-        return Column(header, quantity, 0.01 if unit == "%" else 1.0)
-    if not unit:
-        raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
-    try:
-        return Column(header, quantity, sign * (1.0 if unit == si else to_si(f"1 {unit}", si)))
-    except ValueError as error:
-        raise ValueError(f'column "{header}": {error}') from None
+READER = Reader(lambda name: KNOWN.get(plain(name), (None, ""))[0], bool, f"{SHOWN}", SPELLINGS)
+"""Reads columns by these names; what is missing, or not finite, is told by `_checked`."""
 
 
 @dataclass(frozen=True)
@@ -142,62 +105,60 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     (0.0003, 0.007)
     """
     units = {**units, **CURVE}
-    if isinstance(data, (str, PathLike)):
-        path = Path(data)
-        table = read_table(path)
-        columns = _recognised(table.heads, units, [], str(path))
-        if not table.rows:
-            raise ValueError(f"{path}: holds a header and no rows")
-        used = [column is not None for column in columns]
-        values = [numbers(path, table, line, cells, used) for line, cells in table.rows]
-        lines = [f"line {line}" for line, _ in table.rows]
-        return _checked(columns, table.heads, np.array(values, dtype=float).T, str(path), lines)
-    source, known = "arrays", {}
+    known: dict[str, Any] = {}
+    if not isinstance(data, (str, PathLike)):
+        data, known = _arrays(data, units)
+    table = READER.read(data)
+    values: dict[str, Array] = {}
+    heads: dict[str, str] = {}
+    problems = list(_misspelt(table.ignored))
+    for name, column in table.columns.items():
+        quantity = name.lstrip("-")
+        if quantity in values:
+            both = f'columns "{heads[quantity]}" and "{column.head}"'
+            problems.append(f"{both} are both the {quantity}; keep one of them")
+        try:
+            array = _si(table, name, units[quantity])
+        except ValueError as error:
+            problems.append(str(error).removeprefix(f"{table.source}: "))
+            continue
+        values[quantity], heads[quantity] = -array if name != quantity else array, column.head
+    _raise(table.source, problems)
+    return _checked(values, heads, table, known)
+
+
+def _arrays(data: Any, units: Mapping[str, str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return columns by header, with our units for our names, and what is known of a simulation."""
+    known = {}
     if not (isinstance(data, Mapping) or (hasattr(data, "columns") and not isinstance(data, type))):
         known = {key: getattr(data, key, None) for key in ("per_length", "time_step", "scheme")}
-        source = str(known["scheme"] or getattr(data, "model", None) or type(data).__name__)
+        known["source"] = str(
+            known["scheme"] or getattr(data, "model", None) or type(data).__name__
+        )
         found = {name: getattr(data, name, None) for name in SI_UNITS}
         if found["time"] is None and found["velocity"] is None:
             what = "a path to a CSV, a mapping of arrays, or a result with time, depth, ..."
             raise TypeError(f"`data`: expected {what}; got {type(data).__name__}")
         data = {name: values for name, values in found.items() if values is not None}
-    heads: list[str] = []
-    arrays: list[Array] = []
-    problems: list[str] = []
-    for key in data:
-        unit = None
-        try:
-            array, unit = bare(data[key])
-            arrays.append(np.atleast_1d(np.asarray(array, dtype=float)))
-        except (TypeError, ValueError) as error:
-            problems.append(f'column "{shown(key)}": {error}')
-        unit = unit or (units.get(key, "") if isinstance(key, str) else "")
-        heads.append(f"{key} [{unit}]" if unit else str(key))
-    columns = _recognised(heads, units, problems, "`data`")
-    rows = [f"row {k + 1}" for k in range(max(map(len, arrays), default=0))]
-    return _checked(columns, heads, arrays, source, rows, **known)
+    ours = {key: f"{key} [{units[key]}]" for key in data if isinstance(key, str) and key in units}
+    return {ours.get(key, str(key)): data[key] for key in data}, known
 
 
-def _recognised(
-    heads: Sequence[str], units: Mapping[str, str], problems: list[str], source: str
-) -> list[Column | None]:
-    """Return what the columns hold, None for those of no known name; report what is wrong with any."""
-    columns: list[Column | None] = []
-    seen: dict[str, str] = {}
+def _misspelt(heads: Iterable[str]) -> Iterator[str]:
+    """Yield the headers that are similar to a known name."""
     for head in heads:
-        try:
-            column = recognise(head, units)
-        except ValueError as error:
-            problems.append(str(error))
-            continue
-        columns.append(column)
-        if column is not None:
-            if column.quantity in seen:
-                both = f'columns "{seen[column.quantity]}" and "{head}"'
-                problems.append(f"{both} are both the {column.quantity}; keep one of them")
-            seen[column.quantity] = head
-    _raise(source, problems)
-    return columns
+        if near := get_close_matches(plain(parts(head)[0]), KNOWN, n=1, cutoff=MISSPELT):
+            told = f'column "{head}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
+            known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
+            yield f"{told}; known names are {known}; rename a column that is something else"
+
+
+def _si(table: Table, name: str, unit: str) -> Array:
+    """Return a column in an SI unit; a number may be a percentage."""
+    column = table.columns[name]
+    if unit == "1" and column.unit in ("", "-", "1", "%"):
+        return column.values * (0.01 if column.unit == "%" else 1.0)
+    return table.si(name, unit)[0]
 
 
 def _raise(source: str, problems: Sequence[str]) -> None:
@@ -221,58 +182,34 @@ def _unusable(time: Array, curve: bool, places: Sequence[str]) -> Iterator[str]:
         yield f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"
 
 
-def _without(values: Mapping[str, Array], name: str) -> dict[str, Array]:
-    return {other: array for other, array in values.items() if other != name}
-
-
-def _by_velocity(values: Mapping[str, Array]) -> dict[str, Array]:
-    """Return columns in the order of the velocity, which stands in the place of the time."""
-    order = np.argsort(values["velocity"], kind="stable")
-    columns = {n: x[order] if x.shape == order.shape else x for n, x in values.items()}
-    return {**columns, "time": columns["velocity"]}
-
-
 def _checked(
-    columns: Sequence[Column | None], heads: Sequence[str], arrays: Iterable[Array], source: str,
-    places: Sequence[str], **known: Any,
-) -> Series:  # fmt: skip
-    """Return the series of the columns that are known, or raise with every reason why it cannot be judged."""
-    pairs = [(c, array) for c, array in zip(columns, arrays, strict=True) if c is not None]
-    if not pairs:
-        names = shown(", ".join(heads))
-        raise ValueError(f"{source}: no column is known: {names}; expected {SHOWN}")
-    values = {column.quantity: column.factor * array for column, array in pairs}
-    problems: list[str] = []
-    curve = "time" not in values and "velocity" in values
-    if curve:
+    values: dict[str, Array], heads: Mapping[str, str], table: Table, known: Mapping[str, Any]
+) -> Series:
+    """Return the series of columns in SI, or raise with every reason why it cannot be judged."""
+    problems, curve = [], "time" not in values and "velocity" in values
+    if curve:  # the velocity stands in the place of the time
         order = np.argsort(values["velocity"], kind="stable")
-        values = {
-            name: array[order] if array.shape == order.shape else array
-            for name, array in values.items()
-        }
+        values = {name: array[order] for name, array in values.items()}
         values["time"] = values["velocity"]
     else:
+        order = np.arange(table.lines.size)
         values.pop("friction_coefficient", None)
     if "time" not in values:
         problems.append(f"no column is the time; expected t [ms] or time [s] beside {SHOWN}")
-    if not any(name in values for name in (*JUDGED, *("friction_coefficient",) * curve)):
+    if not values.keys() & {*JUDGED, *("friction_coefficient",) * curve}:
         problems.append(f"nothing to judge: expected one of {', '.join(JUDGED)}")
-    sizes = {array.shape for array in values.values()}
-    if len(sizes) > 1 or any(len(size) != 1 for size in sizes):
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in values.items())
-        problems.append(f"the columns differ in length: {shapes}")
-    _raise(source, problems)
-    for column in (column for column, _ in pairs if column.quantity in values):
-        array = values[column.quantity]
-        bad = np.flatnonzero(~np.isfinite(array))
-        if bad.size and not (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
-            count = f"{bad.size} of {array.size} values are missing, NaN or infinite"
+    _raise(table.source, problems)
+    place = "row" if table.source == "`data`" else "line"
+    places = [f"{place} {line}" for line in table.lines[order]]
+    for name in values.keys() & heads.keys():
+        bad = np.flatnonzero(~np.isfinite(values[name]))
+        if bad.size and not (name in MAY_BE_ABSENT and bad.size < order.size):
+            count = f"{bad.size} of {order.size} values are missing, NaN or infinite"
             first = f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
-            problems.append(f'column "{column.header}": {count}, {first}')
-    _raise(source, problems)
-    time = values["time"]
-    _raise(source, list(_unusable(time, curve, places)))
-    step = -(-time.size // MOST_ROWS)
+            problems.append(f'column "{heads[name]}": {count}, {first}')
+    _raise(table.source, problems)
+    _raise(table.source, list(_unusable(values["time"], curve, places)))
+    step = -(-order.size // MOST_ROWS)
     thinned = {name: values[name][::step] for name in SI_UNITS if name in values}
-    ignored = (shown(head) for head, c in zip(heads, columns, strict=True) if c is None)
-    return Series(thinned, source, **known, ignored=tuple(ignored), curve=curve)
+    source = "arrays" if table.source == "`data`" else table.source
+    return Series(thinned, **{"source": source, **known}, ignored=table.ignored, curve=curve)
