@@ -1,0 +1,152 @@
+"""Least squares in a few unknowns: the minimum, its covariance, and what the data leave open.
+
+Residuals are a function of unknowns in rows, which it may take many of at once. An unknown that may span
+decades is best given as its logarithm.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Residuals = Callable[[Array], Array]
+"""Returns the residuals, in rows, of unknowns in rows."""
+
+STEP = 1e-5
+"""Change of an unknown for slopes by differences; the error of central ones is about 1e-10."""
+SETTLED, FIRST_DAMPING, MOST_DAMPING, LONGEST = 1e-10, 1e-2, 1e8, 2.0
+"""Relative gain of a step at which a descent ends, its first damping and the one at which it ends, and the
+longest step of an unknown."""
+SINGULAR = 1e-9
+"""Smallest singular value, over the largest, that is distinguished from zero."""
+PRECISE = 1e-8
+"""Precision of slopes: scatter below it cannot be told from none."""
+OPEN = math.log(2.0)
+"""Standard error of a combination of unknowns (logarithms) from which the data do not tell it."""
+SHARE = 0.2
+"""Part of an unknown in an open direction, over the largest, from which it belongs to it."""
+
+
+def slopes(
+    residuals: Residuals, points: Array, *, step: float = STEP, central: bool = False
+) -> Array:
+    """Return the derivatives of the residuals by the unknowns, along the last axis, at points in rows."""
+    count, size = points.shape
+    moves = step * (np.concatenate([np.eye(size), -np.eye(size)]) if central else np.eye(size))
+    moved = residuals((points[:, None] + moves).reshape(-1, size)).reshape(count, len(moves), -1)
+    other = moved[:, size:] if central else residuals(points)[:, None]
+    return (moved[:, :size] - other).swapaxes(1, 2) / ((2.0 if central else 1.0) * step)
+
+
+def descend(
+    residuals: Residuals, points: Array, low: Any, high: Any, steps: int, *, step: float = STEP,
+    costly: bool = False, robust: bool = False, precision: float = 0.0, promising: float = 0.0,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return points after the method of Levenberg and Marquardt, and their sums of squares, all at once.
+
+    `costly` residuals are not evaluated for slopes after the first ones, which Broyden's formula updates.
+    `robust` minimizes 2 sum(sqrt(1 + r^2) - 1), in which large residuals count less. A descent ends where a
+    step is below `precision`, or where its first step promises a relative gain below `promising`.
+    """
+
+    def loss(r: Array) -> Array:
+        return np.asarray((2.0 * (np.hypot(1.0, r) - 1.0) if robust else r * r).sum(axis=-1))
+
+    points, r = points.copy(), residuals(points)
+    cost, damping, J = (
+        loss(r),
+        np.full(len(points), FIRST_DAMPING),
+        slopes(residuals, points, step=step),
+    )
+    active = cost > 0.0
+    for count in range(steps):
+        if not active.any():
+            break
+        at = np.flatnonzero(active)
+        if count and not costly:
+            J[at] = slopes(residuals, points[at], step=step)
+        weight = 1.0 / np.hypot(1.0, r[at]) if robust else np.ones_like(r[at])
+        curve = np.einsum("sni,sn,snj->sij", J[at], weight, J[at])
+        slope = np.einsum("sni,sn->si", J[at], weight * r[at])
+        size = np.einsum("sii->si", curve)
+        size = np.maximum(size, SINGULAR * size.max(axis=1, keepdims=True) + np.finfo(float).tiny)
+        damped = curve + damping[at, None, None] * size[:, :, None] * np.eye(points.shape[1])
+        move = np.linalg.solve(damped, -slope[..., None])[..., 0]
+        tried = np.clip(points[at] + np.clip(move, -LONGEST, LONGEST), low, high)
+        move = tried - points[at]
+        hopeful = np.abs(move).max(axis=1) > precision
+        if not count:
+            hopeful &= -np.einsum("si,si->s", slope, move) > promising * cost[at]
+        active[at] = hopeful
+        at, tried, move = at[hopeful], tried[hopeful], move[hopeful]
+        if not at.size:
+            break
+        new = residuals(tried)
+        if costly:
+            left = new - r[at] - np.einsum("sni,si->sn", J[at], move)
+            J[at] += left[..., None] * (move / np.einsum("si,si->s", move, move)[:, None])[:, None]
+        total = loss(new)
+        better = total < cost[at]
+        gain = np.where(better, 1.0 - total / cost[at], 1.0)
+        won = at[better]
+        points[won], r[won], cost[won] = tried[better], new[better], total[better]
+        damping[at] *= np.where(better, 0.2, 5.0)
+        active[at] = (gain > SETTLED) & (damping[at] < MOST_DAMPING)
+    return points, cost
+
+
+def covariance(slopes: Array) -> Array:
+    """Return (J^T J)^-1, huge in directions of the unknowns that have no effect."""
+    _, s, V = np.linalg.svd(slopes, full_matrices=False)
+    return np.asarray(np.einsum("ki,k,kj->ij", V, np.maximum(s, SINGULAR * s[0]) ** -2.0, V))
+
+
+class Fit(NamedTuple):
+    """The best unknowns, the residuals there, and their slopes."""
+
+    point: Array
+    residuals: Array
+    slopes: Array
+
+    @classmethod
+    def at(cls, residuals: Residuals, point: Array) -> "Fit":
+        """Return the fit at a minimum, with central slopes."""
+        row = point[None]
+        return cls(point, residuals(row)[0], slopes(residuals, row, central=True)[0])
+
+    @property
+    def misfit(self) -> float:
+        """The root mean square of the residuals."""
+        return math.sqrt(float(np.mean(self.residuals**2)))
+
+    @property
+    def variance(self) -> float:
+        """The variance of a residual, by the degrees of freedom."""
+        free = max(self.residuals.size - self.point.size, 1)
+        return float(self.residuals @ self.residuals) / free
+
+    @property
+    def covariance(self) -> Array:
+        """The covariance of the unknowns; huge in directions that the data leave open.
+
+        Where they leave none open it allows for scatter that varies (HC3: MacKinnon and White, 1985).
+        """
+        inverse = covariance(self.slopes)
+        if self.open(range(self.point.size)):
+            return inverse * self.variance
+        gain = np.einsum("ni,ij->nj", self.slopes, inverse)
+        left = np.maximum(1.0 - np.einsum("ni,ni->n", gain, self.slopes), 1.0 / self.residuals.size)
+        return np.asarray(np.einsum("ni,n,nj->ij", gain, (self.residuals / left) ** 2, gain))
+
+    def open(self, keys: Sequence[Any]) -> list[list[Any]]:
+        """Return the keys of each combination of unknowns that the data leave open."""
+        _, s, V = np.linalg.svd(self.slopes, full_matrices=False)
+        deviation = max(math.sqrt(self.variance), PRECISE)
+        directions = np.abs(V[deviation >= OPEN * np.maximum(s, SINGULAR * s[0])])
+        return [
+            [key for key, part in zip(keys, row, strict=True) if part > SHARE * row.max()]
+            for row in directions
+        ]
