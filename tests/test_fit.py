@@ -292,6 +292,22 @@ def test_intervals_are_two_standard_errors_if_errors_are_elliptic_and_infinite_i
 
 
 RUN = "t [ms],F_x [N/m]\n0,5\n1,4\n2,3\n3,3\n"
+
+
+def test_what_no_model_follows_over_time_is_refused():
+    with pytest.raises(ValueError, match="a time series holds for"):
+        kv.fit(SPRINGPOT, series(TABLE1), free=["foundation.stiffness"])
+    problem = friction.Problem(
+        TABLE1,
+        VOIGT[:1],
+        (records.read(series(TABLE1), TABLE1),),
+        METHODS["exact"],
+        lambda *_: 1 / 0,
+    )
+    with pytest.raises(ValueError, match="theory has no answer for any value"):
+        friction.solve(problem)
+
+
 MU = "V [mm/s],mu\n1,0.01\n10,0.05\n100,0.08\n1000,0.04\n"
 BAD = {
     "no velocity": ("mu\n1\n", VOIGT, "line 2 holds numbers that no row of names precedes"),

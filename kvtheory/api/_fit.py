@@ -18,7 +18,7 @@ from kvtheory.results import STEADY_UNITS, units_for
 from kvtheory.results.fits import FrictionFit, Parameter, WeighedModel
 from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names
-from kvtheory.scene.capabilities import lacks_arms, lacks_transient
+from kvtheory.scene.capabilities import lacks_arms, lacks_transient, require
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
@@ -132,8 +132,10 @@ def fit(
             sources = " and ".join(one.source for one in sets)
             told = f"{len(keys)} unknowns need more than {len(keys)} values"
             raise ValueError(f"{sources}: holds {size} values; {told}")
-        if found and any(one.time is not None for one in sets) and lacks_arms(each):
-            continue
+        if any(one.time is not None for one in sets):
+            if models and lacks_arms(each):
+                continue
+            require(lacks_arms, each, "a time series")
         law = METHODS[method_for(each, None)] if models else solve
         problem = friction.Problem(each, keys, sets, law, _followed)
         best = friction.solve(problem, report=report)

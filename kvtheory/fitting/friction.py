@@ -250,6 +250,9 @@ def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tupl
         points, score = descended(points, rounds[-1][1])
     point = _sorted(points, problem.keys)[0]
     r = problem.residuals(point[None])[0]
+    if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
+        told = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
+        raise ValueError(f"{problem.data[0].source}: {told}; check the scene")
     return problem, Fit(point, r, problem.slopes(point[None], central=True)[0])
 
 
