@@ -11,7 +11,8 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.cli import main
-from kvtheory.fitting import friction
+from kvtheory.fitting import friction, records
+from kvtheory.fitting.least_squares import descend
 from kvtheory.models.steady.methods import METHODS
 
 V = np.geomspace(1e-3, 1.0, 25)
@@ -78,8 +79,8 @@ def test_exact_data_give_the_quantities_back_whatever_the_scene_holds(name):
 
 
 def solved(scene, keys, data, seed=0):
-    problem = friction.Problem(scene, keys, friction.read(data, scene), METHODS["exact"])
-    return friction.solve(problem, seed)
+    problem = friction.Problem(scene, keys, (records.read(data, scene),), METHODS["exact"])
+    return friction.solve(problem, seed)[1]
 
 
 @pytest.mark.parametrize(("name", "few"), [("line", 15), ("springpot", 3)])
@@ -116,7 +117,7 @@ def test_two_arms_are_told_apart_and_listed_by_time():
         table(scene, 0.002, 1, np.geomspace(1e-4, 10.0, 40)),
         free=["foundation.stiffness", "foundation.arms"],
     )
-    values = {key: value for key, (value, _) in found.parameters.items()}
+    values = {key: each.value for key, each in found.parameters.items()}
     assert values["foundation.arms[0].relaxation_time"] == pytest.approx(1e-3, rel=0.1)
     assert values["foundation.arms[1].stiffness"] == pytest.approx(5e9, rel=0.15)
     assert len(found.correlations) == 5
@@ -164,7 +165,7 @@ def test_other_columns_are_conditions(tmp_path):
     assert found.parameters["foundation.wlf.c_1"].value == pytest.approx(8.0, rel=1e-5)
     assert found.parameters[VOIGT[1]].value == pytest.approx(0.01, rel=1e-5)
     assert found.notes == ("Column operator is not used.",)
-    assert found.data["conditions"]["foundation.temperature"][0] == 293.15
+    assert found.data["sets"][0].conditions["foundation.temperature"][0] == 293.15
 
 
 def test_a_shape_that_is_integrated_can_be_fitted():
@@ -204,6 +205,109 @@ def test_models_with_more_unknowns_than_values_are_left_out():
     assert [model.name for model in found.models] == ["kelvin-voigt"]
 
 
+def series(scene, noise=0.0, columns=("friction_force", "depth"), end=0.1):
+    """Return a transient as a laboratory measures it, with noise relative to the RMS of each column."""
+    time, rng = np.linspace(0.0, end, 40), np.random.default_rng(5)
+    found, data = kv.transient(scene, at=time, certify=False), {"t [ms]": 1e3 * time}
+    for name in columns:
+        values = getattr(found, name)
+        values = values + noise * np.sqrt(np.mean(values**2)) * rng.standard_normal(40)
+        data |= {"z_A [mm]": -1e3 * values} if name == "depth" else {f"{name} [N/m]": values}
+    return data
+
+
+def test_a_time_series_tells_the_same_alone_and_with_a_curve():
+    wrong = TABLE1.replace({VOIGT[0]: 1e9, VOIGT[1]: 3.0})
+    alone = kv.fit(wrong, series(TABLE1, 0.02), free=VOIGT)
+    both = kv.fit(wrong, [series(TABLE1, 0.02), table(TABLE1, 0.02)], free=VOIGT)
+    for found in (alone, both):
+        for key, true in zip(VOIGT, (1e10, 0.1), strict=True):
+            value, error, (low, high) = found.parameters[key]
+            assert abs(value - true) < 3.0 * error < 0.05 * true
+            assert low < value < high
+        assert found.misfit == pytest.approx(0.02, rel=0.25)
+        assert found.notes == ()
+    assert both.parameters[VOIGT[0]].standard_error < alone.parameters[VOIGT[0]].standard_error
+    sprung = kv.Scene(drive=kv.Drive("20 mm/s", stiffness="1 MN/m^2"))
+    found = kv.fit(sprung, series(sprung, columns=["spring_force"]), free=["drive.stiffness"])
+    assert found.parameters["drive.stiffness"].value == pytest.approx(1e6, rel=1e-4)
+
+
+def test_columns_are_weighed_by_their_own_scatter():
+    data = series(TABLE1, 0.001) | {"z_A [mm]": series(TABLE1, 0.3)["z_A [mm]"]}
+    found = kv.fit(TABLE1, data, free=VOIGT[1:]).parameters[VOIGT[1]]
+    assert found.standard_error < 3e-3 * found.value
+    assert abs(found.value - 0.1) < 3.0 * found.standard_error
+
+
+def test_a_series_that_theory_does_not_follow_says_so():
+    data = series(TABLE1, 0.01, ["friction_force"])
+    data["friction_force [N/m]"] += 300.0 * np.sin(data["t [ms]"] / 8.0)
+    (note,) = kv.fit(TABLE1, data, free=VOIGT[1:]).notes
+    assert "the model is off, and the standard errors are too small" in note
+
+
+def test_rows_before_the_start_and_more_than_enough_are_left_out():
+    time = np.linspace(-0.1, 0.1, 6001)
+    force = np.interp(time, np.linspace(0.0, 0.1, 40), series(TABLE1)["friction_force [N/m]"])
+    found = records.read({"t [s]": time, "F_x [N/m]": force, "V [m/s]": 0.1 * (time > 0)}, TABLE1)
+    assert found.notes == (
+        "3000 rows before t = 0, where sliding begins, are not used.",
+        "One row in 2 is used.",
+    )
+    assert found.time[0] == 0.0
+    assert found.size == found.time.size == 1501
+
+
+def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
+    """Where errors are not elliptic; brute force: the others are fitted with the unknown held."""
+    problem = friction.Problem(
+        ZENER, ONE_ARM, (records.read(table(ZENER, 0.03, 1, CASES["one arm"][2]["velocity"]), ZENER),),
+        METHODS["exact"],
+    )  # fmt: skip
+    _, best = friction.solve(problem)
+    limits = friction.intervals(problem, best)
+    errors = np.sqrt(np.diag(best.covariance))
+    assert np.ptp(np.abs(limits - best.point[:, None]) / errors[:, None]) > 0.5
+    linear = np.linalg.inv(best.slopes.T @ best.slopes)
+    for i, ends in enumerate(limits):
+        for end in ends:
+
+            def held(points, i=i, end=end):
+                return problem.residuals(np.insert(points, i, end, axis=1))
+
+            start = np.delete(best.point, i)[None]
+            _, (least,) = descend(held, start, start[0] - 9.0, start[0] + 9.0, 200)
+            rise = least - best.residuals @ best.residuals
+            assert rise == pytest.approx(4.0 * errors[i] ** 2 / linear[i, i], rel=0.03)
+
+
+def test_intervals_are_two_standard_errors_if_errors_are_elliptic_and_infinite_if_open():
+    found = kv.fit(TABLE1, table(TABLE1, 0.005), free=VOIGT)
+    for value, error, (low, high) in found.parameters.values():
+        assert np.log([value / low, high / value]) == pytest.approx(2.0 * error / value, rel=0.05)
+    slow = kv.fit(TABLE1, table(TABLE1, 0.01, 2, np.geomspace(1e-5, 1e-4, 12)), free=VOIGT)
+    assert slow.parameters[VOIGT[0]].interval[0] == 0.0
+    assert slow.parameters[VOIGT[1]].interval == pytest.approx((0.1, 0.1), rel=0.03)
+
+
+RUN = "t [ms],F_x [N/m]\n0,5\n1,4\n2,3\n3,3\n"
+
+
+def test_what_no_model_follows_over_time_is_refused():
+    with pytest.raises(ValueError, match="a time series holds for"):
+        kv.fit(SPRINGPOT, series(TABLE1), free=["foundation.stiffness"])
+    problem = friction.Problem(
+        TABLE1,
+        VOIGT[:1],
+        (records.read(series(TABLE1), TABLE1),),
+        METHODS["exact"],
+        lambda *_: 1 / 0,
+    )
+    with pytest.raises(ValueError, match="theory has no answer for any value"):
+        friction.solve(problem)
+
+
 MU = "V [mm/s],mu\n1,0.01\n10,0.05\n100,0.08\n1000,0.04\n"
 BAD = {
     "no velocity": ("mu\n1\n", VOIGT, "line 2 holds numbers that no row of names precedes"),
@@ -217,7 +321,7 @@ BAD = {
     "unit of mu": (MU.replace("mu", "mu [%]"), VOIGT, 'has the unit "%"'),
     "no unit": (MU.replace(" [mm/s]", ""), VOIGT, "has no unit"),
     "wrong unit": (MU.replace("mm/s", "mm"), VOIGT, "wrong dimension"),
-    "zero": ("V [mm/s],mu\n1,0\n2,0\n3,0\n", VOIGT, 'column "mu": is zero throughout'),
+    "zero": ("V [mm/s],mu\n1,0\n2,0\n3,0\n", VOIGT, "friction_coefficient is zero throughout"),
     "rest": ("V [mm/s],mu\n0,1\n0,2\n0,3\n", VOIGT, 'column "V [mm/s]": is zero throughout'),
     "few": ("V [mm/s],mu\n1,1\n2,2\n", VOIGT, "2 unknowns need more than 2 values"),
     "negative load": ("V [mm/s],mu,F_z [N/mm]\n1,1,-3\n2,1,3\n3,1,3\n", VOIGT, "line 2"),
@@ -225,6 +329,23 @@ BAD = {
     "misspelt key": (MU, ["foundation.stifness"], 'did you mean "foundation.stiffness"'),
     "velocity": (MU, ["drive.velocity"], "is not a quantity of this scene"),
     "nothing free": (MU, [], "expected the keys of free quantities"),
+    "time twice": (
+        RUN + "3,2\n",
+        VOIGT,
+        'line 6, column "t [ms]": 3 does not follow the time before',
+    ),
+    "before the start": ("t [ms],F_x [N/m]\n-3,5\n-2,4\n-1,3\n", VOIGT, "is before t = 0"),
+    "another drive": (
+        "t [ms],F_x [N/m],V [mm/s]\n0,5,1\n1,4,1\n2,3,1\n",
+        VOIGT,
+        "is not the drive of the scene",
+    ),
+    "spring": (RUN.replace("F_x", "F_s"), VOIGT, "is measured over time, with drive.stiffness"),
+    "two temperatures": (
+        "t [ms],F_x [N/m],R [mm]\n0,5,10\n1,4,12\n2,3,12\n",
+        VOIGT,
+        "not that of the first",
+    ),
     "given and free": (
         "V [mm/s],mu,R [mm]\n1,1,3\n2,1,3\n3,1,3\n",
         ["indenter.radius"],

@@ -3,24 +3,31 @@
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from kvtheory.api._edge import one_scene
+from kvtheory.api._solve import solve as cheapest
 from kvtheory.api._steady import method_for
+from kvtheory.api._transient import transient
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, units_for
 from kvtheory.results.fits import FrictionFit, Parameter, WeighedModel
+from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names
+from kvtheory.scene.capabilities import lacks_arms, lacks_transient, require
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
 NOT_FREE = "drive.velocity", "run.duration"
-"""Quantities that no friction curve tells."""
+"""Quantities that no measured friction tells."""
+FINE, COARSE = 1e-7, 1e-3
+"""Tolerances of the transient and of a model that is slower."""
 
 
 @checked(scene=a_scene, free=names, models=flag, progress=callback)
@@ -32,11 +39,11 @@ def fit(
     models: bool = False,
     progress: Progress | None = None,
 ) -> FrictionFit:
-    """Fit quantities of a scene to measured friction over velocity.
+    """Fit quantities of a scene to measured friction over velocity, or to a time series, or to both.
 
-    Least squares of the relative residuals over the exact theory of steady sliding. No initial values are
-    needed, and those of the scene are not used for the foundation: the whole range around the estimates of
-    fact F26 is searched.
+    Least squares of the relative residuals over the exact theory of steady sliding, or over the transient. No
+    initial values are needed, and those of the scene are not used for the foundation: the whole range around
+    the estimates of fact F26 is searched.
 
     Parameters
     ----------
@@ -47,7 +54,9 @@ def fit(
         A file, or a mapping of arrays by header, with the columns velocity and friction coefficient or
         friction force (``{"V [mm/s]": ..., "mu": ...}``). Other columns vary quantities from row to row:
         the load (``F_z [N]``), the temperature (``T [degC]``), or any key of the scene (``indenter.radius
-        [mm]``).
+        [mm]``). With a column time (``{"t [ms]": ..., "F_x [N/mm]": ..., "z_A [mm]": ...}``) it is a time
+        series: of friction, forces or depth in the transient of the scene, with its drive, from rest at
+        t = 0. A list of these is fitted together, each column weighed by its scatter.
     free
         Keys of the quantities to be fitted, as in the scene file; ``"foundation.arms"`` stands for all
         arms.
@@ -60,8 +69,8 @@ def fit(
     Returns
     -------
     FrictionFit
-        Values with standard errors and correlations, what the data cannot tell, the misfit, and the scene
-        with the fitted values.
+        Values with standard errors, 95 % intervals and correlations, what the data cannot tell, the misfit,
+        and the scene with the fitted values.
 
     Raises
     ------
@@ -88,12 +97,13 @@ def fit(
     Facts F3, F18, F25 and F26 of the derivations; Burnham and Anderson (2002), Model Selection.
     """
     from kvtheory.fitting import friction
+    from kvtheory.fitting.records import read
 
     scene = one_scene(scene, "a fit")
-    if data is None:
-        raise ValueError(
-            "`data`: missing; expected a file or arrays with velocity and friction coefficient"
-        )
+    given = list(data) if isinstance(data, (list, tuple)) else [data]
+    if not given or any(each is None for each in given):
+        told = "missing; expected a file or arrays with velocity and friction coefficient"
+        raise ValueError(f"`data`: {told}, or time and forces")
     solve = METHODS[method_for(scene, None)]
     if models == bool(list(free)):
         told = "expected the keys of free quantities, or `models`"
@@ -102,49 +112,93 @@ def fit(
         friction.models(scene) if models else {scene.foundation.kind: (scene, _keys(scene, free))}
     )
     found: dict[str, Any] = {}
-    weighed: list[tuple[str, int, float, float]] = []
     for count, (name, (each, keys)) in enumerate(tried.items()):
-        if progress:
-            progress(count / len(tried), f"fitting {name}")
-        read = friction.read(data, each)
-        if both := [key for key in keys if key in read.conditions]:
-            raise ValueError(f"`free` {both[0]}: a column of {read.source} gives it")
-        if read.size * len(read.measured) <= len(keys):
+
+        def report(done: float, name: str = name, count: int = count) -> None:
+            if progress:
+                progress((count + done) / len(tried), f"fitting {name}")
+
+        report(0.0)
+        sets = tuple(
+            sorted((read(one, each) for one in given), key=lambda one: one.time is not None)
+        )
+        for one in sets:
+            if both := [key for key in keys if key in one.conditions]:
+                raise ValueError(f"`free` {both[0]}: a column of {one.source} gives it")
+        size = sum(one.size * len(one.measured) for one in sets)
+        if size <= len(keys):
             if models and found:
                 continue
+            sources = " and ".join(one.source for one in sets)
             told = f"{len(keys)} unknowns need more than {len(keys)} values"
-            raise ValueError(f"{read.source}: holds {read.size} rows; {told}")
+            raise ValueError(f"{sources}: holds {size} values; {told}")
+        if any(one.time is not None for one in sets):
+            if models and lacks_arms(each):
+                continue
+            require(lacks_arms, each, "a time series")
         law = METHODS[method_for(each, None)] if models else solve
-        problem = friction.Problem(each, keys, read, law)
-        best = friction.solve(problem)
-        found[name] = problem, best, friction.information(best)
+        problem = friction.Problem(each, keys, sets, law, _followed)
+        best = friction.solve(problem, report=report)
+        found[name] = *best, friction.information(*best)
     least = min(each[2] for each in found.values())
-    for name, (_, best, aicc) in found.items():
-        own = math.sqrt(float(np.mean(best.residuals**2)))
-        weighed.append((name, best.point.size, own, aicc - least if aicc > least else 0.0))
+    weighed = [
+        (name, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
+        for name, (problem, best, aicc) in found.items()
+    ]
     total = sum(math.exp(-0.5 * row[3]) for row in weighed)
     name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
     errors = np.sqrt(np.diag(best.covariance))
-    size = np.outer(errors, errors)
-    fitted = problem.theory(np.log(values)[None])
+    scale = np.outer(errors, errors)
     return FrictionFit(
         parameters={
-            key: Parameter(value, float(value * error))
-            for key, value, error in zip(problem.keys, values, errors, strict=True)
-        }, correlations=tuple(map(tuple, (best.covariance / np.where(size > 0.0, size, 1.0)).tolist())),
+            key: Parameter(value, float(value * error), tuple(np.exp(ends).tolist()))
+            for key, value, error, ends in zip(
+                problem.keys, values, errors, friction.intervals(problem, best), strict=True
+            )
+        },
+        correlations=tuple(map(tuple, (best.covariance / np.where(scale > 0.0, scale, 1.0)).tolist())),
         not_identifiable=tuple(map(tuple, best.open(problem.keys))),
-        misfit=math.sqrt(float(np.mean(best.residuals**2))), model=name, models=tuple(WeighedModel(*row,
-        math.exp(-0.5 * row[3]) / total) for row in weighed) if models else (),
-        source=Path(problem.data.source).name if isinstance(data, (str, Path)) else problem.data.source,
-        notes=problem.data.notes, scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
+        misfit=_misfit(problem, best.point),
+        model=name,
+        models=tuple(
+            WeighedModel(*row, math.exp(-0.5 * row[3]) / total) for row in weighed if models
+        ),
+        source=" and ".join(
+            each.source if each.source == "`data`" else Path(each.source).name for each in problem.data
+        ),
+        notes=(
+            *dict.fromkeys(note for each in problem.data for note in each.notes),
+            *friction.alike(problem, best.point),
+        ),
+        scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
         data={
-            "conditions": problem.data.conditions, "measured": problem.data.measured,
-            "fitted": {each: rows[0] for each, rows in fitted.items()},
-            "units": units_for(scene.indenter, STEADY_UNITS), "solve": problem.solve,
+            "sets": problem.data, "fitted": [
+                {name: rows[0] for name, rows in each.items()}
+                for each in problem.theory(np.log(values)[None])
+            ],
+            "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
     )  # fmt: skip
+
+
+def _misfit(problem: Any, point: Any) -> float:
+    """Return the root mean square of the residuals without weights."""
+    return math.sqrt(float(np.mean(np.concatenate(problem.columns(point[None]), axis=1) ** 2)))
+
+
+def _followed(scene: Scene, time: Any) -> Any:
+    """Return a transient at times (s): by the continuum if it holds, else by the cheapest model."""
+    if lacks_transient(scene):
+        found: Any = cheapest(scene, at=time, rtol=COARSE)
+    else:
+        found = transient(scene, at=time, rtol=FINE, certify=False)
+    series = {name: getattr(found, name, None) for name in SERIES_UNITS}
+    with np.errstate(all="ignore"):
+        return SimpleNamespace(
+            **series, friction_coefficient=found.friction_force / found.normal_force
+        )
 
 
 def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:

@@ -13,6 +13,17 @@ from kvtheory.cli.outputs import OutputFile
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
+def scene_output(command: Any) -> Any:
+    """Give a command `-o` for the scene that it finds, `--plot` and `--json`."""
+    option = click.option(
+        "-o",
+        "--output",
+        type=OutputFile(".toml"),
+        help="Write the scene that is found to FILE.toml.",
+    )
+    return option(console.plot_option(console.overwrite_option(console.json_option(command))))
+
+
 @main.command(
     example="kvtheory foundation dma.csv --thickness '2 mm' --poisson-ratio 0.3 -o rubber.toml --plot fit.png"
 )
@@ -30,15 +41,7 @@ FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 @click.option("--arms", type=click.IntRange(1), help="Default: the fewest within the scatter.")
 @click.option("--rtol", type=float, help="Relative misfit allowed, instead of the scatter.")
 @click.option("--scene", type=FILE, help="Scene that is given this foundation; default: Table 1.")
-@click.option(
-    "-o",
-    "--output",
-    type=OutputFile(".toml"),
-    help="Write the scene with this foundation to FILE.toml.",
-)
-@console.plot_option
-@console.overwrite_option
-@console.json_option
+@scene_output
 def foundation(
     data: Path,
     scene: Path | None,
@@ -76,36 +79,26 @@ def _number(text: str) -> Any:
 
 @main.command(
     example="kvtheory fit --data mu.csv --free foundation.stiffness,foundation.retardation_time && "
-    "kvtheory fit --data mu.csv --models"
+    "kvtheory fit --data mu.csv --data run.csv --free foundation.arms"
 )
 @console.scene_options
 @click.option(
-    "--data",
-    type=FILE,
-    required=True,
-    help="CSV of friction over velocity: V [mm/s],mu or V [mm/s],F_x [N].",
-)
+    "--data", type=FILE, required=True, multiple=True,
+    help="CSV of friction over velocity (V [mm/s],mu) or over time (t [ms],F_x [N/mm],z_A [mm]); repeatable.",
+)  # fmt: skip
 @click.option("--free", metavar="KEY,...", help="Quantities of the scene to be fitted.")
 @click.option(
     "--models", is_flag=True, help="Weigh Kelvin-Voigt, a springpot and one to three arms instead."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=OutputFile(".toml"),
-    help="Write the scene with the fitted values to FILE.toml.",
-)
-@console.plot_option
-@console.overwrite_option
-@console.json_option
+@scene_output
 def fit(
-    scene: str | None, overrides: Sequence[str], data: Path, free: str | None, output: Path | None,
-    plot: Path | None, *, models: bool, as_json: bool,
+    scene: str | None, overrides: Sequence[str], data: Sequence[Path], free: str | None,
+    output: Path | None, plot: Path | None, *, models: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    """Fit quantities of SCENE to measured friction over velocity.
+    """Fit quantities of SCENE to measured friction over velocity, or to a time series of its transient.
 
-    Other columns of the data vary quantities from row to row: F_z [N] the load, T [degC] the temperature, or
-    any key of the scene.
+    Over velocity, other columns of the data vary quantities from row to row: F_z [N] the load, T [degC] the
+    temperature, or any key of the scene. Several --data are fitted together.
     """
     from kvtheory.api import fit as find
     from kvtheory.scene import load_scene
@@ -113,7 +106,7 @@ def fit(
     checked = load_scene(scene, overrides)
     with console.progress_bar("fit") as progress:
         found = find(
-            checked, data, free=console.split(free or ""), models=models, progress=progress
+            checked, list(data), free=console.split(free or ""), models=models, progress=progress
         )
     _finish(found, found.to_toml() if output else "", output, plot, as_json=as_json)
 

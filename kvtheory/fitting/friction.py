@@ -1,47 +1,36 @@
-"""Quantities of a scene from measured friction: least squares over the exact theory of steady sliding.
+"""Quantities of a scene from measured friction: least squares over the exact theory.
 
 Unknowns are logarithms. The first guess needs no help: the maximum of the measured friction gives the
 stiffness of the foundation, and the velocities its times (fact F26); many points around them are tried at
 once, as theory takes arrays, and the best ones are refined. The covariance is that of the linear theory at
 the minimum. A direction of the unknowns that the data leave open by more than a factor of two is reported
-by its keys.
+by its keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
+much above its minimum as linear theory predicts at two standard errors.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from kvtheory.fitting.tables import Reader, Table, named
-from kvtheory.scene.files import SECTIONS
+from kvtheory.fitting.least_squares import Fit, covariance, descend, slopes
+from kvtheory.fitting.records import FRICTION, Data
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
-from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import as_given, given
-from kvtheory.scene.tables import parts
 
 Array = NDArray[np.float64]
 Solve = Callable[[Scene], Any]
 """Returns steady sliding of the scenes of arrays."""
+Follow = Callable[[Scene, Array], Any]
+"""Returns the transient of one scene at times (s)."""
+Report = Callable[[float], Any]
 
-CONDITIONS = {
-    "drive.velocity": "V, v, velocity, speed, sliding velocity, drive velocity, Geschwindigkeit",
-    "load": "W, load, F_z, F_n, normal force, normal load, Last, Normalkraft",
-    "depth": "depth, delta, δ, indentation, indentation depth, Eindringtiefe",
-    "indenter.radius": "R, radius",
-    "foundation.temperature": "T, temp, temperature, Temperatur",
-}
-MEASURED = {
-    "friction_coefficient": "mu, μ, µ, friction coefficient, COF, Reibungszahl, Reibwert",
-    "friction_force": "F_x, F_t, F, friction, friction force, tangential force, Reibkraft, Reibungskraft",
-}
-STATIC = {"load": "support.load", "depth": "support.depth"}
-"""The keys of a support that are conditions if it has them; on other supports they are measured too."""
 STIFF = "foundation.stiffness", "foundation.modulus"
 """The keys of the stiffness of the foundation: its own, or that of a layer."""
 FLOOR = 0.01
@@ -57,155 +46,117 @@ FREE = 1e3
 """Factor beyond these ranges to which an unknown may go."""
 ORDER = 0.05, 1.0
 """Range of the order of a springpot."""
-TRIED, SOME = (6, 8, 10), 16
-"""Points that are tried for one, two and more unknowns (as powers of two), and rows of the data at most."""
-ROUNDS = (32, 6), (12, 10), (4, 15), (1, 200)
-"""How many of the best points are refined, and by how many steps, in each round."""
-SETTLED, MOST_DAMPING, LONGEST = 1e-10, 1e8, 2.0
-"""Gain of a step and damping at which a refinement ends, and the longest step of ln of an unknown."""
-SINGULAR = 1e-9
-"""Smallest singular value, over the largest, that is distinguished from zero."""
-STEP = 1e-5
-"""Change of ln of an unknown for slopes by central differences, whose error is about 1e-10."""
-OPEN = math.log(2.0)
-"""Standard error of ln of a combination of unknowns from which the data do not tell it."""
-SHARE = 0.2
-"""Part of a key in an open direction, over the largest, from which it belongs to it."""
+TRIED, SOME = {False: (6, 8, 10), True: (4, 6, 7)}, 16
+"""Points that are tried for one, two and more unknowns (as powers of two), of steady sliding and of a time
+series, and rows of the data at most."""
+ROUNDS = {
+    False: ((32, 6), (12, 10), (4, 15), (1, 200)),
+    True: ((6, 4), (2, 8), (1, 40)),
+}
+"""How many of the best points are refined, and by how many steps, in each round; likewise."""
+REWEIGHED = 3
+"""Times that columns are weighed by their scatter."""
+STEP = {False: 1e-5, True: 1e-3}
+"""Change of ln of an unknown for slopes: the transient has errors of about 1e-7."""
 MOST_ARMS = 3
 """Most arms of the models that are weighed: friction over velocity tells hardly more."""
 SHAPED = "retardation_time", "order"
 """Quantities that belong to one law of the foundation."""
-PRECISE = 1e-8
-"""Precision of slopes: scatter below it cannot be told from none."""
 FAILED = 1e3
 """Residual where theory has no answer."""
-
-
-class Data(NamedTuple):
-    """Conditions by key of the scene, and measured quantities, in SI, a value for each row."""
-
-    source: str
-    conditions: Mapping[str, Array]
-    measured: Mapping[str, Array]
-    notes: tuple[str, ...]
-
-    @property
-    def size(self) -> int:
-        """The number of rows."""
-        return self.conditions["drive.velocity"].size
-
-
-def read(data: Any, scene: Scene) -> Data:
-    """Return a table of friction over velocity, whose other columns are conditions named as in a scene."""
-    keys = scene.replaceable
-    spelt = {key: key for key in keys} | {
-        name: f"{name}, {own}" for name, own in CONDITIONS.items()
-    }
-    names = named(spelt | MEASURED)
-    reader = Reader(
-        names, lambda found: "drive.velocity" in found and bool(found & set(MEASURED)),
-        "a row such as V [mm/s],mu",
-    )  # fmt: skip
-    table = reader.read(data)
-    conditions, measured = {}, {}
-    for name in table.columns:
-        key = STATIC.get(name, name)
-        if key in keys:
-            spec = keys[key]
-            values = table.number(name) if spec.unit == "1" else table.si(name, spec.dimension)[0]
-            table.require(name, _admitted(spec, values), f"is out of range; expected {spec.range}")
-            conditions[key] = values
-        elif name in MEASURED or name in STATIC:
-            measured[name] = _measured(table, name, scene)
-        else:
-            raise table.error(name, f"is not of this scene; {nearest(name, keys)}")
-    if not np.any(conditions["drive.velocity"]):
-        raise table.error("drive.velocity", "is zero throughout; friction needs sliding")
-    for name, values in measured.items():
-        if not np.any(values):
-            raise table.error(name, "is zero throughout; there is nothing to fit")
-    for head in table.ignored:
-        if head.partition(".")[0] in SECTIONS:
-            raise ValueError(f'{table.source}: column "{head}": {nearest(parts(head)[0], keys)}')
-    notes = [f"Column {head} is not used." for head in table.ignored]
-    if len(measured.keys() & MEASURED.keys()) > 1:
-        notes.append("The friction coefficient is used, and not the friction force.")
-        del measured["friction_force"]
-    return Data(table.source, conditions, measured, tuple(notes))
-
-
-def _admitted(spec: Any, values: Array) -> NDArray[np.bool_]:
-    return np.array([spec.admits(float(value)) for value in values])
-
-
-def _measured(table: Table, name: str, scene: Scene) -> Array:
-    if name == "friction_coefficient":
-        return table.number(name)
-    force = "N/m" if scene.indenter.per_width else "N"
-    return table.si(name, "m" if name == "depth" else force)[0]
+ALIKE = 0.5
+"""Correlation of neighbouring residuals of a time series from which they are not scatter."""
+SIGMAS = 2.0
+"""Standard errors at which an interval ends, where errors are elliptic."""
+NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
+"""Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
+rise of the sum of squares there, and the relative change of a diagonal that keeps equations solvable."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A scene, its free quantities, the data, and the theory."""
+    """A scene, its free quantities, the data, and the theory; `weights` multiply the residuals."""
 
     scene: Scene
     keys: tuple[str, ...]
-    data: Data
+    data: tuple[Data, ...]
     solve: Solve
+    follow: Follow | None = None
+    weights: Any = 1.0
 
-    def theory(self, points: Array) -> Mapping[str, Array]:
+    @cached_property
+    def costly(self) -> bool:
+        """Whether there is a time series, which takes milliseconds for each point."""
+        return any(data.time is not None for data in self.data)
+
+    def theory(self, points: Array) -> list[dict[str, Array]]:
         """Return what is measured, of unknowns in rows, a column for each row of the data.
 
         NaN where theory has no answer.
         """
-        over = {key: np.exp(points[:, [i]]) for i, key in enumerate(self.keys)}
-        try:
-            with np.errstate(over="raise", invalid="raise", divide="raise"):
-                state = self.solve(self.scene.replace({**self.data.conditions, **over}))
-        except (ValueError, ArithmeticError, RuntimeError):
-            if len(points) == 1:
+        return [self._values(data, points) for data in self.data]
+
+    def _values(self, data: Data, points: Array) -> dict[str, Array]:
+        shape = len(points), data.size
+        if data.time is None or len(points) == 1:
+            over = {key: np.exp(points[:, [i]]) for i, key in enumerate(self.keys)}
+            try:
+                state = self._state(data, over)
                 return {
-                    name: np.full((1, v.size), np.nan) for name, v in self.data.measured.items()
+                    name: np.broadcast_to(getattr(state, name), shape) for name in data.measured
                 }
-            rows = [self.theory(point[None]) for point in points]
-            return {
-                name: np.concatenate([row[name] for row in rows]) for name in self.data.measured
-            }
-        shape = len(points), self.data.size
-        return {name: np.broadcast_to(getattr(state, name), shape) for name in self.data.measured}
+            except (ValueError, ArithmeticError, RuntimeError):
+                if len(points) == 1:
+                    return {name: np.full(shape, np.nan) for name in data.measured}
+        rows = [self._values(data, point[None]) for point in points]
+        return {name: np.concatenate([row[name] for row in rows]) for name in data.measured}
+
+    def _state(self, data: Data, over: Mapping[str, Array]) -> Any:
+        if data.time is None:
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                return self.solve(self.scene.replace({**data.conditions, **over}))
+        end = {"run.duration": max(self.scene.run.duration, float(data.time[-1]))}
+        own = {key: float(value.item()) for key, value in over.items()}
+        return self.follow(self.scene.replace({**data.conditions, **end, **own}), data.time)  # type: ignore[misc]
 
     @property
     def some(self) -> "Problem":
         """The same problem on some rows of the data."""
-        part = slice(None, None, -(-self.data.size // SOME))
-        conditions, measured = (
-            {name: values[part] for name, values in columns.items()}
-            for columns in (self.data.conditions, self.data.measured)
-        )
-        return replace(self, data=self.data._replace(conditions=conditions, measured=measured))
+        return replace(self, data=tuple(each.part(-(-each.size // SOME)) for each in self.data))
+
+    def columns(self, points: Array) -> list[Array]:
+        """Return the residuals of each column measured, of unknowns in rows.
+
+        Over velocity they are relative to the geometric mean of data and theory, as residuals relative to
+        the data alone would bias the fit; over time, to the root mean square of the column.
+        """
+        found = []
+        for data, own in zip(self.data, self.theory(points), strict=True):
+            for name, values in data.measured.items():
+                scale: Any = np.sqrt(np.mean(values * values))
+                if data.time is None:
+                    scale = np.sqrt(np.abs(own[name] * values))
+                    scale = np.maximum(scale, FLOOR * np.abs(values).max())
+                found.append(np.nan_to_num((own[name] - values) / scale, nan=FAILED))
+        return found
 
     def residuals(self, points: Array) -> Array:
-        """Return the residuals of unknowns in rows, relative to the geometric mean of data and theory.
-
-        Residuals relative to the data alone would bias the fit.
-        """
-        rows = []
-        own = self.theory(points)
-        for name, values in self.data.measured.items():
-            scale = np.sqrt(np.abs(own[name] * values))
-            rows.append((own[name] - values) / np.maximum(scale, FLOOR * np.abs(values).max()))
-        return np.nan_to_num(np.concatenate(rows, axis=1), nan=FAILED)
+        """Return the residuals of unknowns in rows, times the weights."""
+        return np.concatenate(self.columns(points), axis=1) * self.weights
 
     def slopes(self, points: Array, *, central: bool = False) -> Array:
-        """Return the derivatives of the residuals by the unknowns, along the last axis; points in rows."""
-        count, size = points.shape
-        steps = STEP * (np.concatenate([np.eye(size), -np.eye(size)]) if central else np.eye(size))
-        moved = self.residuals((points[:, None] + steps).reshape(-1, size)).reshape(
-            count, len(steps), -1
-        )
-        other = moved[:, size:] if central else self.residuals(points)[:, None]
-        return (moved[:, :size] - other).swapaxes(1, 2) / ((2.0 if central else 1.0) * STEP)
+        """Return the derivatives of the residuals by the unknowns, along the last axis."""
+        return slopes(self.residuals, points, step=STEP[self.costly], central=central)
+
+    def weighed(self, point: Array) -> "Problem":
+        """Return the problem in which each column has the weight of its scatter at a point."""
+        columns = [column[0] for column in self.columns(point[None])]
+        if len(columns) == 1:
+            return self
+        sizes = np.array([np.sqrt(np.mean(column * column)) for column in columns])
+        scatter = np.maximum(sizes, FLOOR * sizes.max() + np.finfo(float).tiny)
+        parts = [np.full(c.size, scatter.min() / s) for c, s in zip(columns, scatter, strict=True)]
+        return replace(self, weights=np.concatenate(parts))
 
     @cached_property
     def ranges(self) -> Array:
@@ -227,120 +178,141 @@ class Problem:
             rows.append(row)
         return np.log(np.array(rows))
 
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the largest ln of each unknown."""
+        low, high = self.ranges.T
+        orders = [key.endswith(".order") for key in self.keys]
+        return low - math.log(FREE), np.where(orders, 0.0, high + math.log(FREE))
+
     def _guess(self) -> tuple[float, Array]:
         """Return the stiffness (or modulus) of the foundation and the times of the data, by fact F26."""
-        scene, measured = self.scene, self.data.measured
+        scene, data = self.scene, self.some.data[0]
         key = STIFF[0] if scene.foundation.modulus is None else STIFF[1]
-        still = {**self.some.data.conditions, "drive.velocity": 0.0}
+        still = {**data.conditions, "drive.velocity": 0.0}
         first = float(scene.values()[key])
-        if key in self.keys:
-            name = next(name for name in ("load", *reversed(MEASURED)) if name in measured)
-            tried = np.logspace(*DECADES, 2 * (DECADES[1] - DECADES[0]) + 1)
-            off = [self._expected(name, {**still, key: K}) for K in tried]
-            off = np.log(np.array(off) / np.abs(measured[name]).max())
-            if np.nanmax(off) - np.nanmin(off) > 1.0:  # else it does not depend on the stiffness
+        tried = np.logspace(*DECADES, 2 * (DECADES[1] - DECADES[0]) + 1)
+        for name in [n for n in ("load", "normal_force", "depth", *FRICTION) if n in data.measured]:
+            off = [self._expected(name, {**still, key: K}) for K in tried if key in self.keys]
+            off = np.log(np.array(off) / np.abs(self.data[0].measured[name]).max())
+            if off.size and np.nanmax(off) - np.nanmin(off) > 1.0:  # else it does not depend on it
                 first = float(tried[np.nanargmin(np.abs(off))])
+                break
         a = np.mean(self.solve(scene.replace({**still, key: first})).half_length)
-        V = np.abs(self.data.conditions["drive.velocity"])
+        speeds = [
+            each.conditions["drive.velocity"] if each.time is None else _speeds(scene, each.time)
+            for each in self.data
+        ]
+        V = np.abs(np.concatenate(speeds))
         moving = V[V > 0.0]
         return first, a / np.array([moving.max(), moving.min()])
 
     def _expected(self, name: str, still: Mapping[str, Any]) -> float:
-        """Return the load at rest, or an estimate of the largest friction; NaN where there is no contact."""
+        """Return the load or depth at rest, or an estimate of the largest friction; NaN without contact."""
         try:
             state = self.solve(self.scene.replace(still))
         except (ValueError, ArithmeticError, RuntimeError):
             return math.nan
         mu = PEAK * state.depth / state.half_length
-        kinds = {"load": state.load, "friction_force": mu * state.load, "friction_coefficient": mu}
-        return float(np.mean(kinds[name]))
+        static = {"friction_coefficient": mu, "depth": state.depth, "load": state.load}
+        static["normal_force"] = state.load
+        return float(np.mean(static.get(name, mu * state.load)))
 
 
-class Solved(NamedTuple):
-    """The best unknowns (ln), the residuals there, and their slopes."""
-
-    point: Array
-    residuals: Array
-    slopes: Array
-
-    @property
-    def variance(self) -> float:
-        """The variance of a residual, by the degrees of freedom."""
-        free = max(self.residuals.size - self.point.size, 1)
-        return float(self.residuals @ self.residuals) / free
-
-    @property
-    def covariance(self) -> Array:
-        """The covariance of ln of the unknowns; huge in directions that the data leave open.
-
-        Where they leave none open it allows for scatter that varies (HC3: MacKinnon and White, 1985).
-        """
-        _, s, V = np.linalg.svd(self.slopes, full_matrices=False)
-        inverse = np.einsum("ki,k,kj->ij", V, np.maximum(s, SINGULAR * s[0]) ** -2.0, V)
-        if self.open(range(self.point.size)):
-            return inverse * self.variance
-        gain = np.einsum("ni,ij->nj", self.slopes, inverse)
-        left = np.maximum(1.0 - np.einsum("ni,ni->n", gain, self.slopes), 1.0 / self.residuals.size)
-        return np.einsum("ni,n,nj->ij", gain, (self.residuals / left) ** 2, gain)
-
-    def open(self, keys: Sequence[Any]) -> list[list[Any]]:
-        """Return the keys of each combination of unknowns that the data leave open."""
-        _, s, V = np.linalg.svd(self.slopes, full_matrices=False)
-        deviation = max(math.sqrt(self.variance), PRECISE)
-        directions = np.abs(V[deviation >= OPEN * np.maximum(s, SINGULAR * s[0])])
-        return [
-            [key for key, part in zip(keys, row, strict=True) if part > SHARE * row.max()]
-            for row in directions
-        ]
+def _speeds(scene: Scene, time: Array) -> Array:
+    """Return the largest speed of the drive during a time series."""
+    drive = scene.drive
+    if drive.function is None:
+        return np.array([max(abs(V) for _, V in drive.points)])
+    return np.abs([drive.called(t) for t in time.tolist()]).max(keepdims=True)
 
 
-def solve(problem: Problem, seed: int = 0) -> Solved:
-    """Return the minimum of the sum of squares over the whole range."""
+def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tuple[Problem, Fit]:
+    """Return the problem with the weights of its columns, and the minimum of its sum of squares."""
     low, high = problem.ranges.T
+    least, most = problem.limits
+    tried, rounds = TRIED[problem.costly], ROUNDS[problem.costly]
     points = qmc.scale(
-        qmc.Sobol(low.size, seed=seed).random_base2(TRIED[min(low.size, len(TRIED)) - 1]), low, high
+        qmc.Sobol(low.size, seed=seed).random_base2(tried[min(low.size, len(tried)) - 1]), low, high
     )
     score = np.sum(np.arctan(problem.some.residuals(points)) ** 2, axis=1)
-    beyond = math.log(FREE)
-    most = np.where([key.endswith(".order") for key in problem.keys], 0.0, high + beyond)
-    for count, steps in ROUNDS:
+
+    def descended(points: Array, steps: int) -> tuple[Array, Array]:
+        return descend(problem.residuals, points, least, most, steps, step=STEP[problem.costly])
+
+    for done, (count, steps) in enumerate(rounds):
+        if report:
+            report((1 + done) / (len(rounds) + 2))
         best = points[np.argsort(score)[: min(count, 4 * low.size**2)]]
-        points, score = _descended(problem, best, low - beyond, most, steps)
-    point = _sorted(points, problem.keys)
-    r = problem.residuals(point)[0]
-    return Solved(point[0], r, problem.slopes(point, central=True)[0])
+        points, score = descended(best, steps)
+    for _ in range(REWEIGHED if len(problem.columns(points)) > 1 else 0):
+        problem = problem.weighed(points[0])
+        points, score = descended(points, rounds[-1][1])
+    point = _sorted(points, problem.keys)[0]
+    r = problem.residuals(point[None])[0]
+    if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
+        told = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
+        raise ValueError(f"{problem.data[0].source}: {told}; check the scene")
+    return problem, Fit(point, r, problem.slopes(point[None], central=True)[0])
 
 
-def _descended(
-    problem: Problem, points: Array, low: Array, high: Array, steps: int
-) -> tuple[Array, Array]:
-    """Return points after Levenberg's and Marquardt's method, all at once, and their sums of squares."""
-    r = problem.residuals(points)
-    cost, damping = np.einsum("si,si->s", r, r), np.full(len(points), 1e-2)
-    active = np.full(len(points), True)
-    for _ in range(steps):
-        J = problem.slopes(points[active])
-        curve, slope = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r[active])
-        size = np.einsum("sii->si", curve)
-        size = np.maximum(size, SINGULAR * size.max(axis=1, keepdims=True) + np.finfo(float).tiny)
-        curve = curve + damping[active, None, None] * size[:, :, None] * np.eye(low.size)
-        move = np.linalg.solve(curve, -slope[..., None])[..., 0]
-        tried = np.clip(points[active] + np.clip(move, -LONGEST, LONGEST), low, high)
-        new = problem.residuals(tried)
-        total = np.einsum("si,si->s", new, new)
-        better = total < cost[active]
-        gain = np.where(better, 1.0 - total / cost[active], 1.0)
+def intervals(problem: Problem, found: Fit) -> Array:
+    """Return the limits of ln of each unknown (profile likelihood), infinite where none is found.
+
+    By the method of Venzon and Moolgavkar (1988): the sum of squares is as large as wanted, and the smallest
+    over the other unknowns. It allows for the same scatter as the standard errors.
+    """
+    size, (low, high) = found.point.size, problem.limits
+    errors = np.maximum(np.sqrt(np.diag(found.covariance)), STEP[problem.costly] ** 2)
+    least = float(found.residuals @ found.residuals)
+    rise = (SIGMAS * errors) ** 2 / np.diag(covariance(found.slopes))
+    own, side = np.tile(np.arange(size), 2), np.repeat([-1.0, 1.0], size)
+    wanted, limits = least + rise[own], side * np.inf
+    points = np.tile(found.point, (2 * size, 1))
+    active = np.full(2 * size, True)
+    for _ in range(NEWTON):
         at = np.flatnonzero(active)
-        points[at[better]], r[at[better]], cost[at[better]] = (
-            tried[better],
-            new[better],
-            total[better],
-        )
-        damping[at] *= np.where(better, 0.2, 5.0)
-        active[at] = (gain > SETTLED) & (damping[at] < MOST_DAMPING)
-        if not active.any():
+        if not at.size:
             break
-    return points, cost
+        i, J, r = own[at], problem.slopes(points[at]), problem.residuals(points[at])
+        rows = np.arange(at.size)
+        H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
+        stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))
+        moves = ~stuck & (np.arange(size) != i[:, None])
+        rest = H * moves[:, :, None] * moves[:, None]
+        own_rise = np.einsum("sii->si", H)
+        rest += np.eye(size) * np.where(moves & (own_rise > 0.0), RIDGE * own_rise, 1.0)[:, None]
+        others = np.stack([g, H[rows, :, i]], axis=-1) * moves[..., None]
+        inner = np.linalg.solve(rest, others)  # of the other unknowns, at a given one
+        a = H[rows, i, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 1])
+        b = g[rows, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 0])
+        total = np.einsum("sn,sn->s", r, r)
+        c = total - np.einsum("sj,sj->s", others[..., 0], inner[..., 0]) - wanted[at]
+        a = np.maximum(a, RIDGE * H[rows, i, i] + np.finfo(float).tiny)
+        move = (-b + side[at] * np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
+        step = -inner[..., 0] - inner[..., 1] * move[:, None]
+        step[rows, i] = move
+        off = np.maximum(np.abs(total - wanted[at]), np.abs(c + wanted[at] - total))
+        closed = off < CLOSE * rise[i]
+        limits[at[closed]] = points[at, i][closed]
+        step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None]
+        points[at] = np.clip(points[at] + step, low, high)
+        out = (points[at, i] <= low[i]) | (points[at, i] >= high[i])
+        active[at[closed | out]] = False
+    return limits.reshape(2, size).T
+
+
+def alike(problem: Problem, point: Array) -> list[str]:
+    """Return a note on each column over time whose residuals are alike from row to row."""
+    names = [(data, name) for data in problem.data for name in data.measured]
+    notes = []
+    for (data, name), rows in zip(names, problem.columns(point[None]), strict=True):
+        r = rows[0] - rows[0].mean()
+        alike = float(r[1:] @ r[:-1] / max(float(r @ r), np.finfo(float).tiny))
+        if data.time is not None and alike > ALIKE and float(np.std(r)) > STEP[True] ** 2:
+            told = f"The residuals of {name} over time are alike from row to row (correlation {alike:.2f})"
+            notes.append(f"{told}: the model is off, and the standard errors are too small.")
+    return notes
 
 
 def _sorted(points: Array, keys: Sequence[str]) -> Array:
@@ -359,13 +331,15 @@ def _sorted(points: Array, keys: Sequence[str]) -> Array:
     return points
 
 
-def information(found: Solved) -> float:
-    """Return Akaike's criterion AICc of a model; the lower, the better."""
-    n, k = found.residuals.size, found.point.size + 1
+def information(problem: Problem, found: Fit) -> float:
+    """Return Akaike's criterion AICc of a model, each column with its own scatter; the lower, the better."""
+    columns = [column[0] for column in problem.columns(found.point[None])]
+    n, k = found.residuals.size, found.point.size + len(columns)
     if n <= k + 1:
         return math.inf
-    mean = max(float(found.residuals @ found.residuals) / n, np.finfo(float).eps ** 2)
-    return n * math.log(mean) + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
+    least = np.finfo(float).eps ** 2
+    fit = sum(c.size * math.log(max(float(c @ c) / c.size, least)) for c in columns)
+    return fit + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
 
 
 def models(scene: Scene) -> dict[str, tuple[Scene, tuple[str, ...]]]:

@@ -135,19 +135,31 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
 
 
 def draw_friction_fit(fit: FrictionFit) -> Picture:
-    """Return the picture: measured and fitted friction over velocity, and the residuals.
+    """Return the picture: measured and fitted values over velocity or time, and the residuals."""
+    rows = [
+        (data, name, fitted[name])
+        for data, fitted in zip(fit.data["sets"], fit.data["fitted"], strict=True)
+        for name in data.measured
+    ]
+    figure = Picture(WIDTH, (HEIGHT + 0.4) * len(rows))
+    axes = figure.subplots(len(rows), 2, squeeze=False)
+    for (over, rest), (data, name, fitted) in zip(axes, rows, strict=True):
+        (_over_velocity if data.time is None else _over_time)(fit, data, name, fitted, over, rest)
+        rest.axhline(0.0, color=BLACK, linewidth=0.8)
+    axes[0, 0].set_title(f"data and fit of {fit.model}")
+    axes[0, 1].set_title(f"residuals, RMS {fit.misfit:.2%}")
+    return figure
 
-    Rows with equal conditions but the velocity form a curve.
-    """
-    name = next(name for name in fit.data["measured"] if name.startswith("friction"))
-    conditions, measured, fitted = (fit.data[part] for part in ("conditions", "measured", "fitted"))
-    V = np.abs(conditions["drive.velocity"])
-    others = {key: values for key, values in conditions.items() if key != "drive.velocity"}
+
+def _over_velocity(
+    fit: FrictionFit, data: Any, name: str, fitted: Any, over: Any, rest: Any
+) -> None:
+    """Draw rows with equal conditions but the velocity as a curve."""
+    V = np.abs(data.conditions["drive.velocity"])
+    others = {key: values for key, values in data.conditions.items() if key != "drive.velocity"}
     rows = np.array([0.0 * V, *others.values()]).T
     sets, group = np.unique(rows, axis=0, return_inverse=True)
     colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(sets)))
-    figure = Picture(WIDTH, HEIGHT + 0.4)
-    over, rest = figure.subplots(1, 2)
     label, factor = style.label(name, fit.data["units"][name])
     x_label, x_factor = LABELS["velocity"]
     for i, (values, colour) in enumerate(zip(sets, colours, strict=True)):
@@ -155,25 +167,35 @@ def draw_friction_fit(fit: FrictionFit) -> Picture:
         words = ", ".join(
             _condition(fit, key, value) for key, value in zip(others, values[1:], strict=True)
         )
-        over.plot(V[own] * x_factor, np.abs(measured[name][own]) * factor, "o", color=colour, markersize=3,
-                  label=words if len(sets) <= MOST_NAMED else None)  # fmt: skip
-        curve = np.geomspace(V[own & (V > 0.0)].min(), V[own].max(), CURVE)
-        where = {**dict(zip(others, values[1:], strict=True)), "drive.velocity": curve}
-        state = fit.data["solve"](fit.scene.replace(where))
-        over.plot(curve * x_factor, getattr(state, name) * factor, color=colour, linewidth=1.0)
-        off = (fitted[name][own] / measured[name][own] - 1.0) * 100.0
+        over.plot(
+            V[own] * x_factor, np.abs(data.measured[name][own]) * factor, "o", color=colour,
+            markersize=3, label=words if len(sets) <= MOST_NAMED else None,
+        )  # fmt: skip
+        if (V[own] > 0.0).any():
+            curve = np.geomspace(V[own & (V > 0.0)].min(), V[own].max(), CURVE)
+            where = {**dict(zip(others, values[1:], strict=True)), "drive.velocity": curve}
+            state = fit.data["solve"](fit.scene.replace(where))
+            line = np.broadcast_to(getattr(state, name), curve.shape)
+            over.plot(curve * x_factor, line * factor, color=colour, linewidth=1.0)
+        with np.errstate(all="ignore"):
+            off = (fitted[own] / data.measured[name][own] - 1.0) * 100.0
         rest.plot(V[own] * x_factor, off, "o", color=colour, markersize=3)
-    rest.axhline(0.0, color=BLACK, linewidth=0.8)
-    over.set(xscale="log", xlabel=x_label, ylabel=label, title=f"data and fit of {fit.model}")
-    rest.set(
-        xscale="log",
-        xlabel=x_label,
-        ylabel="fit minus data [%]",
-        title=f"residuals, RMS {fit.misfit:.2%}",
-    )
+    over.set(xscale="log", xlabel=x_label, ylabel=label)
+    rest.set(xscale="log", xlabel=x_label, ylabel="fit minus data [%]")
     if len(sets) > 1:
         over.legend()
-    return figure
+
+
+def _over_time(fit: FrictionFit, data: Any, name: str, fitted: Any, over: Any, rest: Any) -> None:
+    measured = data.measured[name]
+    label, factor = style.label(name, fit.data["units"][name])
+    x_label, x_factor = LABELS["time"]
+    over.plot(data.time * x_factor, measured * factor, "o", color=BLUE, markersize=2, alpha=0.5)
+    over.plot(data.time * x_factor, fitted * factor, color=BLACK, linewidth=1.0)
+    off = 100.0 * (fitted - measured) / np.sqrt(np.mean(measured**2))
+    rest.plot(data.time * x_factor, off, "o", color=BLUE, markersize=2, alpha=0.5)
+    over.set(xlabel=x_label, ylabel=label)
+    rest.set(xlabel=x_label, ylabel="fit minus data [% of its RMS]")
 
 
 def _condition(fit: FrictionFit, key: str, value: float) -> str:

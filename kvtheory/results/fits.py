@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from textwrap import wrap
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from kvtheory.export import Columns
 from kvtheory.results.certificate import Recorded
 from kvtheory.results.presented import Exported, above, aligned
@@ -113,10 +115,15 @@ class FoundationFit(Exported):
 
 
 class Parameter(NamedTuple):
-    """A fitted quantity of a scene and its standard error, of linear theory at the minimum, in SI."""
+    """A fitted quantity of a scene, in SI, and its standard error, of linear theory at the minimum.
+
+    `interval` is that of 95 % confidence, by the profile of the sum of squares; a limit that the data do not
+    give is 0 or infinite.
+    """
 
     value: float
     standard_error: float
+    interval: tuple[float, float]
 
 
 class WeighedModel(NamedTuple):
@@ -155,7 +162,7 @@ class FrictionFit(Exported):
     @property
     def remarks(self) -> list[str]:
         """What should be known about the fit, a line each."""
-        rows = len(self.data["conditions"]["drive.velocity"])
+        rows = sum(each.size for each in self.data["sets"])
         lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
         for keys in self.not_identifiable:
             apart = " apart: a combination of them" if len(keys) > 1 else ": it"
@@ -166,18 +173,25 @@ class FrictionFit(Exported):
     def __repr__(self) -> str:
         specs = self.scene.replaceable
         rows = [
-            (key, f"{value:.5g}", f"{error:.2g}", specs[key].unit, f"{error / value:.2g}")
-            for key, (value, error) in self.parameters.items()
+            (
+                key,
+                f"{value:.5g}",
+                f"{error:.2g}",
+                specs[key].unit,
+                f"{error / value:.2g}",
+                f"{low:.4g} to {high:.4g}",
+            )
+            for key, (value, error, (low, high)) in self.parameters.items()
         ]
-        heads = "quantity", "value", "standard error", "unit", "relative"
+        heads = "quantity", "value", "standard error", "unit", "relative", "95 % interval"
         lines = aligned(heads, rows)
         if self.models:
-            heads = "model", "unknowns", "misfit", "AICc", "weight"
+            columns = "model", "unknowns", "misfit", "AICc", "weight"
             weighed = [
                 (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
                 for m in self.models
             ]
-            lines += ["", *aligned(heads, weighed)]
+            lines += ["", *aligned(columns, weighed)]
         return "\n".join([f"Fit of {self.model}", *lines, "", *self.remarks])
 
     def to_toml(self) -> str:
@@ -186,10 +200,21 @@ class FrictionFit(Exported):
 
     def _columns(self) -> Columns:
         specs, units = self.scene.replaceable, self.data["units"]
-        columns = {key: (v, specs[key].unit) for key, v in self.data["conditions"].items()}
-        for name, values in self.data["measured"].items():
-            columns[f"{name}, data"] = values, units[name]
-            columns[f"{name}, fit"] = self.data["fitted"][name], units[name]
+        sets, columns = self.data["sets"], dict[str, Any]()
+        most = max(each.size for each in sets)
+        for each, fitted in zip(sets, self.data["fitted"], strict=True):
+            of = f" ({each.source})" if len(sets) > 1 else ""
+            own = {"time": (each.time, "s")} if each.time is not None else {}
+            own |= {key: (v, specs[key].unit) for key, v in each.conditions.items()}
+            for name, values in each.measured.items():
+                own |= {
+                    f"{name}, data": (values, units[name]),
+                    f"{name}, fit": (fitted[name], units[name]),
+                }
+            for name, (values, unit) in own.items():
+                held = np.full(most, np.nan)
+                held[: each.size] = values
+                columns[f"{name}{of}"] = held, unit
         return columns
 
     def _attributes(self) -> Mapping[str, str]:

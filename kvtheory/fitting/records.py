@@ -1,0 +1,156 @@
+"""Measured friction: over velocity, where other columns are conditions of each row, or over time."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.fitting.tables import Reader, Table, named
+from kvtheory.scene.files import SECTIONS
+from kvtheory.scene.mistakes import nearest
+from kvtheory.scene.model import Scene
+from kvtheory.scene.tables import parts
+
+Array = NDArray[np.float64]
+
+CONDITIONS = {
+    "drive.velocity": "V, v, velocity, speed, sliding velocity, drive velocity, Geschwindigkeit",
+    "load": "W, load, F_z, F_n, normal force, normal load, Last, Normalkraft",
+    "depth": "depth, delta, δ, indentation, indentation depth, Eindringtiefe",
+    "indenter.radius": "R, radius",
+    "foundation.temperature": "T, temp, temperature, Temperatur",
+}
+FRICTION = {
+    "friction_coefficient": "mu, μ, µ, friction coefficient, COF, Reibungszahl, Reibwert",
+    "friction_force": "F_x, F_t, F, friction, friction force, tangential force, Reibkraft, Reibungskraft",
+    "spring_force": "F_s, F_spring, spring force, drive force, pulling force, Federkraft, Zugkraft",
+}
+HEIGHT = "z_A, z, position, height, Höhe"
+"""Names of a height of the indenter, z_A = -depth (Eq. 18)."""
+STATIC = {"load": "support.load", "depth": "support.depth"}
+"""The keys of a support that are conditions of a row if it has them; on other supports they are measured."""
+MOST_ROWS = 2000
+"""Most rows of a time series that are used, at equal distances: more would hardly sharpen a fit."""
+SAME_DRIVE = 0.05
+"""Median difference of a column of velocities from the drive of the scene, over its largest velocity, up to
+which they are the same."""
+
+
+class Data(NamedTuple):
+    """Conditions by key of the scene, and measured quantities, in SI, a value for each row.
+
+    Those of a time series have a `time` (s), and one value for each condition.
+    """
+
+    source: str
+    conditions: Mapping[str, Array]
+    measured: Mapping[str, Array]
+    notes: tuple[str, ...]
+    time: Array | None = None
+
+    @property
+    def size(self) -> int:
+        """The number of rows."""
+        return next(iter(self.measured.values())).size
+
+    def part(self, step: int) -> "Data":
+        """Return every row of this number; a time series has no other conditions."""
+        cut = {name: values[::step] for name, values in self.measured.items()}
+        if self.time is not None:
+            return self._replace(measured=cut, time=self.time[::step])
+        rows = {name: values[::step] for name, values in self.conditions.items()}
+        return self._replace(measured=cut, conditions=rows)
+
+
+def _needed(found: set[str]) -> bool:
+    over_time = "time" in found and bool(found & {"load", "depth", "-depth", "support.depth"})
+    return over_time or (bool(found & {"time", "drive.velocity"}) and bool(found & set(FRICTION)))
+
+
+def read(data: Any, scene: Scene) -> Data:
+    """Return a table of friction over velocity, or of friction, forces or depth over time."""
+    keys = scene.replaceable
+    spelt = {key: key for key in keys} | {
+        name: f"{name}, {own}" for name, own in CONDITIONS.items()
+    }
+    names = named(spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT})
+    table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
+    for head in table.ignored:
+        if head.partition(".")[0] in SECTIONS:
+            raise ValueError(f'{table.source}: column "{head}": {nearest(parts(head)[0], keys)}')
+    notes = [f"Column {head} is not used." for head in table.ignored]
+    conditions, measured = _columns(table, scene)
+    for name, values in measured.items():
+        if not np.any(values):
+            raise ValueError(f"{table.source}: {name} is zero throughout; there is nothing to fit")
+    if len(measured.keys() & {"friction_coefficient", "friction_force"}) > 1:
+        notes.append("The friction coefficient is used, and not the friction force.")
+        del measured["friction_force"]
+    found = Data(table.source, conditions, measured, tuple(notes))
+    if "time" in table:
+        return _over_time(table, found, scene)
+    if not np.any(conditions["drive.velocity"]):
+        raise table.error("drive.velocity", "is zero throughout; friction needs sliding")
+    return found
+
+
+def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Return the conditions, with one value over time, and what is measured."""
+    keys, over_time = scene.replaceable, "time" in table
+    conditions: dict[str, Any] = {}
+    measured: dict[str, Array] = {}
+    for name in table.columns:
+        key = name if over_time else STATIC.get(name, name)
+        if name == "time" or (over_time and name == "drive.velocity"):
+            continue
+        if name == "spring_force" and (scene.drive.rigid or not over_time):
+            told = "is measured over time, with drive.stiffness; in steady sliding it is the friction force"
+            raise table.error(name, told)
+        if key in keys:
+            spec = keys[key]
+            values = table.number(name) if spec.unit == "1" else table.si(name, spec.dimension)[0]
+            good = np.array([spec.admits(float(value)) for value in values])
+            table.require(name, good, f"is out of range; expected {spec.range}")
+            if over_time:
+                told = "is not that of the first row; a time series has one value"
+                table.require(name, values == values[0], told)
+            conditions[key] = float(values[0]) if over_time else values
+        elif name in FRICTION or name.removeprefix("-") in STATIC:
+            shown = "normal_force" if over_time and name == "load" else name.removeprefix("-")
+            measured[shown] = _measured(table, name, scene)
+        else:
+            raise table.error(name, f"is not of this scene; {nearest(name, keys)}")
+    return conditions, measured
+
+
+def _measured(table: Table, name: str, scene: Scene) -> Array:
+    """Return a measured quantity in SI."""
+    if name == "friction_coefficient":
+        return table.number(name)
+    force = "N/m" if scene.indenter.per_width else "N"
+    values = table.si(name, "m" if name.endswith("depth") else force)[0]
+    return -values if name.startswith("-") else values
+
+
+def _over_time(table: Table, data: Data, scene: Scene) -> Data:
+    """Return a time series from t = 0 on, of not too many rows; the drive must be that of the scene."""
+    time, drive = table.si("time", "s")[0], scene.drive
+    table.require("time", np.append(True, np.diff(time) > 0.0), "does not follow the time before")
+    if "drive.velocity" in table and drive.function is None:
+        V = table.si("drive.velocity", "m/s")[0]
+        at, given = np.array(drive.points).T
+        off = np.median(np.abs(V - np.where(time < 0.0, V, np.interp(time, at, given))))
+        if off > SAME_DRIVE * np.abs(V).max():
+            told = "is not the drive of the scene; name this file as drive.file there, or leave out"
+            raise table.error("drive.velocity", f"{told} the time, for steady sliding row by row")
+    notes, first = list(data.notes), int(np.searchsorted(time, 0.0))
+    if first == time.size:
+        raise table.error("time", "is before t = 0, where sliding begins, throughout")
+    if first:
+        notes.append(f"{first} rows before t = 0, where sliding begins, are not used.")
+    step = -(-(time.size - first) // MOST_ROWS)
+    if step > 1:
+        notes.append(f"One row in {step} is used.")
+    measured = {name: values[first:] for name, values in data.measured.items()}
+    return data._replace(measured=measured, notes=tuple(notes), time=time[first:]).part(step)
