@@ -82,24 +82,3 @@ SCHEMES = {
     "edge-corrected": Scheme(SCHEME_ROWS["edge-corrected"], fitted=True),
 }
 """The schemes by name."""
-
-
-class ContactRule(NamedTuple):
-    """How an explicit scheme decides that an element presses; any value but the default is a mistake.
-
-    `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
-    only where the surface of the foundation is met. `stale`: within a step that surface is the one at its
-    start. `still`: elements stand still within it, and move at its end. `pulls`: an element below the plane
-    z = 0 is never let go. `relaxes`: the free surface decays as e^(-t/tau) (Eq. 20). `remembers`: it is
-    where the indenter left it; without, in the plane z = 0.
-    """
-
-    flags: bool = True
-    stale: bool = False
-    still: bool = False
-    pulls: bool = False
-    relaxes: bool = True
-    remembers: bool = True
-
-
-RIGHT = ContactRule()
