@@ -813,16 +813,16 @@ def press(row: Row, law: ElementStep, at: Array, place: float, velocity: float, 
 def report(row: Row, none: ElementStep, about: Array, unsure: float, found: Array) -> int:
     """Write the report at an instant into `found`, in the order of `simulation.COLUMNS`.
 
-    `none` is the law over no time, `about` is (time, V, V just before it, whether the base moves or
-    moved last with V >= 0, Y). At a kink of the shape, where p jumps, a run is divided in two. Where the
-    pressure is highest at an edge, its doubt is `unsure` times what it differs by between the elements there.
+    `none` is the law over no time, `about` is (time, V, whether the base moves or moved last with V >= 0, Y).
+    At a kink of the shape, where p jumps, a run is divided in two. Where the pressure is highest at an edge,
+    its doubt is `unsure` times what it differs by between the elements there.
     """
     c, state = row.constants, row.state
-    time, V, forward, depth = about[0], about[1], about[3], state[DEPTH]
+    time, V, forward, depth = about[0], about[1], about[2], state[DEPTH]
     sliding = V - state[ALONG_RATE]
     # An element on a kink is still on the flank before it.
     behind = math.copysign(NEAR * c.spacing, sliding) if c.kinks.size and sliding else 0.0
-    place = about[4] - state[ALONG] - behind
+    place = about[3] - state[ALONG] - behind
     status = set_window(row, (place, place), depth)
     if status != DONE:
         return status

@@ -204,5 +204,5 @@ def course_of(
     times = np.ascontiguousarray(times)  # the kernels are compiled once, for this layout
     return Course(
         times, motion(t)[0], motion(before)[1], over, which, np.array(after, dtype=np.int64),
-        np.array(about, dtype=float).reshape(len(after), 5), unsure, limits,
+        np.array(about, dtype=float).reshape(len(after), 4), unsure, limits,
     )  # fmt: skip

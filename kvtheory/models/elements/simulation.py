@@ -241,8 +241,8 @@ def _timetable(
         elif stop in path.changes:
             times[-1] = start = stop
         if stop in asked:
-            before, Y = path.velocity(times[-1], before=True), path.displacement(times[-1])
-            about.append((stop, path.velocity(stop), before, path.forward(stop), Y))
+            Y = path.displacement(times[-1])
+            about.append((stop, path.velocity(stop), path.forward(stop), Y))
             after.append(len(lengths))
         step = graded.get(stop, step)
     return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
