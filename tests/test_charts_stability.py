@@ -39,7 +39,7 @@ def test_growth_begins_where_it_is_predicted(scheme, tau, boundary):
         assert grows == (near < 1.0)
     for near, V in ((0.985, 0.985 * boundary), (1.015, 1.015 * boundary)):
         scene = moving(V)
-        limit = limit_at(SCHEMES[scheme], Model.of(scene), contact_lengths(scene)[0])
+        limit = limit_at(SCHEMES[scheme], Model.of(scene).constants, contact_lengths(scene)[0])
         assert (limit < PAPERS_STEP / V) == (near < 1.0)
 
 

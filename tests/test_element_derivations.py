@@ -12,7 +12,6 @@ from kvtheory.derivations import element_strips as strips
 from kvtheory.models.elements.kernels import (
     exponential_fit,
     kink_area,
-    ramp_functions,
     weigh,
 )
 from kvtheory.theory.laws import Element
@@ -33,10 +32,11 @@ def test_exponential_fit_of_the_code_is_the_derived_one(z):
 
 @pytest.mark.parametrize("z", [1e-6, 0.019, 0.021, 3.0, 1e4])
 def test_ramp_of_an_arm_in_the_code_is_the_derived_one(z):
-    found = ramp_functions(z)
+    step = Element.of(1.0, 0.0, [(1.0, 1.0)]).step(z)
     with mp.workdps(40):
-        for value, form in zip(found, (arms.END, arms.MEAN), strict=True):
-            assert value == pytest.approx(float(form.subs(arms._z, sp.Float(z, 40))), rel=1e-12)
+        end, mean = (form.subs(arms._z, sp.Float(z, 40)) for form in (arms.END, arms.MEAN))
+        assert step.ramp[0] == pytest.approx(float(end), rel=1e-12)
+        assert step.stiffness - 0.5 == pytest.approx(float(mean), rel=1e-12)
 
 
 def step_matrix(law, M, L, k_s, h, theta):

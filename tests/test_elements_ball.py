@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements.model import Model
+from kvtheory.models.elements import kernels
+from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results import TRANSIENT_UNITS
@@ -105,18 +106,16 @@ def test_extremes_of_a_ball():
 
 def test_strips_are_added_where_the_ball_sinks():
     """From a fifth of its depth it sinks to where it rests, on strips that were not there at first."""
-    scene = ball(GRIPS["dead-weight"], 0.0, 0.5)
-    model = replace(Model.of(scene, 2e-5, parts=True), start=0.2)
-    row = ElementRow(model, model.path(scene))
-    begun, state = (
-        (row.stored.low < row.stored.high).sum(),
-        IndenterState(0.0, 0.2 * model.depth, 0.0),
-    )
+    model = Model.of(ball(GRIPS["dead-weight"], 0.0, 0.5), 2e-5, parts=True)
+    row, c = ElementRow(model.constants, kv.Drive(0.0).motion(0.5, 0.1)), model.constants
+    row.lay(0.2 * c.depth, lambda x, y: np.maximum(0.2 * c.depth - model.height(x, y), 0.0))
+    begun, state = int(row.stored.counts[kernels.STRIPS]), IndenterState(0.0, 0.2 * c.depth, 0.0)
     for _ in range(250):
         state = row.step(state, 2e-3)
-    assert model.strips(0.2 * model.depth) <= begun <= model.strips(model.depth)
-    assert (row.stored.low < row.stored.high).sum() >= model.strips(model.depth)
-    assert state.depth == pytest.approx(model.depth, rel=1e-6)
+    rims = [span(c.surface, share * c.depth)[1] * WIDER.stretch for share in (0.2, 1.0)]
+    assert begun == 1 + int(rims[0] / c.across)
+    assert row.stored.counts[kernels.STRIPS] >= 1 + int(rims[1] / c.across)
+    assert state.depth == pytest.approx(c.depth, rel=1e-6)
 
 
 def test_compare_judges_the_series_of_a_ball(tmp_path):

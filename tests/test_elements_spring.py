@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.elements import kernels
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
@@ -70,7 +71,7 @@ def test_the_order_of_every_scheme(scheme):
             TABLE_1, per_length=density, scheme=scheme, at=times, certify=False, time_step=2.0 / density
         )  # fmt: skip
         found.append(errors(run, truth, TABLE_1))
-    a_0 = Model.of(TABLE_1).half_length
+    a_0 = Model.of(TABLE_1).at_rest.half_length
     for name in ("depth", "sliding_velocity", "spring_force"):
         column = np.array([each[name] for each in found])
         assert np.max(column * densities * a_0) < 0.3, name
@@ -79,16 +80,26 @@ def test_the_order_of_every_scheme(scheme):
             assert order == pytest.approx(2.0, abs=0.15), name
 
 
+def compressed(row):
+    """Return u of all stored elements of a line contact, and the forces of their arms."""
+    stored, law = row.stored, row.constants.law
+    modes, touched = row.stored.modes[:, 0] * row.faded[:, None], stored.flags[kernels.TOUCHED, 0]
+    u = np.where(touched, stored.rows[kernels.U, 0], law.shares @ modes)
+    arms = law.arm_stiffness.size
+    free = law.arm_stiffness[:, None] * (u - law.from_modes @ modes) if arms else modes[:0]
+    return u, np.where(touched, stored.modes[:arms, 0], free)
+
+
 def energies(row, state, h, count):
     """Return the energy of a Kelvin-Voigt scene on a drive at rest, over so many steps."""
-    model, found = row.model, []
+    c, found = row.constants, []
     for _ in range(count):
-        risen = model.depth - state.depth
-        moving = model.mass * state.rate**2 if math.isfinite(model.mass) else 0.0
-        moving += model.mass_along * state.along_rate**2 + model.spring_along * state.along**2
-        lifted = model.weight * risen if math.isfinite(model.mass) else 0.0
-        springs = model.law.stiffness * model.spacing * float(np.square(row.states()[0]).sum())
-        found.append(0.5 * (moving + model.spring * risen**2 + springs) + lifted)
+        risen = c.depth - state.depth
+        moving = c.mass * state.rate**2 if math.isfinite(c.mass) else 0.0
+        moving += c.mass_along * state.along_rate**2 + c.spring_along * state.along**2
+        lifted = c.weight * risen if math.isfinite(c.mass) else 0.0
+        springs = c.law.stiffness * c.spacing * float(np.square(compressed(row)[0]).sum())
+        found.append(0.5 * (moving + c.spring * risen**2 + springs) + lifted)
         state = row.step(state, h)
     return np.array(found)
 
@@ -100,8 +111,8 @@ def test_no_step_gains_energy_however_long(support, h):
     drive = kv.Drive(velocity=0.0, stiffness="0.1 MN/m^2", mass="0.2 kg/mm")
     scene = kv.Scene(support=kv.Scene.table1(support).support, drive=drive)
     model = Model.of(scene, 2e-5)
-    row = ElementRow(model, model.path(scene), SCHEMES["exponential"], 1e7)
-    start = IndenterState(0.0, model.depth, 0.0, along_rate=0.02)
+    row = ElementRow(model.constants, model.path(scene), SCHEMES["exponential"], 1e7)
+    start = IndenterState(0.0, model.at_rest.depth, 0.0, along_rate=0.02)
     energy = energies(row, start, h, 60)
     assert energy[0] > energy[-1]
     assert np.all(np.diff(energy) <= 1e-6 * (energy[0] - energy[-1]))
@@ -117,24 +128,25 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
     lacking = []
     for density in (1e4, 2e4, 4e4):
         model = Model.of(scene, 1.0 / density)
-        row, h = ElementRow(model, model.path(scene), SCHEMES["exponential"]), 4.0 / density
-        state, rows = IndenterState(0.0, model.depth, 0.0), []
-        K_i, tau = model.law.arm_stiffness[:, None], model.law.arm_time[:, None]
+        c, h = model.constants, 4.0 / density
+        row = ElementRow(c, model.path(scene), SCHEMES["exponential"])
+        state, rows = IndenterState(0.0, c.depth, 0.0), []
+        K_i, tau = c.law.arm_stiffness[:, None], c.law.arm_time[:, None]
         for _ in range(round(0.04 / h) + 1):
-            u, s = (each[..., 0, :] for each in row.states())
-            springs = model.law.stiffness * u @ u + (s * s / K_i).sum()
-            moving = model.mass * state.rate**2 + model.mass_along * state.along_rate**2
+            u, s = compressed(row)
+            springs = c.law.stiffness * u @ u + (s * s / K_i).sum()
+            moving = c.mass * state.rate**2 + c.mass_along * state.along_rate**2
             held = 1e6 * state.along + 1e3 * state.along_rate
             rows.append((
-                0.5 * (moving + 1e6 * state.along**2 + model.spacing * springs)
-                - model.weight * state.depth,
-                model.spacing * (s * s / (K_i * tau)).sum() + 1e3 * state.along_rate**2,
+                0.5 * (moving + 1e6 * state.along**2 + c.spacing * springs)
+                - c.weight * state.depth,
+                c.spacing * (s * s / (K_i * tau)).sum() + 1e3 * state.along_rate**2,
                 0.1 * held,
             ))  # fmt: skip
             last, state = state, row.step(state, h)
         stored, lost, power = np.array(rows).T
         # That of friction on the base, F_x = k_x x + c_x x' + M_x x''.
-        work = np.trapezoid(power, dx=h) + 0.1 * model.mass_along * last.along_rate
+        work = np.trapezoid(power, dx=h) + 0.1 * c.mass_along * last.along_rate
         lacking.append(abs(stored[-1] - stored[0] + np.trapezoid(lost, dx=h) - work) / work)
     assert lacking[-1] < 2e-3
     assert lacking[0] / lacking[-1] > 3.0
@@ -174,8 +186,10 @@ def test_the_stable_step_of_a_light_mass_along_x():
     drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", mass="1 g/mm")
     scene = kv.Scene(drive=drive, run=kv.Run(0.02))
     model = Model.of(scene, 1e-5)
-    limit = limit_at(SCHEMES["paper"], model, max(lengths(model, model.path(scene))))
-    assert limit < 0.1 * limit_at(SCHEMES["paper"], Model.of(kv.Scene()), 2.0 * model.half_length)
+    limit = limit_at(SCHEMES["paper"], model.constants, max(lengths(model, model.path(scene))))
+    assert limit < 0.1 * limit_at(
+        SCHEMES["paper"], Model.of(kv.Scene()).constants, 2.0 * model.at_rest.half_length
+    )
 
     def run(share):
         step = {"scheme": "paper", "time_step": share * limit, "certify": False}

@@ -93,8 +93,8 @@ def _walk(
     """Yield steps from rest or steady sliding, with initial velocity `nudge`, until it sinks too deep."""
     scheme = SCHEMES[name]
     model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
-    row = ElementRow(model, model.path(scene), scheme, DEEP)
-    state = IndenterState(0.0, model.depth, nudge)
+    row = ElementRow(model.constants, model.path(scene), scheme, DEEP)
+    state = IndenterState(0.0, model.at_rest.depth, nudge)
     if steady is not None:
         depth, front, back = map(float, (steady.depth, steady.leading_edge, steady.trailing_edge))
         left = depth - float(model.height(back))
@@ -169,7 +169,9 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
 
     def point(number: float, share: float) -> tuple[Scene, float]:
         scene = scaled_scene([(0.0, 1.0, number)], epsilon)
-        return scene, share * limit_at(limited, Model.of(scene), contact_lengths(scene)[0])
+        return scene, share * limit_at(
+            limited, Model.of(scene).constants, contact_lengths(scene)[0]
+        )
 
     return _map(scheme, numbers, steps, point, PER_HALF_LENGTH)
 
@@ -182,7 +184,7 @@ def _map(
 
     def measured(scene: Scene, time_step: float) -> list[float]:
         model, (sliding, first) = Model.of(scene), contact_lengths(scene)
-        limits = [limit_at(SCHEMES[scheme], model, length) for length in (first, sliding)]
+        limits = [limit_at(SCHEMES[scheme], model.constants, length) for length in (first, sliding)]
         ways = False, True
         found = [growth(scene, scheme, per_length, time_step, steady=steady) for steady in ways]
         return [*found, *(time_step / limit for limit in limits)]

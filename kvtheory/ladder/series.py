@@ -232,10 +232,10 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
     need(lacks_arms(scene))
 
     def run() -> Answer:
-        from kvtheory.models.elements.model import SAMPLES, Model  # slow to import
+        from kvtheory.models.elements.model import Model  # slow to import
 
         model, line = Model.of(scene), scene.indenter.per_width
-        length, measures = SAMPLES * model.spacing, scales(model.at_rest)
+        length, measures = 2.0 * model.at_rest.half_length, scales(model.at_rest)
         count, finer, before = ELEMENTS, math.nan, None
         while True:
             result = models.elements(scene, per_length=count / length, at=request.times)

@@ -40,7 +40,7 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
     for index, scene in scenes.items():
         try:
             model = Model.of(scene, 0.0)
-            spacing = model.half_length / PER_HALF_LENGTH
+            spacing = model.at_rest.half_length / PER_HALF_LENGTH
             at = [*times, scene.run.duration, *(_samples(scene, spacing) if sampled else ())]
             run = simulate(scene, spacing, SCHEMES[DEFAULT], at=at, time_step=None, certify=True)
         except FAILS as error:

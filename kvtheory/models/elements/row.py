@@ -6,16 +6,15 @@ row for each strip, at y = 0, dy, ...
 """
 
 import math
-from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory import compilation
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.kernels import Course, Elements
-from kvtheory.models.elements.model import Model, span
+from kvtheory.models.elements.kernels import Constants, Course, Row
+from kvtheory.models.elements.model import span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
 from kvtheory.theory.laws import Array, Element
@@ -60,64 +59,55 @@ def compiled_advance() -> Any:
 
 
 class ElementRow:
-    """The stored elements, the motion of the base, and the indenter above them, moved by a scheme.
+    """The stored elements and the indenter, at rest in them, above a moving base.
 
     `compiled` says whether its steps are compiled.
     """
 
     def __init__(
-        self, model: Model, path: BaseMotion, scheme: Scheme = SCHEMES[DEFAULT],
+        self, constants: Constants, path: BaseMotion, scheme: Scheme = SCHEMES[DEFAULT],
         kept_depth: float = KEPT_DEPTH,
     ) -> None:  # fmt: skip
-        self.model, self.path, self.compiled, law = model, path, False, model.law
-        if not model.rule.relaxes:
-            law = law._replace(rates=0.0 * law.rates)
-        self.memory = -math.log(FORGOTTEN) * (law.longest_time if law.rates.any() else math.inf)
-        self.deepest, self.state = kept_depth * model.depth, np.zeros(kernels.CURVED + 1)
-        shared = ((name, getattr(model, name, None)) for name in Elements._fields)
-        self.constants: dict[str, Any] = {
-            name: float(x) if isinstance(x, float) else x for name, x in shared if x is not None
-        } | {
-            "law": law, "tableau": scheme.table, "fitted": scheme.fitted, "deepest": self.deepest,
-            "rest_velocity": model.at_rest.velocity, "profile": model.profile,
-            "faded": np.ones(law.rates.size),
-            "kinks": np.array(model.indenter.kinks, dtype=float),
-        }  # fmt: skip
+        self.constants, self.path, self.compiled = constants, path, False
+        self.tableau, self.fitted = scheme.table, scheme.fitted
+        self.deepest, self.state = kept_depth * constants.depth, np.zeros(kernels.CURVED + 1)
+        self.faded, depth = np.ones(constants.law.rates.size), constants.depth
+        self.state[kernels.FORCES] = constants.weight
         self.stored = self._empty(0, 1, 1)
-        depth = model.start * model.depth
-        self.lay(depth, lambda x, y: np.maximum(depth - model.height(x, y), 0.0))
-        self.state[kernels.DEPTH], self.state[kernels.FORCES] = depth, model.weight
-
-    def compile(self, steps: int) -> None:
-        """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
-        work = steps * self.stored.low.size
-        pays = Tally.steps + work > WORTHWHILE and compilation.available()
-        Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
-        self.compiled = pays and self.model.profile is None
+        height = partial(kernels.surface_at, constants.surface)
+        self.lay(depth, lambda x, y: np.maximum(depth - height(x, y)[0], 0.0))
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
         """Press the indenter to a depth into elements at Y = 0 that are compressed by `surface`(x, y).
 
         In contact are those where `contact`(x) or, without it, those that are compressed.
         """
+        self.state[kernels.DEPTH], self.stored.counts[kernels.BEGUN] = depth, 0
         while kernels.set_window(self.stored, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
-        row = self.stored
-        for each in (row.modes, row.rows, row.flags):
-            each[...] = 0
+        row, law = self.stored, self.constants.law
+        row.modes[...], row.flags[...] = 0.0, False
+        kernels.approach(row, np.zeros_like(self.faded), 0.0, depth)
         for j in range(int(row.counts[kernels.STRIPS])):
             part = slice(row.low[j], row.high[j])
-            x = row.spacing * row.numbers[part]
-            u = surface(x, j * row.across)
-            row.rows[kernels.U, j, part] = u
-            row.flags[kernels.TOUCHED, j, part] = contact(x) if contact else u > 0.0
-            if not row.law.arm_time.size:
+            x = self.constants.spacing * row.numbers[part]
+            u = surface(x, j * self.constants.across)
+            row.rows[kernels.MEETS, j, part] += u
+            row.flags[:, j, part] = contact(x) if contact else u > 0.0
+            if not law.arm_time.size:
                 row.modes[0, j, part] = u
-        self._begin()
-        kernels.approach(row, np.ones_like(row.faded), 0.0, 0.0, depth)
-        kernels.add_kinks(row, row.law.step(1.0), 0.0)
-        kernels.begin(row)
+        kernels.find_runs(row)
+        kernels.add_kinks(row, law.step(1.0), 0.0)
+        kernels.begin(row, depth)
 
+    def compile(self, steps: int) -> None:
+        """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
+        work = steps * self.stored.low.size
+        pays = Tally.steps + work > WORTHWHILE and compilation.available()
+        Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
+        self.compiled = pays and self.constants.surface.profile is None
+
+    @np.errstate(all="ignore")  # the kernels check the results
     def run(
         self, course: Course, found: Array, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
@@ -125,9 +115,7 @@ class ElementRow:
         advance = compiled_advance() if self.compiled else kernels.advance
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
-            status, step, reported = advance(
-                self.stored, self.state, course, found, step, reported, until
-            )
+            status, step, reported = advance(self.stored, course, found, step, reported, until)
             if status == kernels.LACKING:
                 self._move(float(course.times[step]))
         return status, step, reported
@@ -142,80 +130,63 @@ class ElementRow:
         """
         self.state[:4] = state[1:]
         times = state.time + np.array([0.0, h])
-        course = course_of(self.path, self.stored.law, times, np.array([h]))
+        course = course_of(self.path, self.constants.law, times, np.array([h]))
         if self.run(course, np.zeros((0, 1)), (0, 0), 1)[0]:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))
 
-    def states(self) -> tuple[Array, Array]:
-        """Return u of all stored elements, and the forces of their arms."""
-        row, law = self.stored, self.stored.law
-        modes = row.modes * row.faded[:, None, None]
-        u = np.tensordot(law.shares, modes, 1)
-        if not law.arm_time.size:
-            return u, modes[:0]
-        touched = row.flags[kernels.TOUCHED]
-        u = np.where(touched, row.rows[kernels.U], u)
-        free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
-        return u, np.where(touched, row.modes, free)
-
-    def _empty(self, first: int, width: int, strips: int, runs: int = 0) -> Elements:
+    def _empty(self, first: int, width: int, strips: int) -> Row:
         """Return elements that are undisturbed."""
-        law, runs = self.model.law, max(runs, 2 * strips)
-        low, high, counts = (np.zeros(n, np.int64) for n in (strips, strips, kernels.UPDATES + 1))
-        counts[kernels.FIRST], (begun, ended) = first, np.zeros((2, runs, 3), dtype=np.int64)
-        return Elements(
-            modes=np.zeros((law.rates.size, strips, width)), rows=np.zeros((5, strips, width)),
-            flags=np.zeros((2, strips, width), dtype=bool), low=low, high=high, counts=counts,
-            numbers=np.arange(float(first), first + width) + self.model.shift, begun=begun, ended=ended,
-            edges=np.zeros((runs, 2, 3)), weights=np.ones(strips), ramps=np.zeros(law.arm_time.size),
-            stages=np.zeros((7, max(4, law.rates.size))), **self.constants,
+        arms, counts = self.constants.law.rates.size, np.zeros(kernels.UPDATES + 1, np.int64)
+        counts[kernels.FIRST], runs = first, strips * (width // 2 + 1)
+        return Row(
+            constants=self.constants, tableau=self.tableau, fitted=self.fitted, deepest=self.deepest,
+            state=self.state, modes=np.zeros((arms, strips, width)), faded=self.faded,
+            rows=np.zeros((5, strips, width)), flags=np.zeros((3, strips, width), dtype=bool),
+            low=np.zeros(strips, np.int64), high=np.zeros(strips, np.int64), counts=counts,
+            numbers=np.arange(float(first), first + width) + self.constants.shift,
+            begun=np.zeros((runs, 3), np.int64), ended=np.zeros((runs, 3), np.int64),
+            edges=np.zeros((runs, 2, 3)), weights=np.ones(strips), stages=np.zeros((7, max(4, arms))),
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
         old = self.stored
-        first, low, high, strips, runs, *_ = old.counts.tolist()
+        first, low, high, strips, count, *_ = old.counts.tolist()
         rows, width = old.flags.shape[1:]
         spare, useful = (high - low) // 2, self._useful(t)
         start = min(low - spare, max(first, useful[0]))
         stop = max(high + spare, min(first + width, useful[1]))
-        new = self._empty(start, stop - start, max(strips, rows), max(2 * runs, len(old.edges)))
-        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
-        new.counts[kernels.STRIPS] = rows
+        strips = max(strips, rows)
+        new = self._empty(start, stop - start, strips)
+        new.counts[kernels.BEGUN :] = old.counts[kernels.BEGUN :]
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
             for name in ("modes", "rows", "flags"):
                 getattr(new, name)[:, :rows, to] = getattr(old, name)[..., of]
-        new.low[:rows], new.high[:rows] = 0, stop - start
-        new.edges[: len(old.edges)] = old.edges[..., [kernels.OLD, kernels.OLD, kernels.FALLS]]
+        new.begun[:count] = old.begun[:count] + np.array([0, first - start, first - start])
+        new.edges[:count] = old.edges[:count]
         self.stored = new
-        self._begin()
-
-    def _begin(self) -> None:
-        """Find the runs of elements in contact."""
-        row = self.stored
-        row.rows[kernels.HEIGHT] = np.where(row.flags[kernels.TOUCHED], -1.0, 1.0)
-        kernels.find_runs(row, kernels.HEIGHT, 0.0)
-        kernels.begin(row)
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
-        dx, row = self.model.spacing, self.stored
-        if self.model.sprung:
-            compressed = np.abs(self.states()[0]) > FORGOTTEN * self.model.depth
-            known = np.flatnonzero((compressed | row.flags[kernels.TOUCHED]).any(axis=0))
+        c, row = self.constants, self.stored
+        if math.isfinite(c.mass_along):
+            compressed = np.abs(c.law.shares * self.faded @ row.modes.reshape(self.faded.size, -1))
+            known = (compressed > FORGOTTEN * c.depth).reshape(row.flags[0].shape)
+            known = np.flatnonzero((known | row.flags[kernels.TOUCHED]).any(axis=0))
             first = int(row.counts[kernels.FIRST])
             return first + int(known.min(initial=0)), first + int(known.max(initial=-1)) + 1
-        back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
-        low, high = span(self.model.indenter, self.deepest)
-        return math.floor((low - ahead) / dx), math.ceil((high - back) / dx)
+        memory = -math.log(FORGOTTEN) * c.law.longest_time
+        back, ahead = self.path.extremes(t, min(t + memory, max(t, self.path.end)))
+        low, high = span(c.surface, self.deepest)
+        return math.floor((low - ahead) / c.spacing), math.ceil((high - back) / c.spacing)
 
 
 def course_of(
     path: BaseMotion, law: Element, times: Array, steps: Array, after: Any = (), about: Any = (),
-    limits: Sequence[float] = (-math.inf, math.inf, math.inf),
+    unsure: float = 0.0, limits: Any = (-math.inf, math.inf, math.inf),
 ) -> Course:  # fmt: skip
     """Return the course of steps between these times, with the motion of the base and of an element."""
     t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
@@ -228,9 +199,10 @@ def course_of(
         Y, V, _ = evaluate(pieces, times)  # type: ignore[arg-type]
         return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)
 
-    reports = np.array(about, dtype=float).reshape(len(after), 5)
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
     times = np.ascontiguousarray(times)  # the kernels are compiled once, for this layout
-    return Course(times, motion(t)[0], motion(before)[1], np.array(after, dtype=np.int64), reports,
-                  np.array(limits), over, which)  # fmt: skip
+    return Course(
+        times, motion(t)[0], motion(before)[1], over, which, np.array(after, dtype=np.int64),
+        np.array(about, dtype=float).reshape(len(after), 4), unsure, limits,
+    )  # fmt: skip

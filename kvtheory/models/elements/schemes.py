@@ -20,9 +20,10 @@ lets the velocity fall by e^(-z), and the order is two. Both are stable at any s
 On a spring the place along x is found likewise, with the force of an element times its slope halfway
 through the step. The work of these forces is what elements of a parabola store and lose, so that no step
 gains energy. On arms, an element in contact is a true element under a surface that moves along a straight
-line, and the same holds. C is here the damper which, beside a spring, does to a ramp as the arms do in a
-step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones; so θ - 1/2 is of the third
-order in h, and the scheme of the second (derivation `element-arms`).
+line, and so is one that is met in the step, from where it is free; the same holds. C is here the damper
+which, beside a spring, does to a ramp as the arms do in a step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast
+arms, h² K_i/(6 τ_i) of slow ones; so θ - 1/2 is of the third order in h, and the scheme of the second
+(derivation `element-arms`).
 
 Sums over whole elements carry the sawtooth of theorem F15-sawtooth: on Table 1 at the paper's density 2e-3
 of the force at the start, 1e-3 in steady sliding, halved with the spacing. With the kinks of the surface at
@@ -82,24 +83,3 @@ SCHEMES = {
     "edge-corrected": Scheme(SCHEME_ROWS["edge-corrected"], fitted=True),
 }
 """The schemes by name."""
-
-
-class ContactRule(NamedTuple):
-    """How an explicit scheme decides that an element presses; any value but the default is a mistake.
-
-    `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
-    only where the surface of the foundation is met. `stale`: within a step that surface is the one at its
-    start. `still`: elements stand still within it, and move at its end. `pulls`: an element below the plane
-    z = 0 is never let go. `relaxes`: the free surface decays as e^(-t/tau) (Eq. 20). `remembers`: it is
-    where the indenter left it; without, in the plane z = 0.
-    """
-
-    flags: bool = True
-    stale: bool = False
-    still: bool = False
-    pulls: bool = False
-    relaxes: bool = True
-    remembers: bool = True
-
-
-RIGHT = ContactRule()

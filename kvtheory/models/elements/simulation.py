@@ -3,15 +3,15 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from kvtheory.models.elements import kernels, stability
+from kvtheory.models.elements.kernels import Constants
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
-from kvtheory.models.elements.schemes import DEFAULT, RIGHT, SCHEMES, ContactRule, Scheme
+from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.progress import Progress, silent
 from kvtheory.results import (
     SERIES_UNITS,
@@ -59,7 +59,7 @@ MOST_OF_ALL = 2e9
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
-DEEPEST, BALL_DEEPEST = 1e7, 256.0
+DEEPEST = {False: 1e7, True: 256.0}
 """Times the static depth: no scene sinks deeper. Of a ball, elements grow as the depth, not as its root."""
 
 SAFETY = 4.0
@@ -84,9 +84,8 @@ ON_SPRING = ", sliding velocity to a_0/τ, spring force as friction"
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Any]
-"""A report at each instant: the columns of a time series as on a spring, and by how much the pressure differs
-between the elements beside its peak, inside the contact and at its edge (Pa)."""
-COLUMNS = (*SERIES_UNITS, "peak_doubt", "edge_doubt")
+"""Reports: the columns of a time series as on a spring, and the doubt about the peak pressure (Pa)."""
+COLUMNS = (*SERIES_UNITS, "doubt")
 
 Timetable = tuple[Array, Array, Array, Array]
 """Times before and after the steps, their lengths, after which of them something is reported, and what: see
@@ -96,7 +95,6 @@ Timetable = tuple[Array, Array, Array, Array]
 def simulate(
     scene: Scene, spacing: float, scheme: Scheme, *,
     at: Sequence[float] | None, time_step: float | None, certify: bool,
-    rule: ContactRule = RIGHT, start: float = 1.0,
     progress: Progress | None = None, warn: Callable[[str], None] | None = None,
 ) -> Simulation:  # fmt: skip
     """Return the time series of a scene, with elements at this spacing (m).
@@ -109,16 +107,15 @@ def simulate(
         If the run is unstable.
     """
     model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
-    model = replace(model, rule=rule, start=start)
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
     wanted = _instants(scene, path, h) if at is None else list(at)
-    count = max(wanted) / h
-    elements = model.strips(model.depth) * 2.0 * model.half_length / model.spacing
-    if elements * count > MOST_OF_ALL:
+    elements = model.contact.extent / (model.constants.spacing * (model.constants.across or 1.0))
+    updates = elements * max(wanted) / h
+    if updates > MOST_OF_ALL:
         raise ValueError(
-            f"`time_step` = {h:.6g} s: {count:,.3g} steps with {elements:,.3g} elements in the contact are "
-            f"{elements * count:.2g} updates, expected at most {MOST_OF_ALL:g}; take longer steps, fewer "
+            f"`time_step` = {h:.6g} s: {updates / elements:,.3g} steps with {elements:,.3g} elements in the "
+            f"contact are {updates:.2g} updates, expected at most {MOST_OF_ALL:g}; take longer steps, fewer "
             "elements (`per_length`), or a shorter run"
         )
     own_step = time_step is None and not scheme.tableau
@@ -147,7 +144,8 @@ def simulate(
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
     )
-    certificate = _estimate(model, path, h, rows, [other for other, _ in others])
+    unsure = _unsure(model.constants, path, h)
+    certificate = _estimate(model, unsure, rows, [other for other, _ in others])
     kind, names = (
         (Simulation, TRANSIENT_UNITS) if not model.sprung else (SprungSimulation, SERIES_UNITS)
     )
@@ -161,34 +159,34 @@ def simulate(
 
 def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     """Return the time step of a scheme where none is given, in s."""
-    fastest = model.fastest(path)
-    passing = ELEMENTS_PER_STEP * model.spacing / fastest if fastest else math.inf
+    c, law, fastest = model.constants, model.constants.law, model.fastest(path)
+    passing = ELEMENTS_PER_STEP * c.spacing / fastest if fastest else math.inf
     if scheme.row.papers_step:
         if math.isinf(passing):
             raise ValueError(
                 "the paper's time step 2 dx/V is infinite for a drive at rest: give a `time_step`, "
-                f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
+                f'such as "{0.01 * law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
     # That of the mass on the contact at rest, as stiff as arms are within such a period.
     shorter = math.inf
     while True:
         period, within = shorter, shorter / (2.0 * math.pi)
-        stiffness = model.extent * model.law.stiffness_within(within) + model.spring
-        shorter = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
+        stiffness = model.contact.extent * law.stiffness_within(within) + c.spring
+        shorter = 2.0 * math.pi * math.sqrt(c.mass / stiffness)
         if not shorter < ROUGHLY * period:
             break
     # Along x, the dampers of the contact at rest may suppress the oscillation.
     if model.sprung:
-        resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
-        if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
-            shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
-    resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
+        resistance = c.damping_along + law.damping * model.contact.tilt
+        if resistance * resistance < 4.0 * c.spring_along * c.mass_along:
+            shorter = min(shorter, 2.0 * math.pi * math.sqrt(c.mass_along / c.spring_along))
+    resolved = min(law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
     step = min(passing, max(resolved, path.end / MOST_STEPS))
     if not scheme.tableau:
         return step
     return min(
-        step, STABLE_SHARE * stability.limit_at(scheme, model, max(stability.lengths(model, path)))
+        step, STABLE_SHARE * stability.limit_at(scheme, c, max(stability.lengths(model, path)))
     )
 
 
@@ -197,11 +195,11 @@ def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float,
 
     The dampers of the contact at rest stop the mass in the time M/(C L).
     """
-    resistance = model.law.damping * model.extent
-    if not resistance or math.isinf(model.mass):
+    c = model.constants
+    resistance = c.law.damping * model.contact.extent
+    if not resistance or math.isinf(c.mass):
         return {}
-    stopping = model.mass / resistance
-    steps = max(PER_STOPPING, FINER * model.half_length / model.spacing)
+    stopping, steps = c.mass / resistance, max(PER_STOPPING, FINER * c.half_length / c.spacing)
     count = math.ceil(math.log2(max(steps * h / stopping, 1.0)))
     least, found = JUMP * path.highest_speed, {}
     jumps = [t for t in path.changes if 0.0 < t < end
@@ -243,24 +241,25 @@ def _timetable(
         elif stop in path.changes:
             times[-1] = start = stop
         if stop in asked:
-            before, Y = path.velocity(times[-1], before=True), path.displacement(times[-1])
-            about.append((stop, path.velocity(stop), before, path.forward(stop), Y))
+            Y = path.displacement(times[-1])
+            about.append((stop, path.velocity(stop), path.forward(stop), Y))
             after.append(len(lengths))
         step = graded.get(stop, step)
     return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
 
 
-@np.errstate(all="ignore")  # the kernels check the results
 def _run(
     model: Model, path: BaseMotion, scheme: Scheme, table: Timetable, wanted: list[float],
     progress: Progress,
 ) -> tuple[Rows, ElementRow]:  # fmt: skip
     """Take all steps and report at the wanted instants; if the indenter sinks deep, store more elements."""
     times, steps, _, about = table
-    kept, deepest = KEPT_DEPTH, BALL_DEEPEST if model.across else DEEPEST
+    c, h, kept = model.constants, float(steps.max(initial=0.0)), KEPT_DEPTH
+    deepest = DEEPEST[c.surface.ball]
     while True:
-        row = ElementRow(model, path, scheme, kept)
-        course = course_of(path, row.stored.law, *table, stability.limits(model, path))
+        row = ElementRow(c, path, scheme, kept)
+        limits = stability.limits(model, path)
+        course = course_of(path, c.law, *table, _unsure(c, path, h)[0], limits)
         found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
         pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
@@ -276,14 +275,24 @@ def _run(
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, float(steps.max()), times[done], row.state, deepest
+                status, scheme, model, path, h, times[done], row.state, deepest
             )  # fmt: skip
             error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
             raise error
 
 
+def _unsure(c: Constants, path: BaseMotion, h: float) -> tuple[float, float]:
+    """Return the uncertainty of an edge in elements: where pressure is left on it, and anywhere.
+
+    A damper leaves pressure on an edge when the drive changes; on a spring, edges stop and turn without.
+    """
+    known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
+    jump = known if len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :]) else 0.0
+    return jump, known if math.isfinite(c.mass_along) else jump
+
+
 def _estimate(
-    model: Model, path: BaseMotion, h: float, rows: Rows, others: list[Rows]
+    model: Model, unsure: tuple[float, float], rows: Rows, others: list[Rows]
 ) -> Certificate:
     """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
 
@@ -294,23 +303,18 @@ def _estimate(
     """
     if not others:
         return UNKNOWN
-    scale, differences = scales(model.at_rest), {}
+    c, scale, differences = model.constants, scales(model.at_rest), dict[str, float]()
     for name in scale:
         apart = [float(np.nanmax(abs(rows[name] - other[name]), initial=0.0)) for other in others]
         differences[name] = max(apart[: len(SHIFTS)]) + sum(apart[len(SHIFTS) :])
-    changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    known = KNOWN if (model.law.damping > 0.0 or (model.law.arm_time < h).any()) else 0.0
-    jump = known if changes else 0.0
-    # On a spring, edges stop and turn without a jump of the pressure.
-    kinks, arms = bool(model.indenter.kinks), bool(model.law.arm_time.size)
-    edge = (known if changes or model.sprung else 0.0) + KINKED * (kinks or arms)
-    width = 1.0 if model.indenter.per_width else 2.0 * model.half_width(model.depth)
-    one = model.spacing * width * float(rows["peak_pressure"].max())
-    force = (jump + KINKED * (kinks and arms)) * one
-    doubt = float(rows["peak_doubt"].max() + jump * rows["edge_doubt"].max())
+    kinks, arms = bool(c.kinks.size), bool(c.law.arm_time.size)
+    edge = (unsure[1] + KINKED * (kinks or arms)) * c.spacing
+    width = 2.0 * c.surface.stretch * c.half_length if c.surface.ball else 1.0
+    one = c.spacing * width * float(rows["peak_pressure"].max())
+    force = (unsure[0] + KINKED * (kinks and arms)) * one
     for name, more in {
-        "leading_edge": edge * model.spacing, "trailing_edge": edge * model.spacing, "normal_force": force,
-        "friction_force": force * model.steepest, "peak_pressure": doubt,
+        "leading_edge": edge, "trailing_edge": edge, "normal_force": force,
+        "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),
     }.items():  # fmt: skip
         differences[name] += more
     runs = "half as many elements and steps" + ", and as many" * (len(others) > len(SHIFTS))

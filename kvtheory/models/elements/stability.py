@@ -6,13 +6,13 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.model import Model, root
-from kvtheory.models.elements.schemes import DEFAULT, RIGHT, Scheme
+from kvtheory.models.elements.kernels import Constants
+from kvtheory.models.elements.model import Model, contact, sunk_depth
+from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.theory.laws import Array
@@ -42,13 +42,14 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     velocities = [0.0, *path.velocities] if model.sprung else path.velocities
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
               max((V for V in velocities if V <= 0.0), default=velocities[0])}  # fmt: skip
-    held = math.isinf(model.mass)
-    depths = {V: model.depth if held else min(model.sliding_depth(V), model.depth) for V in chosen}
-    steady = max(model.sliding(depth, V)[0] for V, depth in depths.items())
-    return steady, max(model.sliding(model.depth, V)[0] for V in chosen)
+    c = model.constants._replace(spacing=0.0, across=0.0, parts=False)
+    held = math.isinf(c.mass)
+    depths = {V: c.depth if held else min(sunk_depth(c, V), c.depth) for V in chosen}
+    steady = max(contact(c, depth, V).extent for V, depth in depths.items())
+    return steady, max(contact(c, c.depth, V).extent for V in chosen)
 
 
-def limit_at(scheme: Scheme, model: Model, length: float) -> float:
+def limit_at(scheme: Scheme, c: Constants, length: float) -> float:
     """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1.
 
     Along x, F_x = -∫ h' p dx holds the indenter as a contact of the length ∫ h'^2 dx would, with k_x and
@@ -57,48 +58,50 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     """
     if not scheme.tableau:
         return math.inf
-    inverse, axes = 0.0, [(model, length)]
-    if model.sprung:
-        tilt = model.tilt(length)
-        law = model.law._replace(damping=model.law.damping + model.damping_along / tilt)
-        along = replace(model, mass=model.mass_along, spring=model.spring_along, law=law)
-        axes.append((along, tilt))
+    inverse, axes = 0.0, [(c, length)]
+    if math.isfinite(c.mass_along):
+        at_rest = contact(c, c.depth)
+        tilt = length * at_rest.tilt / at_rest.extent  # as steep as the contact at rest
+        law = c.law._replace(damping=c.law.damping + c.damping_along / tilt)
+        axes.append((c._replace(mass=c.mass_along, spring=c.spring_along, law=law), tilt))
     for one, L in axes:
         if math.isfinite(one.mass):
             stiff = (one.law.stiffness_within(0.0) * L + one.spring) / one.mass
             fastest = one.law.damping * L / one.mass + math.sqrt(stiff)
 
-            def growth(h: float, one: Model = one, L: float = L, fastest: float = fastest) -> float:
+            def growth(
+                h: float, one: Constants = one, L: float = L, fastest: float = fastest
+            ) -> float:
                 if h * fastest <= SHORTEST:
                     return -1.0
                 rates = np.linalg.eigvals(amplification(scheme, one, L, h))
                 return float(abs(rates).max()) - 1.0 - GROWS
 
-            inverse += 1.0 / root(growth, 1.0 / fastest, LIMIT_RTOL)
+            inverse += 1.0 / kernels.bisect(growth, 1.0 / fastest, LIMIT_RTOL)
     return 1.0 / inverse if inverse else math.inf
 
 
-def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Array:
+def amplification(scheme: Scheme, c: Constants, length: float, h: float) -> Array:
     """Return the matrix of one explicit step of (δ, δ', s_1, s_2, ...), the contact held.
 
     For Kelvin-Voigt its eigenvalues are R(σ h), R(z) = 1 + z + z^2/2 + ... of the tableau (F15).
     """
-    start, rates = np.eye(2 + model.law.arm_stiffness.size), list[Array]()
-    for c, *a in scheme.table:
+    start, rates = np.eye(2 + c.law.arm_stiffness.size), list[Array]()
+    for share, *a in scheme.table:
         moved = (x * rate for x, rate in zip(a, rates, strict=False))
         at = start[:2] + h * sum(moved, 0.0 * start[:2])
-        step = model.law.step(c * h)
+        step = c.law.step(share * h)
         arms = step.held[:, None] * start[2:] + step.ramp[:, None] * (at[0] - start[0])
-        force = length * (model.law.pressure(*at) + arms.sum(axis=0)) + model.spring * at[0]
-        rates.append(np.array([at[1], -force / model.mass]))
+        force = length * (c.law.pressure(*at) + arms.sum(axis=0)) + c.spring * at[0]
+        rates.append(np.array([at[1], -force / c.mass]))
     return np.vstack([at, arms])
 
 
 def step_warning(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return a warning about a time step before the run begins, or an empty text."""
-    if scheme.tableau and h > limit_at(scheme, model, max(lengths(model, path))):
+    if scheme.tableau and h > limit_at(scheme, model.constants, max(lengths(model, path))):
         return f"the run may diverge: {describe(scheme, model, path, h)}"
-    passed = h * model.fastest(path) / model.half_length
+    passed = h * model.fastest(path) / model.at_rest.half_length
     if passed > LONGEST_PASS:
         return (
             f"the time step, {h * 1e3:.4g} ms, is long: elements pass {passed:.2g} half lengths of the "
@@ -109,13 +112,13 @@ def step_warning(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> st
 
 def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Compare a step with the largest stable one, and suggest one that would do."""
-    length = max(lengths(model, path))
-    limit = limit_at(scheme, model, length)
+    c, length = model.constants, max(lengths(model, path))
+    limit = limit_at(scheme, c, length)
     if math.isinf(limit):
         return f"its time step is {h * 1e3:.4g} ms"
-    number = h * model.law.damping * length / model.mass
+    number = h * c.law.damping * length / c.mass
     has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
-    of = f"{length * 1e3:.4g} mm" if model.indenter.per_width else f"{length * 1e6:.4g} mm^2"
+    of = f"{length * 1e6:.4g} mm^2" if c.surface.ball else f"{length * 1e3:.4g} mm"
     return (
         f"its time step, {h * 1e3:.4g} ms, {has} for a contact of L = {of}, where the scheme "
         f'"{scheme.row.name}" is stable up to dt = {limit * 1e3:.4g} ms; a time step of '
@@ -124,20 +127,15 @@ def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
 
 
 def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
-    """Return the speeds, upward and along, and the imbalance that no stable run reaches.
-
-    A run with a mistake in the rule of contact has no limits.
-    """
-    if model.rule != RIGHT:
-        return -math.inf, math.inf, math.inf
-    arms = model.extent * float(model.law.arm_stiffness.sum())
-    rates = 1.0 / model.law.retardation_time
-    rates += math.sqrt(model.spring / model.mass) + math.sqrt(arms / model.mass)
-    thrown = model.depth * rates + model.fastest(path) * model.steepest
+    """Return the rate of the depth, the speed along x and the imbalance that no stable run reaches."""
+    c, fastest = model.constants, model.fastest(path)
+    arms = model.contact.extent * float(c.law.arm_stiffness.sum())
+    rates = 1.0 / c.law.retardation_time + math.sqrt(c.spring / c.mass) + math.sqrt(arms / c.mass)
+    thrown = c.depth * rates + fastest * model.steepest
     return (
-        -RISE * thrown if math.isfinite(model.mass) else -math.inf,
-        RISE * (model.fastest(path) + math.sqrt(model.at_rest.energy / model.mass_along)),
-        IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length),
+        -RISE * thrown if math.isfinite(c.mass) else -math.inf,
+        RISE * (fastest + math.sqrt(model.at_rest.energy / c.mass_along)),
+        IMBALANCE + ELEMENTS * c.spacing / (2.0 * c.half_length),
     )
 
 
@@ -146,13 +144,12 @@ def divergence(
     deepest: float,
 ) -> DivergenceError:  # fmt: skip
     """Return the error about a run that was found to be unstable, or sank to `deepest` static depths."""
-    up, along = -state[kernels.RATE], abs(state[kernels.ALONG_RATE])
+    share = state[kernels.IMBALANCE] / max(state[kernels.FORCES], kernels.TINY)
     sign = {
         kernels.OUTGROWN: f"the indenter sank to {deepest:g} times its static depth",
-        kernels.THROWN_UP: f"the indenter is thrown upward with {up:.3g} m/s",
-        kernels.THROWN_ALONG: f"the indenter is thrown along x with {along:.3g} m/s",
-        kernels.UNBALANCED: "the forces fail to balance the motion by "
-        f"{state[kernels.IMBALANCE] / state[kernels.FORCES]:.0%}",
+        kernels.THROWN_UP: f"the indenter is thrown upward with {-state[kernels.RATE]:.3g} m/s",
+        kernels.THROWN_ALONG: f"the indenter is thrown along x with {abs(state[kernels.ALONG_RATE]):.3g} m/s",
+        kernels.UNBALANCED: f"the forces fail to balance the motion by {share:.0%}",
     }[status]
     return DivergenceError(
         f"the run diverged at t = {time:.6g} s, where {sign}: {describe(scheme, model, path, h)}"
