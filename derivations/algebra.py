@@ -17,6 +17,7 @@ from .conditions import (
     proves_positive,
 )
 from .identity import vanishes
+from .series import leading_of_series
 
 
 class UndecidedError(ArithmeticError):
@@ -301,7 +302,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
         raise UndecidedError("the expression is identically zero, it has no leading term")
-    found = _lowest_powers(local, h)
+    found = _lowest_powers(local, h) or leading_of_series(local, h)
     if found:
         return found
     try:
@@ -461,6 +462,36 @@ def _next_on(
     if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
     return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)
+
+
+def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    """Integrate powers, and polynomials times exponentials, by their rules; the rest is left to SymPy.
+
+    >>> x, k = sp.symbols("x k", positive=True)
+    >>> antiderivative(x**2 + x * sp.exp(-k * x), x)
+    x**3/3 - x*exp(-k*x)/k - exp(-k*x)/k**2
+    """
+    total = sp.S.Zero
+    for term in sp.Add.make_args(sp.expand(expr)):
+        factor, rest = term.as_independent(variable, as_Add=False)
+        powers = rest.as_powers_dict()
+        power, exponent = powers.pop(variable, sp.S.Zero), powers.pop(sp.E, sp.S.Zero)
+        rate = sp.diff(exponent, variable)
+        whole = power.is_Integer and power >= 0
+        if set(powers) - {sp.S.One} or rate.has(variable) or (rate != 0 and not whole):
+            total += factor * sp.integrate(rest, variable)
+        elif rate == 0:
+            total += factor * sp.integrate(variable**power, variable)
+        else:
+            total += (
+                factor
+                * sum(
+                    (-1) ** k * sp.ff(power, k) * variable ** (power - k) / rate ** (k + 1)
+                    for k in range(int(power) + 1)
+                )
+                * sp.exp(exponent)
+            )
+    return sp.expand(total)
 
 
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:

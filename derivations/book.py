@@ -6,9 +6,9 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import wraps
+from functools import lru_cache, wraps
 from inspect import signature
-from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
+from typing import Any, NamedTuple, ParamSpec, TypedDict, TypeVar, Unpack, cast
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -78,6 +78,17 @@ class StepError(ValueError):
     """A step that is wrong, or that the engine cannot prove."""
 
 
+class Said(NamedTuple):
+    """A claim for a message: written out if the message is."""
+
+    lhs: sp.Expr
+    relation: str
+    rhs: sp.Expr | int
+
+    def __str__(self) -> str:
+        return " ".join(map(str, self[:]))
+
+
 class Shown(TypedDict, total=False):
     """LaTeX that replaces SymPy's own for a side of a step."""
 
@@ -123,7 +134,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         book = cast("Book", given.pop("self"))
         words = {"reason", "shown"}
         arguments = {name: value for name, value in given.items() if name not in words}
-        book._asked = check.__name__, arguments, dict(book._rules)
+        book._asked, book._read = (check.__name__, arguments, dict(book._rules)), {}
         try:
             with _limited():
                 for argument in arguments.values():
@@ -166,15 +177,19 @@ class _Printer(LatexPrinter):
         return rf"\left. {shown} \right|_{{{places}}}"
 
 
-def tex(expr: sp.Expr) -> str:
+def tex(expr: sp.Expr | int) -> str:
     r"""Print an expression in the notation of the paper.
 
     >>> x, y = sp.symbols("x y")
     >>> tex(sp.Subs(x + y, x, 0))
     '\\left. \\left(x + y\\right) \\right|_{x = 0}'
     """
-    printer = _Printer({"symbol_names": TEX, "fold_frac_powers": True})
-    return str(printer.doprint(sp.sympify(expr)))
+    return _printed(sp.sympify(expr))
+
+
+@lru_cache(maxsize=8192)
+def _printed(expr: sp.Expr) -> str:
+    return str(_Printer({"symbol_names": TEX, "fold_frac_powers": True}).doprint(expr))
 
 
 def tex_interval(over: Interval) -> str:
@@ -248,6 +263,11 @@ def established(label: str, lhs: sp.Expr) -> sp.Expr:
     return forms[-1]
 
 
+def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Put in values, and carry out what does not need to be believed."""
+    return expr.subs(at).doit(integrals=False, sums=False)
+
+
 def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
     if table is None:
         return None
@@ -299,6 +319,8 @@ class Book:
         self._needed: set[sp.Expr] = set()
         """The rules that any step has used."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
+        self._read: dict[str, sp.Expr] = {}
+        """The other forms that the display of the step in hand shows of its sides."""
         self._steps: list[Step] = []
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
@@ -402,15 +424,10 @@ class Book:
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
         known = self._conditions
-        return Claim(
-            check,
-            sp.sympify(lhs),
-            sp.sympify(rhs),
-            arguments,
-            rules,
-            known.positive,
-            known.intervals,
-        )
+        if check == "equal" and lhs == rhs:  # what the page shows, as it was read back
+            lhs, rhs = self._read.get("left", lhs), self._read.get("right", rhs)
+        sides = sp.sympify(lhs), sp.sympify(rhs)
+        return Claim(check, *sides, arguments, rules, known.positive, known.intervals)
 
     def _stated(self) -> tuple[Step, ...]:
         """Return the steps without the premises that no check has used."""
@@ -660,12 +677,12 @@ class Book:
             laid_down = {variable} & {lhs, *(each.lhs for each in fact.premises)}
             if laid_down or any(each.has(variable) for each in fixed):
                 raise StepError(f"{self.label}: {variable} is not free in {lhs} = {rhs}")
-        lhs, rhs = (sp.sympify(side).subs(at).doit() for side in (lhs, rhs))
+        lhs, rhs = (_put(sp.sympify(side), at) for side in (lhs, rhs))
         premises = tuple(
             Premise(one, other, f"{tex(one)} = {tex(other)}")
             if (one, other) != (each.lhs, each.rhs) else each
             for each in fact.premises
-            for one, other in [(each.lhs.subs(at).doit(), each.rhs.subs(at).doit())]
+            for one, other in [(_put(each.lhs, at), _put(each.rhs, at))]
         )  # fmt: skip
         intervals = fact.conditions.intervals
         ends = [gap for name, low, high in intervals for gap in (name - low, high - name)]
@@ -807,12 +824,13 @@ class Book:
             for link in links:
                 if link == expr:
                     continue
+                self._read[side] = link
                 read, checked = map(evaluated, map(self._resolve, (link, expr)))
                 if difference(read, checked) != 0:
                     raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
         self._used = used
 
-    def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
+    def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: "Said | str") -> None:
         rest = difference(lhs, rhs)
         if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
             rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
@@ -862,7 +880,7 @@ class Book:
         if cases:
             own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
         domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
-        left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
+        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
         claim = self._claim(lhs, rhs)
         step = Step(left, relation, right, reason, worth, "", ", ".join(own), note, claim)
         fact = Fact(step, premises, conditions, domain)
@@ -880,7 +898,7 @@ class Book:
         """Keep a step of another proof."""
         self._needed |= self._used
         self._used = set()
-        left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
+        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
         claim = self._claim(lhs, rhs)
         step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
         key = sp.sympify(lhs), sp.sympify(rhs)

@@ -16,6 +16,8 @@ from functools import lru_cache
 
 import sympy as sp
 
+from .points import signs
+
 Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
 """A variable with its lower and upper bound, as SymPy writes it; the ends do not belong to it."""
 
@@ -48,6 +50,8 @@ def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 @lru_cache(maxsize=8192)
 def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
+    if -1 in signs(expr, known.intervals, known.positive):
+        return False
     if expr.is_nonnegative or _sign(expr, known) == 1:
         return True
     if expr.is_Add or expr.is_Mul:
@@ -92,8 +96,11 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 
 @lru_cache(maxsize=8192)
-def _sign(expr: sp.Expr, known: Conditions) -> int:
+def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return for each way
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
+    seen = signs(expr, known.intervals, known.positive)
+    if len(seen) == 2:
+        return 0
     if expr.is_positive or expr.is_negative:
         return 1 if expr.is_positive else -1
     sign = 0
@@ -102,7 +109,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     elif isinstance(expr, (sp.Min, sp.Max)):
         sign = _sign_of_extreme(expr, known)
     elif expr.is_Add and known.positive:
-        sign = _outweighs(expr, known) - _outweighs(-expr, known)
+        sign = next((side for side in _sides(seen) if _outweighs(side * expr, known)), 0)
     elif expr.is_Mul:
         sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
     elif expr.is_Pow and expr.exp.is_Integer:
@@ -117,7 +124,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
     if factored != expr and several and (sign := _sign(factored, known)):
         return sign
-    for side in (1, -1):
+    for side in _sides(seen):
         one = side * expr
         if (
             _by_ends(one, known, proves_positive)
@@ -127,6 +134,11 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
         ):
             return side
     return _by_scale(expr)
+
+
+def _sides(seen: frozenset[int]) -> tuple[int, ...]:
+    """Return the signs that may be proved: the one that was seen, or else both."""
+    return tuple(seen) or (1, -1)
 
 
 def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
@@ -327,12 +339,18 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
 
 def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr]:
     """Yield the expression with a name for something positive that it contains as it stands."""
-    top, bottom = sp.fraction(sp.together(expr))
-    for form in (sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr):
+    for form in _written(expr):
         changed = form.subs(positive, name)
         changed = changed.subs(sp.expand(positive), name).subs(sp.expand(-positive), -name)
         if changed != form:
             yield changed
+
+
+@lru_cache(maxsize=4096)
+def _written(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Return an expression as one fraction, as a product, and as it stands."""
+    top, bottom = sp.fraction(sp.together(expr))
+    return sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr
 
 
 def _solved(
@@ -345,11 +363,18 @@ def _solved(
         key=lambda each: (bool(each.is_positive), str(each)),
     )
     for symbol in order:
-        slope = sp.diff(positive, symbol)
-        if not slope.has(symbol) and slope.is_nonzero:
-            value = (name - sp.expand(positive - slope * symbol)) / slope
+        slope, rest_of = linear(positive, symbol)
+        if slope.is_nonzero:
+            value = (name - rest_of) / slope
             return expr.subs(symbol, value), tuple(each.subs(symbol, value) for each in rest)
     return expr, rest
+
+
+@lru_cache(maxsize=8192)
+def linear(expr: sp.Expr, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return slope and rest of what is linear in a symbol, else zero and the expression."""
+    slope = sp.diff(expr, symbol)
+    return (sp.S.Zero, expr) if slope.has(symbol) else (slope, sp.expand(expr - slope * symbol))
 
 
 @lru_cache(maxsize=8192)
@@ -363,8 +388,11 @@ def _factored(expr: sp.Expr) -> sp.Expr:
     """Factor what is not simple already."""
     if expr.is_Atom:
         return expr
-    # Sums of positive terms need no factors: their sign is known as they stand.
-    return expr if expr.is_positive else sp.factor(expr)
+    # Sums of positive terms need no factors: their sign is known as they stand, or multiplied out.
+    for form in (expr, sp.expand(expr)):
+        if form.is_positive:
+            return form
+    return sp.factor(expr)
 
 
 @lru_cache(maxsize=8192)
@@ -373,6 +401,8 @@ def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
 
     If it need not be strict, factors may vanish, and 1 and -1 are "not negative", "not positive".
     """
+    if len(signs(expr)) == 2:
+        return 0
     sign = 1
     for factor in _factors(expr):
         base, power = factor.as_base_exp()
@@ -392,10 +422,12 @@ def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
     sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
     if sign or not expanded.is_Add:
         return sign
-    if _outweighs(expanded, NONE):
-        return 1
-    if _outweighs(-expanded, NONE):
-        return -1
+    seen = signs(expanded)
+    if len(seen) == 2:
+        return 0
+    for side in _sides(seen):
+        if _outweighs(side * expanded, NONE):
+            return side
     univariate = len(expanded.free_symbols) == 1 and expanded.is_polynomial()
     return _sign_by_roots(expanded, NONE) if univariate else 0
 

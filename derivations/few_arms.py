@@ -8,6 +8,7 @@ from functools import partial
 
 import sympy as sp
 
+from .algebra import antiderivative
 from .record import Derivation
 from .relaxation import G_1, G_2, LOAD, WORK, G, a, c, name_integrals
 from .step import Proof
@@ -60,7 +61,7 @@ def _steepest() -> Derivation:
     proof = _theorem("F27-steepest", title="Any relaxation function: steepest growth of friction with load",
                      text=_STEEPEST_TEXT, uses=("F27-slope", "F17-sign"))  # fmt: skip
     kernel = 10 * w * (1 - w) ** 2 * (2 + w) / 24 - w * (1 - w) / 2
-    primitive = sp.factor(sp.integrate(sp.expand(kernel), w))
+    primitive = sp.factor(antiderivative(kernel, w))
     proof.define(sp.Derivative(fading(w), w), -slowing(w), "the relaxation function is convex")
     rest = sp.Integral(kernel * fading(w) - primitive * slowing(w), UNIT)
     proof.integral(rest, kernel * fading(w) - primitive * slowing(w), UNIT, primitive * fading(w),

@@ -5,7 +5,7 @@ from typing import Unpack
 import sympy as sp
 
 from .algebra import UndecidedError, in_one_angle, is_continuous, leading_term, normalise
-from .book import Book, Shown, StepError, asked
+from .book import Book, Said, Shown, StepError, asked
 from .conditions import (
     Conditions,
     Interval,
@@ -128,7 +128,7 @@ class Guarded(Book):
         }
 
     def _equally_defined(
-        self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: str
+        self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: Said | str
     ) -> None:
         """Refuse an equality of which one side is not defined or not real where the other is."""
         for kind, proves, why in (

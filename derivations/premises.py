@@ -9,6 +9,7 @@ from sympy.core.function import AppliedUndef
 
 from .algebra import difference
 from .conditions import NONE, Conditions
+from .points import signs
 from .record import STATUSES, Step
 from .rules import is_name
 
@@ -109,8 +110,12 @@ def _follows_slope(one: Premise, other: Premise) -> bool:
     return not more or difference(sp.diff(one.rhs, *more).subs(one.lhs, one.rhs), other.rhs) == 0
 
 
-_KINDS = ("positive", "negative", "nonnegative", "nonzero", "real", "integer", "finite")
-"""What may be assumed on a symbol and asked of a value."""
+_KINDS = {
+    **{"positive": 1, "nonnegative": 1, "negative": -1},
+    **{"nonzero": 0, "real": 0, "finite": 0},
+    "integer": None,
+}
+"""What may be assumed on a symbol and asked of a value, with a sign that shows it possible; 0 for any."""
 
 
 @lru_cache(maxsize=4096)
@@ -118,8 +123,11 @@ def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
     """Tell whether a value is known to lie outside of what a symbol may be."""
     if value.has(sp.nan, sp.zoo):
         return True
+    seen = signs(value)
     if any(
-        getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False for kind in _KINDS
+        getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False
+        for kind, sign in _KINDS.items()
+        if sign not in seen and not (sign == 0 and seen)
     ):
         return True
     if value.is_number and symbol.is_real and value.is_real is None:

@@ -9,6 +9,7 @@ from functools import partial
 
 import sympy as sp
 
+from .algebra import antiderivative
 from .record import Derivation
 from .step import Proof, tex
 from .symbols import (
@@ -171,7 +172,7 @@ def _positive() -> Derivation:
     proof.define(sp.Derivative(G(w), w), -fading(w), "the relaxation function does not rise")
     for name in (P, Q, D, B, E):
         weight = (1 - 2 * w) / 2 if name == B else MOMENTS[name][0]
-        gained = sp.factor(sp.integrate(sp.expand(weight), w))
+        gained = sp.factor(antiderivative(weight, w))
         inside, end = weight * G(w) - gained * fading(w), gained.subs(w, 1) * G(1)
         proof.integral(sp.Integral(inside, UNIT), inside, UNIT, gained * G(w), rf"${tex(name)}$ by parts",
                        value=end)  # fmt: skip

@@ -8,6 +8,7 @@ from functools import partial
 
 import sympy as sp
 
+from .algebra import antiderivative
 from .groups import k_s
 from .record import Derivation
 from .step import Proof
@@ -143,7 +144,7 @@ def _kernels() -> Derivation:
         for n, kernel in enumerate(found, 1):
             weight = (1 - v) ** (n - 1) / sp.factorial(n - 1)
             integrand = weight * sp.exp(-number * v)
-            primitive = sp.expand(sp.integrate(sp.expand(integrand), v))
+            primitive = antiderivative(integrand, v)
             known = 1 / sp.factorial(n - 1)
             value = (1 - sp.exp(-number)) / number if before is None else (known - before) / number
             proof.integral(kernel, integrand, (v, 0, 1), primitive,
@@ -197,7 +198,7 @@ def _forces() -> Derivation:
         (normal_per_depth, fading_depth, ALPHA, 1), (rubbing_per_depth, fading_depth, ALPHA, b - y),
         (normal_per_drag, fading_drag, BETA, 1), (rubbing_per_drag, fading_drag, BETA, b - y),
     ):  # fmt: skip
-        primitive = sp.expand(sp.integrate(sp.expand(form * lever), y))
+        primitive = antiderivative(form * lever, y)
         proof.integral(name, pressure * lever, (y, 0, 1), primitive,
                        "the pressure" if lever == 1 else "the pressure times the slope",
                        value=FORCES[name])  # fmt: skip

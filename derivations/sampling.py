@@ -1,7 +1,7 @@
 """Comparison at random points: for steps that algebra does not decide, and to detect its errors."""
 
 import random
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 import mpmath
 import sympy as sp
@@ -17,6 +17,10 @@ POINTS, PLACES, TRUSTED = 8, 30, sp.Rational(1, 10**18)
 """Number of points, digits and allowed relative difference of the check of proved steps."""
 
 
+class NoValueError(ValueError):
+    """An expression that cannot be evaluated at any point."""
+
+
 def refutation(lhs: sp.Expr, rhs: sp.Expr, positive: tuple[sp.Expr, ...] = ()) -> str:
     """Describe a point that the assumptions and conditions allow and at which the sides differ, if any.
 
@@ -28,22 +32,23 @@ def refutation(lhs: sp.Expr, rhs: sp.Expr, positive: tuple[sp.Expr, ...] = ()) -
     if any(side.has(*_UNKNOWN) for side in sides) or not any(map(_is_not_rational, sides)):
         return ""
     draw = random.Random(SEED)
-    both = sp.lambdify(symbols, [lhs, rhs], "mpmath", cse=True)
     with mpmath.workdps(PLACES):
         for _ in range(POINTS):
-            point = [_value(symbol, draw) for symbol in symbols]
-            chosen = dict(zip(symbols, point, strict=True))
-            if any(gap.subs(chosen).is_positive is False for gap in positive):
-                continue
+            chosen = {symbol: _value(symbol, draw) for symbol in symbols}
+            point = {symbol: mpmath.mpmathify(value) for symbol, value in chosen.items()}
             try:
-                left, right = both(*map(mpmath.mpmathify, point))
+                if any(_fails(gap, point) for gap in positive):
+                    continue
+                left, right = (value_of(side, point) for side in sides)
+            except NoValueError:
+                raise
             except (ZeroDivisionError, ValueError, OverflowError, TypeError):
                 continue
             if mpmath.isnan(left) or mpmath.isnan(right):
                 continue
             scale = max(abs(left), abs(right))
             if abs(left - right) > float(TRUSTED) * max(scale, 1):
-                return f"at {dict(zip(symbols, point, strict=True))}: {left} and {right}"
+                return f"at {chosen}: {left} and {right}"
     return ""
 
 
@@ -56,6 +61,14 @@ def _is_not_rational(expr: sp.Expr) -> bool:
     return powers or bool(expr.atoms(sp.Function, sp.Abs, sp.Piecewise, sp.Min, sp.Max))
 
 
+def _fails(gap: sp.Expr, point: Mapping[sp.Expr, mpmath.mpf]) -> bool:
+    """Tell whether a condition is known not to hold at a point."""
+    if not gap.free_symbols <= point.keys() or gap.has(*_UNKNOWN):
+        return False
+    value = value_of(gap, point)
+    return not isinstance(value, mpmath.mpf) or value <= 0
+
+
 def _value(symbol: sp.Symbol, draw: random.Random) -> sp.Rational:
     """Draw an admissible value."""
     if symbol.is_integer:
@@ -64,6 +77,36 @@ def _value(symbol: sp.Symbol, draw: random.Random) -> sp.Rational:
     if symbol.is_negative:
         return -size
     return size if symbol.is_nonnegative or draw.random() < 0.5 else -size
+
+
+def value_of(  # noqa: PLR0911 one return for each kind of node
+    expr: sp.Expr, point: Mapping[sp.Expr, mpmath.mpf]
+) -> mpmath.mpf:
+    """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
+    if expr.is_Symbol:
+        return point[expr]
+    if expr.is_Number or expr.is_NumberSymbol:
+        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+    if isinstance(expr, sp.Piecewise):
+        cases = (value for value, case in expr.args if case.xreplace(dict(point)) == sp.true)
+        return value_of(next(cases, sp.nan), point)
+    parts = [value_of(part, point) for part in expr.args]
+    if expr.is_Add:
+        return mpmath.fsum(parts)
+    if expr.is_Mul:
+        return mpmath.fprod(parts)
+    if expr.is_Pow:
+        return parts[0] ** parts[1]
+    kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))
+    if kind is None:
+        raise NoValueError(f"{type(expr).__name__} is no function that has a value here")
+    return mpmath.mpmathify(kind(*parts))
+
+
+_KINDS: dict[type, Callable[..., mpmath.mpf]] = {
+    sp.Abs: abs, sp.Max: max, sp.Min: min, sp.UnevaluatedExpr: mpmath.mpmathify,
+    type(sp.I): lambda: mpmath.mpc(0, 1),
+}  # fmt: skip
 
 
 def disagreement(lhs: sp.Expr, rhs: sp.Expr, ranges: Iterable[Interval]) -> str:

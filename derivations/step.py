@@ -29,7 +29,7 @@ from .algebra import (
     sign_between,
     value_at,
 )
-from .book import Shown, StepError, asked, tex, tex_interval, tex_within
+from .book import Said, Shown, StepError, asked, tex, tex_interval, tex_within
 from .conditions import (
     Interval,
     demands,
@@ -83,7 +83,7 @@ class Proof(Guarded):
         self._record(lhs, "=", rhs, reason, "proved", shown, exact=not cases, cases=cases)
 
     def _identical(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
-        claim = f"{lhs} = {rhs}"
+        claim = Said(lhs, "=", rhs)
         left, right = self._resolve(lhs), self._resolve(rhs)
         self._vanish(left, right, claim)
         self._equally_defined((lhs, left), (rhs, right), claim)
@@ -274,7 +274,7 @@ class Proof(Guarded):
         """
         for case in cases or (sp.true,):
             with self._case(case):
-                self._holds(sp.sympify(lhs - rhs), relation, f"{lhs} {relation} {rhs}")
+                self._holds(sp.sympify(lhs - rhs), relation, Said(lhs, relation, rhs))
         shown_rhs = sp.sympify(rhs)
         self._record(
             *(lhs, _RELATIONS[relation], shown_rhs, reason, "proved", shown),
@@ -282,7 +282,7 @@ class Proof(Guarded):
             cases=cases,
         )
 
-    def _holds(self, raw: sp.Expr, relation: str, claim: str) -> None:
+    def _holds(self, raw: sp.Expr, relation: str, claim: Said | str) -> None:
         gap = self._resolve(raw)
         proves = proves_positive if relation in "<>" else proves_nonnegative
         for base in self._undefined(raw, gap):

@@ -23,7 +23,8 @@ from sympy.external.gmpy import GROUND_TYPES
 from .book import Finished
 
 SOURCES = Path(__file__).parent
-_SUFFIX = f".{sys.implementation.cache_tag}.proofs"
+_SUFFIX = f".{__package__}.{sys.implementation.cache_tag}.proofs"
+"""With the name under which this package was imported, by which the classes in a file are found again."""
 _DIGITS = 64
 """Length of a digest in print."""
 

@@ -10,6 +10,7 @@ from functools import partial
 
 import sympy as sp
 
+from .algebra import antiderivative
 from .record import Derivation
 from .step import Proof
 from .symbols import (
@@ -113,7 +114,7 @@ def _moments() -> Derivation:
     proof = _theorem("F17-moments", title="Any relaxation function: four moments", text=_MOMENTS)
     for name, (weight, form) in MOMENTS.items():
         integrand = weight * sp.exp(-z * w)
-        proof.integral(name, integrand, UNIT, sp.expand(sp.integrate(sp.expand(integrand), w)),
+        proof.integral(name, integrand, UNIT, antiderivative(integrand, w),
                        "a moment of $e^{-\\breve z \\breve w}$", value=form)  # fmt: skip
     proof.define(A, P + Q, "its mean")
     proof.define(B, (P - Q) / 2, "half of its slant")
@@ -185,7 +186,7 @@ _LOAD = (
 def _work() -> Derivation:
     proof = _theorem("F17", title="Any relaxation function: friction force", text=_WORK)
     _under_pressure(proof)
-    primitive = sp.expand(sp.integrate(sp.expand(PRESSURE * (b - y)), y))
+    primitive = antiderivative(PRESSURE * (b - y), y)
     proof.integral(
         arm_work, arm_pressure * (b - y), (y, 0, 1), primitive, "the integral of $u' p$", value=WORK
     )
@@ -204,7 +205,7 @@ def _energy() -> Derivation:
     stored = sp.Derivative(arm_pressure**2, y) / 2
     work = arm_pressure * (b - y)
     proof.equal(work, stored + z * arm_pressure**2, "stored in the spring of the arm, or lost")
-    primitive = sp.expand(sp.integrate(sp.expand(z * PRESSURE**2), y))
+    primitive = antiderivative(z * PRESSURE**2, y)
     proof.integral(
         arm_lost, z * arm_pressure**2, (y, 0, 1), primitive, "lost in the contact", value=LOST
     )

@@ -5,12 +5,15 @@ slopes and integrals of unknown functions are letters of their own.
 """
 
 import random
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
+
+from .conditions import linear
+from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
 _TRIES, _DIGITS, _NONE = 200, 50, mpmath.mpf(10) ** -30
@@ -83,9 +86,20 @@ def _without_definitions(
 
 
 def _put(expr: sp.Expr, values: dict[sp.Expr, sp.Expr]) -> sp.Expr:
+    """Put in values of letters, but not of the variables of an integral, which are its own."""
+    if values.keys().isdisjoint(expr.free_symbols):
+        return expr
+    if isinstance(expr, (sp.Integral, sp.Sum, sp.Derivative, sp.Subs)):
+        free = expr.free_symbols
+        return _inside(expr, tuple((name, value) for name, value in values.items() if name in free))
     if expr.has(sp.Integral, sp.Sum, sp.Derivative, sp.Subs):
-        return expr.subs(values)
+        return expr.func(*(_put(part, values) for part in expr.args))
     return expr.xreplace(values)
+
+
+@lru_cache(maxsize=4096)
+def _inside(node: sp.Expr, values: Pairs) -> sp.Expr:
+    return node.subs(values)
 
 
 def _lettered(expr: sp.Expr, names: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
@@ -117,7 +131,7 @@ def _extended(
     for each in equations:
         left = each.free_symbols - point.keys()
         if not left:
-            if abs(_value(each, point)) > _NONE:
+            if abs(value_of(each, point)) > _NONE:
                 return
         else:
             waiting.append((len(left), each, left))
@@ -139,12 +153,12 @@ def _roots(equation: sp.Expr, letter: sp.Symbol, point: _Point) -> Iterator[mpma
     """Yield admissible roots: of a linear equation, else between points with values of two signs."""
 
     def height(value: mpmath.mpf) -> mpmath.mpf:
-        found = _value(equation, {**point, letter: value})
+        found = value_of(equation, {**point, letter: value})
         return found if isinstance(found, mpmath.mpf) else mpmath.nan
 
-    slope = sp.diff(equation, letter)
-    if slope != 0 and not slope.has(letter):
-        zero, slant = _value(equation.subs(letter, 0), point), _value(slope, point)
+    slope, rest = linear(equation, letter)
+    if slope != 0:
+        zero, slant = value_of(rest, point), value_of(slope, point)
         found: Iterable[mpmath.mpf] = [] if slant == 0 else [-zero / slant]
     else:
         grid = [] if letter.is_nonnegative else [-each for each in reversed(_GRID)]
@@ -177,25 +191,5 @@ def _admits(letter: sp.Symbol, value: mpmath.mpf) -> bool:
 
 def _meets(point: _Point, gaps: list[sp.Expr], signed: list[sp.Expr]) -> bool:
     least = [(gap, _NONE) for gap in gaps] + [(gap, -_NONE) for gap in signed]
-    values = ((_value(gap, point), low) for gap, low in least)
+    values = ((value_of(gap, point), low) for gap, low in least)
     return all(isinstance(value, mpmath.mpf) and value > low for value, low in values)
-
-
-def _value(expr: sp.Expr, point: _Point) -> mpmath.mpf:
-    """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
-    if expr.is_Symbol:
-        return point[expr]
-    if expr.is_Number or expr.is_NumberSymbol:
-        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
-    parts = [_value(part, point) for part in expr.args]
-    if expr.is_Add:
-        return mpmath.fsum(parts)
-    if expr.is_Mul:
-        return mpmath.fprod(parts)
-    if expr.is_Pow:
-        return parts[0] ** parts[1]
-    kinds: dict[type, Callable[..., mpmath.mpf]] = {sp.Abs: abs, sp.Max: max, sp.Min: min}
-    kind = kinds.get(expr.func, getattr(mpmath, expr.func.__name__, None))
-    if kind is None:
-        raise ValueError(f"{expr} has no value here")
-    return mpmath.mpmathify(kind(*parts))

@@ -1,6 +1,7 @@
 """Proofs kept on disk are read only for the very sources that they were made from."""
 
 import ast
+import importlib
 import shutil
 
 import pytest
@@ -112,3 +113,12 @@ def test_the_home_takes_what_the_package_cannot(elsewhere, proofs):
     (elsewhere.parent / "home").write_text("no folder", encoding="utf-8")
     store.keep("other", "0" * 64, proofs)
     assert store.load("other", "0" * 64) is None
+
+
+def test_proofs_of_the_package_under_another_name_are_not_read(monkeypatch, elsewhere, proofs):
+    """`python -m derivations.emit` and `kvtheory derive` import it under two names: two sets of classes."""
+    other = importlib.import_module("derivations.store")
+    monkeypatch.setattr(other, "SOURCES", elsewhere)
+    store.keep("kept", "0" * 64, proofs)
+    assert store.load("kept", "0" * 64) is not None
+    assert other.load("kept", "0" * 64) is None

@@ -1,0 +1,96 @@
+"""Signs at points end only attempts that must fail, and the series of the engine are those of SymPy."""
+
+import pytest
+import sympy as sp
+from kvtheory.derivations.algebra import antiderivative
+from kvtheory.derivations.book import StepError
+from kvtheory.derivations.conditions import Conditions, proves_positive
+from kvtheory.derivations.points import signs
+from kvtheory.derivations.series import leading_of_series
+from kvtheory.derivations.step import Proof
+
+from tests.planted_fresh import _proof
+
+x = sp.Symbol("x", real=True)
+y, z, h = sp.symbols("y z h", positive=True)
+f = sp.Function("f", real=True)
+
+
+@pytest.mark.parametrize(
+    ("expr", "known", "seen"),
+    [
+        (y - z, Conditions(), {1, -1}),
+        (y - z, Conditions(positive=(y - z,)), {1}),
+        (1 - y, Conditions(intervals=((y, 0, 1),)), {1}),
+        (x**2 - 1, Conditions(intervals=((x, 2, 2 + z),)), {1}),
+        (f(x) - f(y), Conditions(), {1, -1}),
+        ((1 + y) ** 3 - 1 - 3 * y - 3 * y**2 - y**3, Conditions(), set()),
+        (sp.sqrt(y) ** 2 * 10**9 - y * 10**9, Conditions(), set()),
+        (sp.Integral(f(x), (x, 0, 1)), Conditions(), set()),
+        (y, Conditions(positive=(-y,)), set()),
+        (sp.sqrt(-1 - y), Conditions(), set()),
+    ],
+)
+def test_a_sign_is_seen_only_where_it_is_certain_and_admitted(expr, known, seen):
+    assert signs(expr, known.intervals, known.positive) == seen
+
+
+@pytest.mark.parametrize("power", range(2, 12))
+def test_no_rounding_error_passes_for_a_sign(power):
+    """A true inequality whose terms cancel to all digits of a float is not given up."""
+    close = sp.Rational(1, 10) ** (2 * power)
+    assert signs((y + close) ** 2 - y**2 - 2 * close * y) <= {1}
+    assert proves_positive(sp.expand((y + close) ** 2 - y**2), Conditions())
+
+
+@pytest.mark.parametrize(
+    "expr",
+    [
+        (2 * h * sp.exp(h) - 2 * sp.exp(h) + 2) / (h * sp.exp(h) - h),
+        sp.sqrt(y + h) - sp.sqrt(y) - h / (2 * sp.sqrt(y)),
+        (sp.atan(h) - h) / (1 - sp.sqrt(1 - h**2)),
+        sp.exp(-z * h) * (1 + z * h) - 1,
+        (h + y) ** z - y**z - z * h * y ** (z - 1),
+        sp.exp(sp.atan(h)) - 1 - h,
+    ],
+)
+def test_the_leading_term_is_that_of_sympy(expr):
+    coefficient, power = leading_of_series(sp.together(expr), h)
+    other, same = expr.leadterm(h)
+    assert power == same
+    assert sp.simplify(coefficient - other) == 0
+
+
+def test_what_has_no_series_here_is_left_to_others():
+    assert leading_of_series(sp.log(h), h) is None
+    assert leading_of_series(sp.sqrt(h) + h, h) is None
+    assert leading_of_series(1 - sp.sqrt(1 - h**40), h) is None
+
+
+@pytest.mark.parametrize(
+    "expr", [y**3 * sp.exp(-z * y), sp.exp(y) * sp.exp(-z * y) / 3, 1 / y, y**z, y * sp.sin(y)]
+)
+def test_an_antiderivative_has_the_right_slope(expr):
+    assert sp.simplify(sp.diff(antiderivative(expr, y), y) - expr) == 0
+
+
+def test_a_recalled_integral_is_not_evaluated_at_its_place():
+    """SymPy's integration is not believed, and must not write a premise."""
+    source, over = _proof("an-integral"), (x, 0, 1)
+    whole = sp.Integral(sp.exp(-y * x), over)
+    source.define(z, whole, "a name")
+    source.equal(2 * z, z + z, "twice")
+    source.done(2 * z, z + z)
+    later = Proof("its-place", None, section="Trial", title="Trial")
+    later.recall("an-integral", z, whole, at={y: sp.Integer(2)})
+    assert later._rules[z] == sp.Integral(sp.exp(-2 * x), over)
+    with pytest.raises(StepError):
+        later.recall("an-integral", z, whole, at={y: sp.Integer(-2)})
+
+
+def test_a_form_that_only_the_display_shows_is_in_the_claim():
+    proof = _proof("shown")
+    proof.equal(y, y, "a factor cancels", left=r"\frac{y + y^2}{1 + y}")
+    (step,) = proof.done(y, y).steps
+    assert step.claim.lhs == (y + y**2) / (1 + y)
+    assert step.claim.rhs == y
