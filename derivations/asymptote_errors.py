@@ -4,37 +4,14 @@ Every error is asymptote/exact - 1 as a function of l = l_r/a and q = x_TE/a. It
 that an asymptote is within a tolerance on a half-line of velocities; a power of l bounds it.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .nomenclature import letter, symbol
+from .steady import l, q
 from .step import Proof, tex
-from .symbols import (
-    E,
-    S,
-    b,
-    e_depth_high,
-    e_depth_low,
-    e_friction_high,
-    e_friction_low,
-    e_l1,
-    e_l2_fixed,
-    e_l2_weight,
-    e_load_high,
-    e_load_low,
-    e_load_spring,
-    f,
-    gap,
-    kappa,
-    l,
-    m,
-    phi,
-    q,
-    s,
-    w,
-)
 from .theorems import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
@@ -44,9 +21,77 @@ from .theorems import (
     UNIT,
     A,
     B,
+    f,
+    kappa,
+    m,
+    phi,
+    s,
+    w,
 )
 
-SECTION = "Errors of the asymptotes"
+gap = symbol("gap", "$1 - q$", latex=r"\bar q")
+e_l1 = symbol(
+    "e_L1",
+    "relative error of the asymptote of the friction coefficient for low velocity",
+    latex=r"e_{\mathrm{L1}}",
+    real=True,
+)
+e_l2_fixed = symbol(
+    "e_L2",
+    "the same for high velocity, fixed indenter",
+    latex=r"e_{\mathrm{L2\text{-}FI}}",
+    real=True,
+)
+e_l2_weight = symbol(
+    "e_L2_weight",
+    "the same for high velocity, dead weight",
+    latex=r"e_{\mathrm{L2\text{-}MI}}",
+    real=True,
+)
+e_load_low = symbol(
+    "e_W_low", "relative error of the load for low velocity", latex=r"e_{W\!,\,V\to0}", real=True
+)
+e_load_high = symbol(
+    "e_W_high",
+    "relative error of the load for high velocity",
+    latex=r"e_{W\!,\,V\to\infty}",
+    real=True,
+)
+e_friction_low = symbol(
+    "e_F_low",
+    "relative error of the friction force for low velocity",
+    latex=r"e_{F\!,\,V\to0}",
+    real=True,
+)
+e_friction_high = symbol(
+    "e_F_high",
+    "relative error of the friction force for high velocity",
+    latex=r"e_{F\!,\,V\to\infty}",
+    real=True,
+)
+e_depth_low = symbol(
+    "e_depth_low",
+    "relative error of the static depth for low velocity",
+    latex=r"e_{\delta,\,V\to0}",
+    real=True,
+)
+e_depth_high = symbol(
+    "e_depth_high",
+    "relative error of the depth for high velocity",
+    latex=r"e_{\delta,\,V\to\infty}",
+    real=True,
+)
+e_load_spring = symbol(
+    "e_W", "relative error of the static load of a suspended indenter", latex="e_{W}", real=True
+)
+S = symbol("S", r"$\sqrt{1 + e_{\delta,\,V\to\infty}} - 1$, the error of the root of the depth")
+b = symbol(
+    "b", r"root of the static depth over the depth, $(1 + E_\delta)^{1/3}$", printed=r"b_\delta"
+)
+E = symbol("E", "relative excess of the load over the static one", printed=r"E_\delta")
+letter("L_2", "asymptote of the friction coefficient for high velocity")
+
+result = Chapter("Errors of the asymptotes")
 
 
 @dataclass(frozen=True)
@@ -120,26 +165,15 @@ ASYMPTOTES = (
 )  # fmt: skip
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the errors of all asymptotes."""
-    special: tuple[Callable[[], Derivation], ...] = (_depth_low, _dead_weight, _suspended)
-    return (*map(_error, ASYMPTOTES), *(prove() for prove in special))
-
-
 _F1 = {w: LOAD, phi: FRICTION_FORCE, m: FRICTION_COEFFICIENT}
 _IN_Q = {**_F1, l: NUMBER}
 
 
-def _start(label: str, title: str, text: str, *uses: str) -> Proof:
-    return Proof(label, None, section=SECTION, title=title, text=text, uses=uses)
-
-
 def _recall(proof: Proof, ratio: sp.Expr) -> None:
     """Recall the parts of the ratio from theorem F1."""
-    proof.recall("scaling", l, NUMBER, RATIO)
-    for symbol, form in _F1.items():
-        if ratio.has(symbol):
-            proof.recall("F1", symbol, form)
+    proof.recall("scaling", reason=RATIO)
+    for part in filter(ratio.has, _F1):
+        proof.recall("F1", part)
 
 
 def _gap(proof: Proof) -> None:
@@ -147,10 +181,8 @@ def _gap(proof: Proof) -> None:
     proof.equal(gap, 2 * q * l / (1 + q), "without a difference")
 
 
-def _error(asymptote: Asymptote) -> Derivation:
+def _error(proof: Proof, asymptote: Asymptote) -> None:
     error, size = asymptote.symbol, l**asymptote.power
-    text = rf"The asymptote over the exact value is $1 + {tex(error)}$."
-    proof = _start(asymptote.label, asymptote.title, text, asymptote.equation)
     _recall(proof, asymptote.ratio)
     if asymptote.stable.has(gap):
         _gap(proof)
@@ -160,17 +192,21 @@ def _error(asymptote: Asymptote) -> Derivation:
     proof.sign(slope, asymptote.growth, 0, UNIT, "monotonic", left=_slope_of(error))
     proof.sign(error / size, ">", asymptote.lower, UNIT, "bound at every velocity")
     proof.sign(error / size, "<", asymptote.upper, UNIT, "bound at every velocity")
-    return proof.done(error, asymptote.stable)
+    proof.done(error, asymptote.stable)
 
 
-def _depth_low() -> Derivation:
-    proof = _start(
-        "error-depth-low",
-        "Depth at low velocity, dead weight",
-        r"The static depth over the exact depth is $(W(\delta)/W_0(\delta))^{2/3} = (3 w/4)^{2/3}$, where "
-        "$W_0$ is the static load.",
-        "eq40",
-    )
+for _each in ASYMPTOTES:
+    result(_each.label, title=_each.title, uses=(_each.equation,), asymptote=_each,
+           text=rf"The asymptote over the exact value is $1 + {tex(_each.symbol)}$.")(_error)  # fmt: skip
+
+
+@result("error-depth-low", uses=("eq40",))
+def _depth_low(proof: Proof) -> None:
+    r"""Depth at low velocity, dead weight.
+
+    The static depth over the exact depth is $(W(\delta)/W_0(\delta))^{2/3} = (3 w/4)^{2/3}$, where $W_0$ is
+    the static load.
+    """
     excess = gap**2 * (q**2 + 2 * q + 3) / (8 * q)
     root = sp.cbrt(1 + E)
     form = E * (1 + b) / (1 + b + b**2)
@@ -185,26 +221,25 @@ def _depth_low() -> Derivation:
     proof.equal(E, excess, "without a difference")
     proof.sign(sp.Derivative(3 * LOAD / 4, q), "<", 0, UNIT, "monotonic")
     proof.sign(E / l**2, "<", _rational(3, 4), UNIT, r"hence the error is below $l^2/2$")
-    return proof.done(e_depth_low, form)
+    proof.done(e_depth_low, form)
 
 
 _CONCAVE = r"$(1 + E)^{2/3} < 1 + \frac{2}{3} E$"
 
 
-def _dead_weight() -> Derivation:
-    proof = _start(
-        "error-L2-dead-weight",
-        "Friction coefficient at high velocity, dead weight",
-        "The error of the asymptote at fixed depth, and that of the depth, which enters it under a "
-        r"square root. It is monotonic, and $1 + e < (1 + \frac{2}{3 l})^2$ at every velocity.",
-        "eq46",
-    )
+@result("error-L2-dead-weight", uses=("eq46",))
+def _dead_weight(proof: Proof) -> None:
+    r"""Friction coefficient at high velocity, dead weight.
+
+    The error of the asymptote at fixed depth, and that of the depth, which enters it under a square root. It
+    is monotonic, and $1 + e < (1 + \frac{2}{3 l})^2$ at every velocity.
+    """
     form = e_l2_fixed + S * (1 + e_l2_fixed)
     squared = w / l * (2 / (3 * m)) ** 2
     root = sp.sqrt(1 + e_depth_high)
     for error in ASYMPTOTES:
         if error.symbol in (e_depth_high, e_l2_fixed):
-            proof.recall(error.label, error.symbol, error.ratio - 1)
+            proof.recall(error.label, (error.symbol, error.ratio - 1))
     proof.define(e_l2_weight, 2 / (3 * m) * sp.sqrt(w / l) - 1, _OVER_EXACT)
     proof.equal(e_l2_weight, root * (1 + e_l2_fixed) - 1, "both errors")
     proof.define(S, root - 1, "half the error of the depth, at first order")
@@ -218,28 +253,26 @@ def _dead_weight() -> Derivation:
     )
     proof.sign((1 + 2 / (3 * l)) ** 4 - squared, ">", 0, UNIT, "bound at every velocity")
     proof.leading_order(squared - 1, 5 / (4 * l), q, 0, r"hence $e \sim 5/(8 l)$", eps=1 / l)
-    return proof.done(e_l2_weight, form)
+    proof.done(e_l2_weight, form)
 
 
 _OVER_EXACT = r"$\alpha \sqrt{W/(R C V)}$ over $\mu$, with $W = K \delta a w$ and $\mu = a m/R$"
 
 
-def _suspended() -> Derivation:
-    proof = _start(
-        "error-load-suspended",
-        "Load of a suspended indenter at high velocity",
-        r"On a spring of support number $\kappa$ the load grows to $(1 + \kappa) W_0$, when the indenter "
-        "has been lifted by its whole static depth; this over the exact load.",
-        "scaled-load",
-        "balance",
-    )
+@result("error-load-suspended", uses=("scaled-load", "balance"))
+def _suspended(proof: Proof) -> None:
+    r"""Load of a suspended indenter at high velocity.
+
+    On a spring of support number $\kappa$ the load grows to $(1 + \kappa) W_0$, when the indenter has been
+    lifted by its whole static depth; this over the exact load.
+    """
     form = 4 * kappa / (3 * s * w)
     proof.define(f, 3 * s**3 * w / 4, "load over static load")
     proof.define(
         e_load_spring, (f + kappa * s**2) / f - 1, r"balance: $1 + \kappa = f + \kappa s^2$"
     )
     proof.equal(e_load_spring, form, "the part that the spring still carries")
-    return proof.done(e_load_spring, form)
+    proof.done(e_load_spring, form)
 
 
 def _slope_of(error: sp.Symbol) -> str:

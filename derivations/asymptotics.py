@@ -4,35 +4,25 @@ The paper estimates load and friction by integrals over the limiting contact. Ea
 evaluated here as given, and compared with the exact load and with the friction force of F21.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from . import friction_identity, steady
-from .book import Shown
-from .record import Derivation
+from . import friction_identity
+from .chapter import Chapter
+from .model import C, K, R, V, delta, h, x
+from .nomenclature import constant, symbol
+from .steady import F, W, a, l, l_r, mu, q
 from .step import Proof
-from .symbols import (
-    C,
-    F,
-    K,
-    R,
-    V,
-    V_star,
-    W,
-    a,
-    alpha,
-    delta,
-    h,
-    l,
-    l_r,
-    load_excess,
-    mu,
-    q,
-    x,
-)  # fmt: skip
 
-SECTION = "Asymptotes"
+load_excess = symbol("W_e", "elastic part of the load", "N/m", latex=r"W_{\mathrm{e}}", real=True)
+V_star = symbol(
+    "V_star",
+    "crossing velocity, where the two asymptotes meet",
+    "m/s",
+    latex="V^{*}",
+    source="eq47",
+)
+alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
+
 
 third = sp.Rational(1, 3)
 low_load = 2 * alpha * sp.sqrt(R) * K * delta ** sp.Rational(3, 2)
@@ -57,181 +47,146 @@ _SHAPE = x**2 / (2 * R)
 _compression = delta - h(x)
 _rate = -h(x).diff(x) * V
 _low, _high = (q, 1), (q, 0)
-_equation = partial(Proof, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Derive Eqs. 40-50."""
-    return (
-        *(_estimate(*case) for case in _ESTIMATES[:2]),
-        _low_coefficient(),
-        *(_estimate(*case) for case in _ESTIMATES[2:]),
-        _high_coefficient(),
-        _high_dead_weight(),
-        _critical_fixed(),
-        _critical_dead_weight(),
-        _lift(),
-        _vanishing_friction(),
-    )
-
-
-_ESTIMATES = (
-    (40, "Load at low velocity", W, K * _compression, True, low_load, LOW_LOAD),
-    (41, "Friction force at low velocity", F, -h(x).diff(x) * C * _rate, True, low_friction,
-     LOW_FRICTION),
-    (43, "Load at high velocity", W, C * _rate, False, high_load, r"C V \delta"),
-    (44, "Friction force at high velocity", F, -h(x).diff(x) * C * _rate, False, high_friction,
-     HIGH_FRICTION),
-)  # fmt: skip
-_INTEGRANDS = {
-    40: r"\int_{-a}^{a} K u \, \mathrm{d}x",
-    41: r"\int_{-a}^{a} -h' C \dot{u} \, \mathrm{d}x",
-    43: r"\int_{-a}^{0} C \dot{u} \, \mathrm{d}x",
-    44: r"\int_{-a}^{0} -h' C \dot{u} \, \mathrm{d}x",
-}
-
-
-def _estimate(
-    number: int, title: str, force: sp.Symbol, integrand: sp.Expr, low: bool,
-    leading: sp.Expr, shown: str,
-) -> Derivation:  # fmt: skip
-    """Evaluate the integral of the paper, and compare it with the exact force."""
-    proof = _equation(f"eq{number}", number, title=title, text=_TEXT,
-                      notation={"u": _compression, r"\dot{u}": _rate})  # fmt: skip
-    proof.recall("eq3", h(x), _SHAPE)
-    _recall_exact(proof)
-    end = a if low else sp.S.Zero
-    inner = sp.expand(integrand.subs(h(x), _SHAPE).doit())
-    paper = sp.Integral(integrand, (x, -a, end))
-    reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
-    sides: Shown = {"left": _INTEGRANDS[number], "right": shown}
-    proof.integral(
-        paper, integrand, (x, -a, end), _primitive(inner), reason, value=leading, **sides
-    )
-    point, small = (_low, l_r / a) if low else (_high, a / l_r)
-    if force == F:
-        spring = low_load if low else low_load / 2
-        reason = "what the spring carries: all of the load at rest" if low else _HALF
-        proof.define(load_excess, W - C * V * delta, "F21 needs the load without the damper's part")
-        proof.leading_order(load_excess, spring, *point, reason, eps=small)
-        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
-    proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
-    return proof.done(force, leading)
-
-
-_HALF = "what the spring carries: half of the load at rest"
-
-
-def _primitive(polynomial: sp.Expr) -> sp.Expr:
-    return sp.Poly(polynomial, x).integrate(x).as_expr()
-
-
-_TEXT = r"Here $\alpha = 2\sqrt{2}/3$; the remainder is that of the exact force."
+_small = (V_star / V) ** sp.Rational(3, 2)
+result = Chapter("Asymptotes")
 
 
 def _recall_exact(proof: Proof) -> None:
     """Let half length, velocity, load and friction be expressions in q."""
-    for label, lhs, rhs in (
-        ("eq28", a, sp.sqrt(2 * R * delta)),
-        ("scaling", l, steady.number),
-        ("scaling", l_r, a * l),
-        ("scaling", V, K * l_r / C),
-        ("load", W, steady.load),
-        ("F21-steady", F, friction_identity.FRICTION),
-    ):
-        proof.recall(label, lhs, rhs)
+    proof.recall("eq28")
+    proof.recall("scaling", l, l_r, V)
+    proof.recall("load")
+    proof.recall("F21-steady", (F, friction_identity.FRICTION))
 
 
-def _coefficient(number: int, title: str, text: str = "") -> Proof:
-    proof = _equation(f"eq{number}", number, title=title, text=text)
+def _recall_coefficient(proof: Proof) -> None:
     _recall_exact(proof)
-    proof.recall("eq37", mu, F / W)
-    return proof
+    proof.recall("eq37")
 
 
-def _low_coefficient() -> Derivation:
-    proof = _coefficient(42, "Friction coefficient at low velocity", _BOTH)
-    ratio = low_friction / low_load
-    shown: Shown = {"left": rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}"}
-    proof.equal(sp.UnevaluatedExpr(ratio), low_coefficient, "Eqs. (40) and (41)", **shown)
+def _estimate(
+    proof: Proof, force: sp.Symbol, integrand: sp.Expr, integral: str, low: bool, leading: sp.Expr,
+    shown: str,
+) -> None:  # fmt: skip
+    """Evaluate the integral of the paper, and compare it with the exact force."""
+    proof.recall("eq3")
+    _recall_exact(proof)
+    over = (x, -a, a if low else sp.S.Zero)
+    inner = sp.Poly(integrand.subs(h(x), _SHAPE).doit(), x)
+    reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
+    proof.integral(sp.Integral(integrand, over), integrand, over, inner.integrate(x).as_expr(), reason,
+                   value=leading, left=integral, right=shown)  # fmt: skip
+    point, small = (_low, l_r / a) if low else (_high, a / l_r)
+    if force == F:
+        spring = low_load if low else low_load / 2
+        reason = f"what the spring carries: {'all' if low else 'half'} of the load at rest"
+        proof.define(load_excess, W - C * V * delta, "F21 needs the load without the damper's part")
+        proof.leading_order(load_excess, spring, *point, reason, eps=small)
+        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
+    proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
+
+
+_Case = tuple[int, str, sp.Symbol, sp.Expr, str, sp.Expr, str]
+
+
+def _estimates(low: bool, cases: tuple[_Case, ...]) -> None:
+    """Add the estimates of the paper for low or high velocity."""
+    for number, force_name, force, integrand, integral, leading, shown in cases:
+        result(
+            f"eq{number}", title=f"{force_name} at {'low' if low else 'high'} velocity",
+            text=r"Here $\alpha = 2\sqrt{2}/3$; the remainder is that of the exact force.",
+            notation={"u": _compression, r"\dot{u}": _rate},
+            force=force, integrand=integrand, integral=integral, low=low, leading=leading, shown=shown,
+        )(_estimate)  # fmt: skip
+
+
+_estimates(True, (
+    (40, "Load", W, K * _compression, r"\int_{-a}^{a} K u \, \mathrm{d}x", low_load, LOW_LOAD),
+    (41, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{a} -h' C \dot{u} \, \mathrm{d}x",
+     low_friction, LOW_FRICTION),
+))  # fmt: skip
+
+
+@result("eq42")
+def _low_coefficient(proof: Proof) -> None:
+    r"""Friction coefficient at low velocity.
+
+    The asymptotes $\mathrm{L}_{1\mathrm{-FI}}$ and $\mathrm{L}_{1\mathrm{-MI}}$ are the same: neither depth
+    nor load enters.
+    """
+    _recall_coefficient(proof)
+    proof.equal(sp.UnevaluatedExpr(low_friction / low_load), low_coefficient, "Eqs. (40) and (41)",
+                left=rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}")  # fmt: skip
     proof.leading_order(mu, low_coefficient, *_low, "exact $F/W$", eps=l_r / a)
-    return proof.done(mu, low_coefficient)
 
 
-_BOTH = (
-    r"The asymptotes $\mathrm{L}_{1\mathrm{-FI}}$ and $\mathrm{L}_{1\mathrm{-MI}}$ are the same: "
-    "neither depth nor load enters."
-)
+_estimates(False, (
+    (43, "Load", W, C * _rate, r"\int_{-a}^{0} C \dot{u} \, \mathrm{d}x", high_load, r"C V \delta"),
+    (44, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{0} -h' C \dot{u} \, \mathrm{d}x",
+     high_friction, HIGH_FRICTION),
+))  # fmt: skip
 
 
-def _high_coefficient() -> Derivation:
-    proof = _coefficient(45, "Friction coefficient at high velocity, fixed indenter")
-    ratio = high_friction / high_load
-    shown: Shown = {"left": rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", "right": HIGH_FIXED}
-    proof.equal(sp.UnevaluatedExpr(ratio), high_coefficient, "Eqs. (43) and (44)", **shown)
+@result("eq45")
+def _high_coefficient(proof: Proof) -> None:
+    """Friction coefficient at high velocity, fixed indenter."""
+    _recall_coefficient(proof)
+    proof.equal(sp.UnevaluatedExpr(high_friction / high_load), high_coefficient, "Eqs. (43) and (44)",
+                left=rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", right=HIGH_FIXED)  # fmt: skip
     proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r, right=HIGH_FIXED)
-    return proof.done(mu, high_coefficient)
 
 
-def _high_dead_weight() -> Derivation:
-    title = "Friction coefficient at high velocity, dead weight"
-    proof = _coefficient(46, title, _IN_DRIVE)
-    _define_critical(proof)
-    proof.leading_order(
-        mu, high_coefficient_dead_weight, *_high, "exact $F/W$ at the load $W$",
-        eps=(V_star / V) ** sp.Rational(3, 2), right=HIGH_DEAD_WEIGHT,
-    )  # fmt: skip
-    return proof.done(mu, high_coefficient_dead_weight)
+@result("eq46")
+def _high_dead_weight(proof: Proof) -> None:
+    """Friction coefficient at high velocity, dead weight.
 
-
-_IN_DRIVE = "The velocity $V^{*}$ is that of Eq. (48); the load $W$ is given."
-
-
-def _define_critical(proof: Proof) -> None:
+    The velocity $V^{*}$ is that of Eq. (48); the load $W$ is given.
+    """
+    _recall_coefficient(proof)
     proof.define(V_star, critical_dead_weight, "Eq. (48)", right=CRITICAL_DEAD_WEIGHT)
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "exact $F/W$ at the load $W$",
+                        eps=_small, right=HIGH_DEAD_WEIGHT)  # fmt: skip
 
 
-def _critical_fixed() -> Derivation:
-    proof = _equation("eq47", 47, title="Critical velocity, fixed indenter", uses=("eq42", "eq45"))
+@result("eq47", uses=("eq42", "eq45"))
+def _critical_fixed(proof: Proof) -> None:
+    """Critical velocity, fixed indenter."""
     proof.define(V, V_star, "the two asymptotes meet")
     reason = "Eq. (42) equals Eq. (45)"
     gap = low_coefficient - high_coefficient
     proof.root(gap, V_star, critical_fixed, reason, right=CRITICAL_FIXED)
-    return proof.done(V_star, critical_fixed)
 
 
-def _critical_dead_weight() -> Derivation:
-    uses = ("eq42", "eq46")
-    proof = _equation("eq48", 48, title="Critical velocity, dead weight", uses=uses)
+@result("eq48", uses=("eq42", "eq46"))
+def _critical_dead_weight(proof: Proof) -> None:
+    """Critical velocity, dead weight."""
     proof.define(V, V_star, "the two asymptotes meet")
     reason = "Eq. (42) equals Eq. (46)"
     gap = low_coefficient - high_coefficient_dead_weight
     proof.root(gap, V_star, critical_dead_weight, reason, right=CRITICAL_DEAD_WEIGHT)
-    return proof.done(V_star, critical_dead_weight)
 
 
-def _lift() -> Derivation:
-    proof = _equation("eq49", 49, title="Vertical lift", text=_LIFT)
+@result("eq49")
+def _lift(proof: Proof) -> None:
+    """Vertical lift.
+
+    At a given load the depth falls as $V^{-1}$ once $V$ is far above $V^{*}$ of Eq. (48).
+    """
     _recall_exact(proof)
-    proof.recall("eq48", V_star, critical_dead_weight)
-    small = (V_star / V) ** sp.Rational(3, 2)
+    proof.recall("eq48")
     reason = "Eq. (43) solved for the depth at the load $W$"
-    proof.leading_order(delta, W / (C * V), *_high, reason, eps=small)
-    return proof.done(delta, W / (C * V))
+    proof.leading_order(delta, W / (C * V), *_high, reason, eps=_small)
 
 
-_LIFT = "At a given load the depth falls as $V^{-1}$ once $V$ is far above $V^{*}$ of Eq. (48)."
+@result("eq50")
+def _vanishing_friction(proof: Proof) -> None:
+    r"""Friction vanishes at high velocity, dead weight.
 
-
-def _vanishing_friction() -> Derivation:
-    proof = _coefficient(50, "Friction vanishes at high velocity, dead weight", _VANISH)
-    proof.recall("eq48", V_star, critical_dead_weight)
+    With the load held, $\mu \to 0$ for $V/V^{*} \to \infty$, as $(V^{*}/V)^{1/2}$.
+    """
+    _recall_coefficient(proof)
+    proof.recall("eq48")
     limit = C * V_star / (R * K) * (V_star / V) ** sp.Rational(1, 2)
-    small = (V_star / V) ** sp.Rational(3, 2)
     shown = r"\frac{C V^{*}}{R K} \sqrt{\frac{V^{*}}{V}}"
     reason = r"tends to 0 as $V/V^{*} \to \infty$"
-    proof.leading_order(mu, limit, *_high, reason, eps=small, right=shown)
-    return proof.done(mu, limit)
-
-
-_VANISH = r"With the load held, $\mu \to 0$ for $V/V^{*} \to \infty$, as $(V^{*}/V)^{1/2}$."
+    proof.leading_order(mu, limit, *_high, reason, eps=_small, right=shown)

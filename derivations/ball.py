@@ -7,43 +7,99 @@ functions, by which every result is a sum without cancellation.
 """
 
 from collections.abc import Mapping
-from functools import partial
 
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .nomenclature import letter, symbol
+from .steady import l
 from .step import Proof
-from .symbols import (
-    aside,
-    ball_angle,
-    ball_coefficient,
-    ball_cross,
-    ball_depth,
-    ball_friction,
-    ball_friction_high,
-    ball_friction_low,
-    ball_kept,
-    ball_l1,
-    ball_l2,
-    ball_lam_cross,
-    ball_load,
-    ball_load_high,
-    ball_load_low,
-    ball_loss,
-    ball_lost,
-    ball_mean,
-    ball_rest,
-    ball_scaled,
-    ball_scaled_s,
-    ball_scaled_ss,
-    ball_share,
-    ball_slip,
-    ball_tail,
-    kappa,
-    l,
-    lam,
-    s,
-)  # fmt: skip
+from .theorems import kappa, lam
+
+s = symbol("s", r"scaled time, $t/\tau$", source="scaled-pressure")
+aside = symbol(
+    "y_b",
+    r"place of a strip of a ball over the half width $a \sqrt{R_{\mathrm{y}}/R}$",
+    latex=r"\tilde \zeta",
+    source="coordinate",
+)
+letter(r"R_{\mathrm{y}}", "radius of a ball across the sliding direction", "m", source="")
+ball_angle = symbol("theta_b", r"$\arctan(1/l)$", latex=r"\tilde \theta")
+ball_load = symbol(
+    "w_b", r"scaled load of a ball, $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$", latex=r"\tilde w"
+)
+ball_mean = symbol("g_b", r"$(\pi + \tilde T)/4$", latex=r"\tilde g")
+ball_rest = symbol("K_b", r"$\frac{2}{15} - l^2 \tilde D$", latex=r"\tilde K")
+ball_kept = symbol("M_b", r"$\tilde D - \tilde N$", latex=r"\tilde M")
+ball_lost = symbol("N_b", r"half of $- l \frac{d \tilde D}{d l}$", latex=r"\tilde N")
+ball_tail = symbol("T_b", "what the load of a ball has beside its limits", latex=r"\tilde T")
+ball_loss = symbol("D_b", "integral by which a ball leaves energy behind", latex=r"\tilde D")
+ball_depth = symbol("I_b", "integral of the depths of the strips", latex=r"\tilde I")
+ball_friction = symbol(
+    "phi_b",
+    r"scaled friction force of a ball, $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$",
+    latex=r"\tilde \varphi",
+)
+ball_coefficient = symbol(
+    "m_b", r"scaled friction coefficient of a ball, $\mu R/a$", latex=r"\tilde m"
+)
+ball_share = symbol(
+    "eta_b",
+    "fraction of the power dissipated inside the contact of a ball",
+    latex=r"\tilde \eta",
+    real=True,
+)
+ball_scaled = symbol("f_b", "scaled load of a ball that has been lifted", latex=r"\tilde f")
+ball_scaled_s = symbol("f_b_s", latex=r"\tilde f'")
+ball_scaled_ss = symbol("f_b_ss", latex=r"\tilde f''")
+ball_cross = symbol(
+    "l_b", "scaled crossing velocity of a ball at a given depth", latex=r"\tilde l^{*}"
+)
+ball_lam_cross = symbol(
+    "lambda_b", "scaled crossing velocity of a ball at a given load", latex=r"\tilde \lambda^{*}"
+)
+ball_slip = symbol(
+    "E_b",
+    "slope of the friction coefficient of a ball at a given load, scaled",
+    latex=r"\tilde E",
+    real=True,
+)
+ball_l1 = symbol(
+    "e_b_L1",
+    "relative error of the low asymptote, ball",
+    latex=r"\tilde e_{\mathrm{L1}}",
+    real=True,
+)
+ball_l2 = symbol(
+    "e_b_L2",
+    "relative error of the high asymptote, ball",
+    latex=r"\tilde e_{\mathrm{L2}}",
+    real=True,
+)
+ball_load_low = symbol(
+    "e_b_W_low",
+    "relative error of the load at rest, ball",
+    latex=r"\tilde e_{W\!,\,V\to0}",
+    real=True,
+)
+ball_load_high = symbol(
+    "e_b_W_high",
+    "relative error of the load at high velocity, ball",
+    latex=r"\tilde e_{W\!,\,V\to\infty}",
+    real=True,
+)
+ball_friction_low = symbol(
+    "e_b_F_low",
+    "relative error of the friction force at low velocity, ball",
+    latex=r"\tilde e_{F\!,\,V\to0}",
+    real=True,
+)
+ball_friction_high = symbol(
+    "e_b_F_high",
+    "relative error of the friction force at high velocity, ball",
+    latex=r"\tilde e_{F\!,\,V\to\infty}",
+    real=True,
+)
 
 SECTION = "Ball"
 
@@ -62,15 +118,7 @@ REST = sp.Rational(2, 15) - l**2 * (sp.Rational(2, 3) + l**2 - l * (1 + l**2) * 
 HIGH = 3 * PI / 16
 UNIT = (y, 0, 1)
 
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F20 and what follows from it."""
-    return (
-        *(_tail(), _load(), _loss(), _friction(), _energy(), _limits(), _high()),
-        *(_balance(), _crossing(), _slip(), _unique(), *_errors()),
-    )
+result = Chapter(SECTION)
 
 
 def _angle(proof: Proof) -> None:
@@ -80,17 +128,40 @@ def _angle(proof: Proof) -> None:
 def known(proof: Proof, at: Mapping[sp.Symbol, sp.Expr] | None = None) -> None:
     """Recall the tail of the load, perhaps at another l."""
     proof.define(theta, ANGLE.subs(at or {}), "half the angle of the contact, F20-tail")
-    proof.recall("F20-tail", T, TAIL, at=at)
+    proof.recall("F20-tail", at=at)
 
 
 def _sums(proof: Proof) -> None:
     """State what every later theorem uses."""
     known(proof)
-    proof.recall("F20-load", w, LOAD)
+    proof.recall("F20-load")
 
 
-def _load() -> Derivation:
-    proof = _theorem("F20-load", title="Ball: load", text=_STRIPS, uses=("F21-load",))
+@result("F20-tail")
+def _tail(proof: Proof) -> None:
+    r"""Ball: the closed form without cancellation.
+
+    For $l \gg 1$ the terms of $\tilde T$ grow as $l^3$ and cancel; the integral does not. It falls with $l$,
+    from $\pi$ at $l = 0$ to zero.
+    """
+    _angle(proof)
+    positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
+    primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
+    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=TAIL)
+    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
+    proof.done(T, TAIL)
+
+
+@result("F20-load", uses=("F21-load",))
+def _load(proof: Proof) -> None:
+    r"""Ball: load.
+
+    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length $a
+    \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde \zeta^2)^{3/2} +
+    (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of the contact at rest,
+    ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on which the pressure
+    vanishes.
+    """
     width = 1 - y**2
     strip = sp.Rational(4, 3) * (width ** sp.Rational(3, 2) + EDGE**3 - l**3)
     primitive = sp.Rational(4, 3) * (
@@ -104,38 +175,14 @@ def _load() -> Derivation:
     known(proof)
     proof.integral(whole, strip, UNIT, primitive, "F21-load of each strip, both sides", value=LOAD)
     proof.define(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
-    return proof.done(w, LOAD)
 
 
-_STRIPS = (
-    r"A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length "
-    r"$a \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde "
-    r"\zeta^2)^{3/2} + (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of "
-    r"the contact at rest, ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on "
-    "which the pressure vanishes."
-)
+@result("F20-loss", uses=("F20-load",))
+def _loss(proof: Proof) -> None:
+    r"""Ball: what leaves the contact.
 
-
-def _tail() -> Derivation:
-    proof = _theorem("F20-tail", title="Ball: the closed form without cancellation", text=_POSITIVE)
-    _angle(proof)
-    positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
-    primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
-    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=TAIL)
-    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
-    return proof.done(T, TAIL)
-
-
-_POSITIVE = (
-    r"For $l \gg 1$ the terms of $\tilde T$ grow as $l^3$ and cancel; the integral does not. It falls with "
-    r"$l$, from $\pi$ at $l = 0$ to zero."
-)
-
-
-def _loss() -> Derivation:
-    proof = _theorem(
-        "F20-loss", title="Ball: what leaves the contact", text=_FALLS, uses=("F20-load",)
-    )
+    $\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde \zeta^2 > l^2$.
+    """
     positive = y**2 * (1 - y**2) / (l**2 + y**2)
     primitive = -(y**3) / 3 + (1 + l**2) * y - l * (1 + l**2) * sp.atan(y / l)
     closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta
@@ -144,16 +191,19 @@ def _loss() -> Derivation:
     proof.equal(D, LOSS, "from the same tail")
     proof.equal(sp.Derivative(T, l), -8 * D, "so the tail falls")
     proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity", eps=1 / l)
-    return proof.done(D, LOSS)
+    proof.done(D, LOSS)
 
 
-_FALLS = (
-    r"$\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde \zeta^2 > l^2$."
-)
+@result("F20", uses=("F20-load", "F21-steady"))
+def _friction(proof: Proof) -> None:
+    r"""Ball: friction.
 
-
-def _friction() -> Derivation:
-    proof = _theorem("F20", title="Ball: friction", text=_BALL, uses=("F20-load", "F21-steady"))
+    The forces of a ball: $W = \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R}
+    \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l =
+    V \tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at all at a
+    given depth. In both limits a line contact with the same $R$, of the half length $\frac{9 \pi}{32} a$ and
+    as wide as $\frac{4}{3} (\frac{32}{9 \pi})^2 a \sqrt{R_{\mathrm{y}}/R}$ has the same forces, by F1.
+    """
     _sums(proof)
     depth = ball_depth
     proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
@@ -163,78 +213,66 @@ def _friction() -> Derivation:
     )
     proof.equal(phi / w, COEFFICIENT, "friction coefficient")
     proof.define(m, COEFFICIENT, r"$\mu R/a$")
-    return proof.done(m, COEFFICIENT)
 
 
-_BALL = (
-    r"The forces of a ball: $W = \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R} "
-    r"\sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on "
-    r"$l = V \tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at "
-    r"all at a given depth. In both limits a line contact with the same $R$, of the half length $\frac{9 "
-    r"\pi}{32} a$ and as wide as $\frac{4}{3} (\frac{32}{9 \pi})^2 a \sqrt{R_{\mathrm{y}}/R}$ has the same "
-    "forces, by F1."
-)
+@result("F20-energy", uses=("energy-any-shape", "F20-loss"))
+def _energy(proof: Proof) -> None:
+    r"""Ball: energy dissipated inside the contact.
 
-
-def _energy() -> Derivation:
-    proof = _theorem("F20-energy", title="Ball: energy dissipated inside the contact", text=_SHARE,
-                     uses=("energy-any-shape", "F20-loss"))  # fmt: skip
+    Of the power $F V$ the surface behind a strip takes $\frac{K}{2} V u_{\mathrm{TE}}^2$ per unit width,
+    $u_{\mathrm{TE}} = \frac{l_{\mathrm{r}}}{R} x_{\mathrm{TE}}$. The fraction inside the contact is 1 in both
+    limits.
+    """
     primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
     known(proof)
-    proof.recall("F20-loss", D, LOSS)
+    proof.recall("F20-loss")
     left_behind = (EDGE - l) ** 2
     proof.integral(sp.Integral(left_behind, UNIT), left_behind, UNIT, primitive,
                    r"$u_{\mathrm{TE}}^2$ of each strip, in units of $(l_{\mathrm{r}} a/R)^2$",
                    value=D)  # fmt: skip
-    proof.recall("F20", phi, FRICTION)
+    proof.recall("F20", phi)
     share = 1 - 8 * l * D / (PI + T)
     proof.define(ball_share, share, "fraction inside")
     proof.equal((1 - ball_share) * phi, 2 * l**2 * D, r"the rest of $F V$ relaxes behind")
-    return proof.done(ball_share, share)
+    proof.done(ball_share, share)
 
 
-_SHARE = (
-    r"Of the power $F V$ the surface behind a strip takes $\frac{K}{2} V u_{\mathrm{TE}}^2$ per unit width, "
-    r"$u_{\mathrm{TE}} = \frac{l_{\mathrm{r}}}{R} x_{\mathrm{TE}}$. The fraction inside the contact is 1 in "
-    "both limits."
-)
+@result("F20-low", uses=("F20",))
+def _limits(proof: Proof) -> None:
+    r"""Ball: low velocity.
 
-
-def _limits() -> Derivation:
-    proof = _theorem("F20-low", title="Ball: low velocity", text=_LOW, uses=("F20",))
+    $\mu \to \frac{C V}{K R}$, which is Eq. (42): neither load nor shape across matter. At rest $W = \pi K R
+    \delta^2 \sqrt{R_{\mathrm{y}}/R}$.
+    """
     _sums(proof)
-    proof.recall("F20", m, COEFFICIENT)
+    proof.recall("F20")
     near = {"variable": l, "point": 0, "eps": l}
     proof.leading_order(w, PI / 2, reason="load at rest", **near)
     proof.leading_order(m, l, reason="friction coefficient: that of the cylinder", **near)
-    return proof.done(m, l)
 
 
-_LOW = (
-    r"$\mu \to \frac{C V}{K R}$, which is Eq. (42): neither load nor shape across matter. At rest $W = "
-    r"\pi K R \delta^2 \sqrt{R_{\mathrm{y}}/R}$."
-)
+@result("F20-high", uses=("F20",))
+def _high(proof: Proof) -> None:
+    r"""Ball: high velocity.
 
-
-def _high() -> Derivation:
-    proof = _theorem("F20-high", title="Ball: high velocity", text=_FAST, uses=("F20",))
+    At a given load $W = \frac{4}{3} C V \delta a \sqrt{R_{\mathrm{y}}/R}$ makes $a^3 \sim 1/V$: the friction
+    coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$.
+    """
     _sums(proof)
-    proof.recall("F20", m, COEFFICIENT)
+    proof.recall("F20")
     far = {"variable": l, "point": sp.oo, "eps": 1 / l}
     proof.leading_order(w, sp.Rational(4, 3) * l, reason=r"$W \to C V$ times the mean depth", **far)
     proof.leading_order(m, HIGH, reason=r"$\mu \to \frac{3 \pi}{16} \frac{a}{R}$", **far)
-    return proof.done(m, HIGH)
 
 
-_FAST = (
-    r"At a given load $W = \frac{4}{3} C V \delta a \sqrt{R_{\mathrm{y}}/R}$ makes $a^3 \sim 1/V$: the "
-    r"friction coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$."
-)
+@result("F20-balance", uses=("F20-load", "F20-loss"))
+def _balance(proof: Proof) -> None:
+    r"""Ball: one depth for a weight.
 
-
-def _balance() -> Derivation:
-    proof = _theorem("F20-balance", title="Ball: one depth for a weight", text=_BALANCE,
-                     uses=("F20-load", "F20-loss"))  # fmt: skip
+    On a spring of support number $\kappa$ the balance is $\tilde f + \kappa (s^2 - 1) = 1$. As $d \ln \tilde
+    f/d \ln s$ is above 3 and below 4, there is one depth, and its relative error is less than that of the
+    load.
+    """
     angle, tail = sp.atan(s / lam), TAIL.subs({l: lam / s})
     whole = 2 * s**4 * LOAD / PI
     scaled = s**3 * (s * (1 + T / PI) / 2 + 8 * lam / (3 * PI))
@@ -252,7 +290,7 @@ def _balance() -> Derivation:
     of_slope = slope.subs(theta, angle)
     proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "once more",
                 left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
-    proof.recall("F20-loss", D, LOSS, at={l: lam / s})
+    proof.recall("F20-loss", at={l: lam / s})
     gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI
     proof.equal(ball_scaled_s - 3 * ball_scaled, gain, "more than the damper alone")
     number = lam / s
@@ -262,41 +300,37 @@ def _balance() -> Derivation:
         proof.holds(form, ">", 0, "all terms are positive")
     balance = ball_scaled + kappa * (s**2 - 1) - 1
     proof.crossing(balance, (s, 0, sp.oo), "exactly once", slope=ball_scaled_s / s + 2 * kappa * s)
-    return proof.done(ball_scaled, scaled)
+    proof.done(ball_scaled, scaled)
 
 
-_BALANCE = (
-    r"On a spring of support number $\kappa$ the balance is $\tilde f + \kappa (s^2 - 1) = 1$. As $d \ln "
-    r"\tilde f/d \ln s$ is above 3 and below 4, there is one depth, and its relative error is less than that "
-    "of the load."
-)
+@result("F20-crossing", uses=("F20-low", "F20-high"))
+def _crossing(proof: Proof) -> None:
+    r"""Ball: crossing velocity.
 
-
-def _crossing() -> Derivation:
-    proof = _theorem("F20-crossing", title="Ball: crossing velocity", text=_CROSSING,
-                     uses=("F20-low", "F20-high"))  # fmt: skip
+    The asymptotes $\mu = V \tau/R$ and $\mu = \frac{3 \pi}{16} \frac{a}{R}$ meet at $V^{*} \tau = \frac{3
+    \pi}{16} a$ for a given depth; at a given load ($\kappa = 0$) or on a spring at $V^{*} \tau = \tilde
+    \lambda^{*} a_0$.
+    """
     proof.define(ball_cross, HIGH, r"$l = \tilde m$ of high velocity, at a given depth")
     held = HIGH * (2 * (1 + kappa)) ** sp.Rational(1, 4)
     lifted = 3 * PI * (1 + kappa) / (8 * lam)
     reason = r"$\lambda = \frac{3 \pi}{16} s$ with $s^3 = \frac{3 \pi (1 + \kappa)}{8 \lambda}$"
     proof.root(lam**3 - HIGH**3 * lifted, lam, held, reason, name=ball_lam_cross)
-    return proof.done(ball_lam_cross, held)
 
 
-_CROSSING = (
-    r"The asymptotes $\mu = V \tau/R$ and $\mu = \frac{3 \pi}{16} \frac{a}{R}$ meet at $V^{*} \tau = \frac{3 "
-    r"\pi}{16} a$ for a given depth; at a given load ($\kappa = 0$) or on a spring at $V^{*} \tau = \tilde "
-    r"\lambda^{*} a_0$."
-)
+@result("F20-peak", uses=("F20", "F20-loss"))
+def _slip(proof: Proof) -> None:
+    r"""Ball: friction maximum of a dead weight.
 
-
-def _slip() -> Derivation:
-    proof = _theorem("F20-peak", title="Ball: friction maximum of a dead weight", text=_PEAK,
-                     uses=("F20", "F20-loss"))  # fmt: skip
+    At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient
+    rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high
+    velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is $l =
+    1.842345$, beside the $\sqrt{3}$ of a cylinder (F3).
+    """
     tail = TAIL.subs(theta, ANGLE)
     load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
     known(proof)
-    proof.recall("F20-loss", D, LOSS)
+    proof.recall("F20-loss")
     proof.define(w, LOAD, "F20-load")
     proof.define(phi, FRICTION, "F20")
     gain = l * (sp.Rational(4, 3) - 2 * D)
@@ -309,20 +343,17 @@ def _slip() -> Derivation:
     proof.equal(phi * slip, (phi - 2 * l**2 * D) * w - sp.Rational(5, 4) * gain * phi,
                 r"$\tilde \varphi \tilde w \frac{d}{d \ln l} \ln (\tilde \varphi \tilde w^{-5/4})$, for "
                 r"$\mu = F/W$ and $F \sim a^5 \tilde \varphi$")  # fmt: skip
-    return proof.done(ball_slip, slip)
+    proof.done(ball_slip, slip)
 
 
-_PEAK = (
-    r"At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient "
-    r"rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high "
-    r"velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is "
-    r"$l = 1.842345$, beside the $\sqrt{3}$ of a cylinder (F3)."
-)
+@result("F20-unique", uses=("F20-peak",))
+def _unique(proof: Proof) -> None:
+    r"""Ball: one friction maximum.
 
-
-def _unique() -> Derivation:
-    proof = _theorem("F20-unique", title="Ball: one friction maximum", text=_UNIQUE,
-                     uses=("F20-peak",))  # fmt: skip
+    With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from infinity to
+    $- \frac{1}{3}$, it has one root, $l = 1.842345$ within $10^{-6}$: a ball under a dead weight has one
+    friction maximum.
+    """
     arc, whole = sp.atan(y / l), 1 + l**2
     rest, kept, lost, g = ball_rest, ball_kept, ball_lost, ball_mean
     square, wide = y**2 * (1 - y**2), l**2 + y**2
@@ -336,7 +367,7 @@ def _unique() -> Derivation:
         (kept, y**2 * square / wide**2, -lose - forget, "what remains"),
     ):
         proof.integral(name, form, UNIT, primitive, what)
-    proof.recall("F20-loss", D, LOSS)
+    proof.recall("F20-loss")
     proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$")
     shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
     slip = (1 - 2 * l * D / g) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
@@ -352,57 +383,44 @@ def _unique() -> Derivation:
     for place, sign in zip(PEAK, "><", strict=True):
         proof.holds(sp.Subs(shape, l, place), sign, 0, "beside the root")
     proof.crossing(shape, (l, 0, sp.oo), "exactly once", slope=-size / (l**2 * (PI + T) / 4))
-    return proof.done(shape, 0)
 
 
 PEAK = sp.Rational(1842344, 10**6), sp.Rational(1842346, 10**6)
 """Between these l the friction coefficient of a dead weight is greatest."""
-_UNIQUE = (
-    r"With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from "
-    r"infinity to $- \frac{1}{3}$, it has one root, $l = 1.842345$ within $10^{-6}$: a ball under a dead "
-    "weight has one friction maximum."
-)
-
-
-def _errors() -> tuple[Derivation, ...]:
-    """Prove the error of each asymptote, and that it grows with l or falls."""
-    g, whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
-    slower = 2 * (2 * l**2 / 3 + l * T / 2) / (1 + l**2)
-    """4/3 - 2 D, by which the load grows with l."""
-    rows: tuple[tuple[str, str, sp.Symbol, sp.Expr, sp.Expr, sp.Expr, str], ...] = (
-        ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * g),
-         sp.Rational(4, 3) * (g + 2 * l * D) / g**2, ">"),
-        ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT, HIGH / l - T / (PI + T),
-         (8 * PI * (sp.Rational(2, 15) - ball_rest) / (PI + T) ** 2 - HIGH) / l**2, "<"),
-        ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
-         -(sp.Rational(16, 3) * l - (PI - T)) / whole, -8 * PI * slower / whole**2, "<"),
-        ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
-         -(PI + T) / whole, (8 * D * whole + 4 * (PI + T) * slower) / whole**2, ">"),
-        ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
-         PI / 2 * l / FRICTION, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
-        ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
-         PI / 4 * l / FRICTION, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
-    )  # fmt: skip
-    return tuple(_error(*row) for row in rows)
 
 
 def _error(
-    label: str,
-    title: str,
-    name: sp.Symbol,
-    ratio: sp.Expr,
-    error: sp.Expr,
-    slope: sp.Expr,
-    sign: str,
-) -> Derivation:
-    proof = _theorem(f"F20-error-{label}", title=f"Ball: relative error, {title}",
-                     text="It is monotonic in $l$.", uses=("F20",))  # fmt: skip
+    proof: Proof, name: sp.Symbol, ratio: sp.Expr, error: sp.Expr, slope: sp.Expr, sign: str
+) -> None:
+    """Prove the error of an asymptote, and that it grows with l or falls."""
     proof.define(name, ratio - 1, "asymptote over the truth, less one")
     proof.equal(name, error, "without cancellation")
     known(proof)
-    proof.recall("F20-loss", D, LOSS)
+    proof.recall("F20-loss")
     if slope.has(ball_rest):
-        proof.recall("F20-unique", ball_rest, REST)
+        proof.recall("F20-unique", ball_rest)
     proof.equal(sp.Derivative(error, l), slope, "its slope")
     proof.holds(slope, sign, 0, "of one sign")
-    return proof.done(name, error)
+    proof.done(name, error)
+
+
+_g, _whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
+_slower = 2 * (2 * l**2 / 3 + l * T / 2) / (1 + l**2)
+"""4/3 - 2 D, by which the load grows with l."""
+for _label, _title, _name, _ratio, _form, _growth, _sign in (
+    ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * _g),
+     sp.Rational(4, 3) * (_g + 2 * l * D) / _g**2, ">"),
+    ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT, HIGH / l - T / (PI + T),
+     (8 * PI * (sp.Rational(2, 15) - ball_rest) / (PI + T) ** 2 - HIGH) / l**2, "<"),
+    ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
+     -(sp.Rational(16, 3) * l - (PI - T)) / _whole, -8 * PI * _slower / _whole**2, "<"),
+    ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
+     -(PI + T) / _whole, (8 * D * _whole + 4 * (PI + T) * _slower) / _whole**2, ">"),
+    ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
+     PI / 2 * l / FRICTION, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
+    ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
+     PI / 4 * l / FRICTION, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
+):  # fmt: skip
+    result(f"F20-error-{_label}", title=f"Ball: relative error, {_title}", text="It is monotonic in $l$.",
+           uses=("F20",), name=_name, ratio=_ratio, error=_form, slope=_growth,
+           sign=_sign)(_error)  # fmt: skip

@@ -6,24 +6,31 @@ x_TE and by the cubes of both. Over the strips these are integrals of sqrt(1 - y
 
 import sympy as sp
 
-from .ball import EDGE, PI, SECTION, UNIT, known, y
-from .record import Derivation
+from .ball import EDGE, PI, SECTION, UNIT, ball_angle, ball_tail, known, y
+from .chapter import Chapter
+from .nomenclature import symbol
+from .steady import l
 from .step import Proof
-from .symbols import ball_angle, ball_cubes, ball_edges, ball_tail, l
+
+ball_edges = symbol(
+    "P_b", "integral of the trailing edges of the strips of a ball", latex=r"\tilde P"
+)
+ball_cubes = symbol("Q_b", "integral of their cubes", latex=r"\tilde Q", real=True)
 
 theta, T = ball_angle, ball_tail
 EDGES = (l / 3 + T / 4) / (1 + l**2)
 CUBES = (sp.Rational(3, 16) * T * (1 + 5 * l**2) - l) / (1 + l**2)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove both sums, in terms of the tail of the load."""
-    return (_slopes(),)
+@result("F20-slopes", uses=("F20-load",))
+def _slopes(proof: Proof) -> None:
+    r"""Ball: how its forces change.
 
-
-def _slopes() -> Derivation:
-    proof = Proof("F20-slopes", None, section=SECTION, title="Ball: how its forces change", text=_SLOPES,
-                  uses=("F20-load",))  # fmt: skip
+    A strip of the half length $\sqrt{1 - \tilde \zeta^2}$ has its trailing edge at $\sqrt{1 - \tilde \zeta^2
+    + l^2} - l$. By F22 these two and their cubes say how its forces change with depth, rate and velocity;
+    strips that the motion lifts or presses down carry nothing to first order.
+    """
     width, whole, arc = sp.sqrt(1 - y**2), 1 + l**2, sp.atan(y / EDGE)
     cubed = y * (5 * whole - 2 * y**2) * EDGE / 8 + sp.Rational(3, 8) * whole**2 * arc
     line = (y * EDGE + whole * arc) / 2
@@ -40,11 +47,3 @@ def _slopes() -> Derivation:
         ball_edges, EDGE - l, UNIT, line - l * y, "trailing edges, positive", value=EDGES
     )
     proof.integral(ball_cubes, (EDGE - l) ** 3, UNIT, powers, "and their cubes", value=CUBES)
-    return proof.done(ball_cubes, CUBES)
-
-
-_SLOPES = (
-    r"A strip of the half length $\sqrt{1 - \tilde \zeta^2}$ has its trailing edge at $\sqrt{1 - \tilde "
-    r"\zeta^2 + l^2} - l$. By F22 these two and their cubes say how its forces change with depth, rate and "
-    r"velocity; strips that the motion lifts or presses down carry nothing to first order."
-)

@@ -28,10 +28,10 @@ from .conditions import (
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
+from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
 from .record import Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
-from .symbols import TEX, alpha
 from .witness import has_witness
 
 _P = ParamSpec("_P")
@@ -44,6 +44,7 @@ class Finished:
 
     derivation: Derivation
     exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+    result: tuple[sp.Expr, sp.Expr]
 
 
 _finished: dict[str, Finished] = {}
@@ -58,10 +59,6 @@ def finished(labels: Iterable[str]) -> dict[str, Finished]:
 def restore(proofs: Mapping[str, Finished]) -> None:
     """Let results be recalled that were proved before, from the same sources: see `store`."""
     _finished.update(proofs)
-
-
-NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
-"""Names that every display may use."""
 
 
 _CONSTANTS = {r"\pi", "e", r"\infty"}
@@ -134,11 +131,12 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         book = cast("Book", given.pop("self"))
         words = {"reason", "shown"}
         arguments = {name: value for name, value in given.items() if name not in words}
-        book._asked, book._read = (check.__name__, arguments, dict(book._rules)), {}
+        name = check.__name__.strip("_")
+        book._asked, book._read = (name, arguments, dict(book._rules)), {}
         try:
             with _limited():
                 for argument in arguments.values():
-                    book._meant(argument, complex_too=check.__name__ in _ALGEBRAIC)
+                    book._meant(argument, complex_too=name in _ALGEBRAIC)
                 return check(*args, **kwargs)
         except StepError:
             raise
@@ -148,7 +146,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
             ) from None
         except Exception as error:
             raise StepError(
-                f"{book.label}: {check.__name__} cannot be decided: {type(error).__name__}: {error}"
+                f"{book.label}: {name} cannot be decided: {type(error).__name__}: {error}"
             ) from error
 
     return run
@@ -318,6 +316,8 @@ class Book:
         """The rules that the step in hand has used."""
         self._needed: set[sp.Expr] = set()
         """The rules that any step has used."""
+        self.finished: Derivation | None = None
+        """The record, once the proof has ended."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._read: dict[str, sp.Expr] = {}
         """The other forms that the display of the step in hand shows of its sides."""
@@ -362,21 +362,32 @@ class Book:
         sides = tex(condition.lhs), sign, tex(condition.rhs)
         self._steps.append(Step(*sides, reason, "definition", claim=claim))
 
-    @asked
     def recall(
+        self,
+        label: str,
+        *wanted: sp.Expr | tuple[sp.Expr, sp.Expr],
+        reason: str = "",
+        at: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> None:
+        """Use what the derivation with this label has established: its result, or what is `wanted` of it.
+
+        That is the last form of a left side, or a relation of both sides. Its premises and its domain come
+        with it. With `at` it is used at one place: variables on which no premise depends get these values.
+        """
+        for each in wanted or (_source(label).result,):
+            lhs, rhs = each if isinstance(each, tuple) else (each, established(label, each))
+            self._recall(label, lhs, rhs, reason, at=at)
+
+    @asked
+    def _recall(
         self,
         label: str,
         lhs: sp.Expr,
         rhs: sp.Expr,
-        reason: str = "",
+        reason: str,
         *,
-        at: Mapping[sp.Symbol, sp.Expr] | None = None,
+        at: Mapping[sp.Symbol, sp.Expr] | None,
     ) -> None:
-        """Use a relation that the derivation with this label has established.
-
-        Its premises and its domain come with it. With `at` it is used at one place: variables on
-        which no premise depends get these values.
-        """
         fact = _source(label).exact.get((sp.sympify(lhs), sp.sympify(rhs)))
         if fact is None:
             raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
@@ -393,9 +404,14 @@ class Book:
         self._consistent(lhs, rhs, label)
         self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
 
-    def done(self, lhs: sp.Expr, rhs: sp.Expr | int, *, table: Table | None = None) -> Derivation:
-        """End the proof with a relation that one of its steps established."""
-        result = self._known.get((sp.sympify(lhs), sp.sympify(rhs)))
+    def done(
+        self, lhs: sp.Expr = None, rhs: sp.Expr | int = None, *, table: Table | None = None
+    ) -> Derivation:
+        """End the proof with a relation that one of its steps established: the last one, if none is given."""
+        if lhs is None and self._steps and (last := self._steps[-1].claim):
+            lhs, rhs = last.lhs, last.rhs
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        result = self._known.get(key)
         if result is None:
             raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
         steps = self._stated()
@@ -418,7 +434,8 @@ class Book:
         before = _finished.get(self.label)
         if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        _finished[self.label] = Finished(found, dict(self._exact))
+        _finished[self.label] = Finished(found, dict(self._exact), key)
+        self.finished = found
         return found
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
@@ -816,7 +833,7 @@ class Book:
                     raise StepError(
                         f"{self.label}: the notation {name} = {meaning} has another meaning here"
                     )
-            names |= {**NOTATION, **self.notation}
+            names |= {**CONSTANTS, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:

@@ -2,70 +2,37 @@
 
 from collections.abc import Callable, Collection
 from functools import cache
+from importlib import import_module
 from types import ModuleType
 
-from . import (
-    asymptote_errors,
-    asymptotics,
-    ball,
-    ball_slopes,
-    circle,
-    contact_interval,
-    element_arms,
-    element_edges,
-    element_schemes,
-    element_strips,
-    energy,
-    few_arms,
-    friction_identity,
-    groups,
-    master_curve,
-    model,
-    one_contact,
-    power_law,
-    power_law_errors,
-    power_law_limits,
-    power_law_weight,
-    relaxation,
-    rubber_drive,
-    rubber_transient,
-    spring_drive,
-    spring_limits,
-    spring_ringing,
-    spring_stability,
-    steady,
-    tables,
-    theorems,
-    transient_balance,
-    transient_edges,
-    transient_memory,
-    transient_motion,
-    transient_rates,
-    transient_scaling,
-    viscoelastic,
-    viscoelastic_limits,
-    wedge,
-)
 from .book import finished, restore
-from .contents import CONTENTS
+from .nomenclature import BY_LATEX
 from .record import Derivation
 from .store import digests, keep, load
 
-_CHAPTERS = (
-    *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
-    *(theorems, master_curve, energy, asymptote_errors, circle),
-    *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
-    *(ball, ball_slopes, viscoelastic, relaxation, viscoelastic_limits, few_arms),
-    *(transient_scaling, transient_memory, contact_interval, transient_edges),
-    *(transient_motion, transient_rates, transient_balance),
-    *(spring_drive, spring_stability, spring_limits, spring_ringing),
-    *(rubber_drive, rubber_transient),
-    *(element_schemes, element_edges, element_strips, element_arms),
+CHAPTERS: tuple[ModuleType, ...] = tuple(
+    import_module(f".{name}", __package__)
+    for name in (
+        *("model", "steady", "one_contact", "friction_identity", "asymptotics", "tables", "groups"),
+        *("theorems", "master_curve", "energy", "asymptote_errors", "circle"),
+        *("power_law", "power_law_limits", "power_law_weight", "power_law_errors", "wedge"),
+        *("ball", "ball_slopes"),
+        *("viscoelastic", "relaxation", "viscoelastic_limits", "few_arms"),
+        *("transient_scaling", "transient_memory", "contact_interval", "transient_edges"),
+        *("transient_motion", "transient_rates", "transient_balance"),
+        *("spring_drive", "spring_stability", "spring_limits", "spring_ringing"),
+        *("rubber_drive", "rubber_transient"),
+        *("element_schemes", "element_edges", "element_strips", "element_arms"),
+    )
 )
-"""Each chapter may recall the results of the chapters before it."""
+"""Each chapter may recall the results of the chapters before it, and import from them."""
 
-SECTIONS = tuple(dict.fromkeys(chapter.SECTION for chapter in _CHAPTERS))
+SECTIONS = tuple(dict.fromkeys(chapter.result.section for chapter in CHAPTERS))
 """The sections of the document, in order."""
+CONTENTS = {entry.label: entry.title for chapter in CHAPTERS for entry in chapter.result.entries}
+"""The titles of all derivations by label."""
+SYMBOLS = tuple(BY_LATEX.values())
+"""The nomenclature: every symbol that is printed, in the order in which the chapters introduce them."""
 
 
 def wanted_up_to(labels: Collection[str]) -> int:
@@ -75,7 +42,7 @@ def wanted_up_to(labels: Collection[str]) -> int:
 
 @cache
 def _digests() -> dict[str, str]:
-    return digests([_name(chapter) for chapter in _CHAPTERS])
+    return digests([_name(chapter) for chapter in CHAPTERS])
 
 
 def _name(chapter: ModuleType) -> str:
@@ -90,7 +57,7 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     if known is not None:
         restore(known)
         return tuple(each.derivation for each in known.values())
-    derived: tuple[Derivation, ...] = chapter.derive()
+    derived: tuple[Derivation, ...] = chapter.result.derive()
     keep(name, _digests()[name], finished(each.label for each in derived))
     return derived
 
@@ -108,7 +75,7 @@ def catalogue(
     """
     derived: list[Derivation] = []
     total = wanted_up_to(until)
-    for chapter in _CHAPTERS:
+    for chapter in CHAPTERS:
         derived += _chapter(chapter)
         if report is not None:
             report(min(len(derived) / total, 1.0), f"{len(derived)} records")

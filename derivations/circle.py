@@ -6,51 +6,58 @@ coefficients c follow from the first terms of the pressure and of the moving edg
 dissipates inside its contact has a closed form, by which the explorer computes its friction.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .model import R, delta, x
+from .nomenclature import letter, symbol
+from .steady import a, l, q
 from .step import Proof
-from .symbols import (
-    F_1,
-    W_1,
-    R,
-    a,
-    c_delta_load,
-    c_f,
-    c_mu,
-    c_mu_load,
-    c_w,
-    circle_number,
-    delta,
-    eps,
-    f,
-    f_s,
-    l,
-    phi,
-    q,
-    s,
-    slope_square,
-    tilt,
-    turning,
-    turning_angle,
-    w,
-    x,
-    xi,
-)  # fmt: skip
 from .theorems import (
     FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
     NUMBER,
     RATIO,
     UNIT,
     A,
     B,
+    f,
+    f_s,
+    phi,
+    s,
+    w,
+    xi,
 )
 
-SECTION = "True circle"
+eps = symbol("epsilon", "$(a/R)^2$ of a true circle", latex=r"\varepsilon", printed=r"\gamma")
+W_1 = symbol("W_1", "first-order change of the scaled load by the circle", real=True)
+F_1 = symbol("F_1", "first-order change of the scaled friction force by the circle", real=True)
+c_w = symbol("c_W", "coefficient of the circle in the load", real=True)
+c_f = symbol("c_F", "coefficient of the circle in the friction force", real=True)
+c_mu = symbol("c_mu", "coefficient of the circle in the friction coefficient", real=True)
+c_delta_load = symbol(
+    "c_delta_W",
+    "coefficient of the circle in the depth at given load",
+    latex=r"c_{\delta,W}",
+    real=True,
+)
+c_mu_load = symbol(
+    "c_mu_W",
+    "coefficient of the circle in the friction coefficient at given load",
+    latex=r"c_{\mu,W}",
+    real=True,
+)
+letter(r"\hat h", "height of a true circle over $R$")
+tilt = symbol("slope", latex=r"\hat h'")
+letter(r"\hat v", "slope of a true circle")
+circle_number = symbol("v_c", r"$l_{\mathrm{r}}/R$ of a true circle", latex=r"\hat l")
+turning = symbol("s_c", "$-x/R$ at the peak pressure of a true circle", latex=r"\hat s")
+turning_angle = symbol("angle", r"angle that gives $\hat s$", latex=r"\hat \theta")
+slope_square = symbol(
+    "slope_square", "integral of $h'^2$ over a contact, over $R$", latex=r"\hat S", real=True
+)
+letter(r"\hat t", r"shift of the trailing edge of a circle, over $\gamma a$")
+letter("m_l", "logarithmic slope of $m$ over $l$")
+
 
 CONTACT = (xi, -1, q)
 PARABOLA = 1 - xi**2 - 2 * l * xi
@@ -65,24 +72,19 @@ LOAD_COEFFICIENT = -3 * q * (1 + (1 - q) * (1 - 3 * q * (1 - q))) / (20 * A)
 FORCE_COEFFICIENT = 9 * (1 - q * (1 - q) * (1 + q**2)) / (10 * B)
 LOADED_COEFFICIENT = sp.Rational(3, 10) * ((1 + q) * (3 * (1 - q) ** 2 + 2 * q) / B)
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter("True circle")
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the leading corrections for a true circle, and the integral of the square of its slope."""
-    return _shape(), _fixed(), _dead_weight(), _steepness(), _peak()
+@result("circle-shape")
+def _shape(proof: Proof) -> None:
+    r"""Shape and leading edge of a true circle.
 
-
-def _shape() -> Derivation:
-    proof = _theorem(
-        "circle-shape",
-        title="Shape and leading edge of a true circle",
-        text=r"Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.",
-    )
+    Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.
+    """
     circle = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2))
     edge = sp.sqrt(1 - eps / 4)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
-    proof.recall("eq28", delta, a**2 / (2 * R))
+    proof.recall("eq28", delta)
     proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
     proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
     first = eps * xi**4 / 4
@@ -92,20 +94,18 @@ def _shape() -> Derivation:
     )
     proof.equal((R - delta) ** 2, R**2 - (edge * a) ** 2, reason)
     proof.leading_order(1 - edge, EDGE * eps, eps, 0, "the leading edge recedes by", eps=eps)
-    return proof.done(circle - xi**2, first)
+    proof.done(circle - xi**2, first)
 
 
-def _fixed() -> Derivation:
-    proof = _theorem(
-        "circle-fixed",
-        title="True circle at given depth",
-        text=r"Load, friction force and friction coefficient are those of the parabola times $1 + c_W "
-        r"\varepsilon$, $1 + c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to "
-        r"$O(\varepsilon^2)$. The pressure vanishes at the trailing edge, whose shift therefore has "
-        r"no effect to this order; at the leading edge it does not vanish.",
-        uses=("circle-shape", "F16"),
-    )
-    proof.recall("scaling", l, NUMBER, RATIO)
+@result("circle-fixed", uses=("circle-shape", "F16"))
+def _fixed(proof: Proof) -> None:
+    r"""True circle at given depth.
+
+    Load, friction force and friction coefficient are those of the parabola times $1 + c_W \varepsilon$, $1 +
+    c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to $O(\varepsilon^2)$. The pressure vanishes at the
+    trailing edge, whose shift therefore has no effect to this order; at the leading edge it does not vanish.
+    """
+    proof.recall("scaling", reason=RATIO)
     change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
     proof.equal(
         change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
@@ -117,8 +117,8 @@ def _fixed() -> Derivation:
     proof.notation[r"\hat p"] = sp.Lambda(xi, PARABOLA)
     leading = PARABOLA.subs(xi, -1)
     proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
-    proof.recall("F1", w, LOAD)
-    proof.recall("F1", phi, FRICTION_FORCE)
+    proof.recall("F1", w)
+    proof.recall("F1", phi)
     moved = (xi, -1 + EDGE * eps, q + _shift * eps)
     slope = xi + eps * xi**3 / 2
     for total, weight, scale, coefficient, value, name in (
@@ -137,7 +137,6 @@ def _fixed() -> Derivation:
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
     proof.sign(c_f, ">", 0, UNIT, "and has more friction")
     proof.define(c_mu, c_f - c_w, r"$\mu = F/W$, a sum of positive terms")
-    return proof.done(c_mu, c_f - c_w)
 
 
 _MOVED = (
@@ -146,21 +145,21 @@ _MOVED = (
 )
 
 
-def _dead_weight() -> Derivation:
-    proof = _theorem(
-        "circle-dead-weight",
-        title="True circle at given load",
-        text=r"With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and "
-        r"friction coefficient are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + "
-        r"c_{\mu,W} \varepsilon$, up to $O(\varepsilon^2)$: the depth adjusts until the load is the same.",
-    )
+@result("circle-dead-weight")
+def _dead_weight(proof: Proof) -> None:
+    r"""True circle at given load.
+
+    With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and friction coefficient
+    are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + c_{\mu,W} \varepsilon$, up to
+    $O(\varepsilon^2)$: the depth adjusts until the load is the same.
+    """
     loading = 3 / A
     slipping = sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT * NUMBER / sp.diff(NUMBER, q)
     slope = q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B)
-    proof.recall("balance", s * f_s / f, 6 / A)
-    proof.recall("circle-fixed", c_w, LOAD_COEFFICIENT)
-    proof.recall("circle-fixed", c_f, FORCE_COEFFICIENT)
-    proof.recall("circle-fixed", c_mu, c_f - c_w)
+    proof.recall("balance", s * f_s / f)
+    proof.recall("circle-fixed", c_w)
+    proof.recall("circle-fixed", c_f)
+    proof.recall("circle-fixed")
     proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
     proof.define(c_delta_load, -c_w / loading, "depth: the load is kept")
     change = sp.Symbol("m_l", real=True)
@@ -168,12 +167,15 @@ def _dead_weight() -> Derivation:
     proof.equal(change, slope, "logarithmic slope of $m$")
     proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, _CHAIN)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
-    return proof.done(c_mu_load, LOADED_COEFFICIENT)
 
 
-def _steepness() -> Derivation:
-    proof = _theorem("circle-steepness", title="True circle: the square of its slope", text=_STEEP,
-                     uses=("energy-any-shape",))  # fmt: skip
+@result("circle-steepness", uses=("energy-any-shape",))
+def _steepness(proof: Proof) -> None:
+    r"""True circle: the square of its slope.
+
+    $\frac{1}{R} \int h'^2\, dx$ from the lowest point to where the slope is $\hat h'$. The integrand is
+    positive; where the slope is small the closed form cancels, and the integral does not.
+    """
     y = sp.Symbol("y", nonnegative=True)
     place, size = R * y / sp.sqrt(1 + y**2), (1 + y**2) ** sp.Rational(3, 2)
     slope = x / sp.sqrt(R**2 - x**2)
@@ -183,18 +185,19 @@ def _steepness() -> Derivation:
     closed = sp.asinh(y) - y / sp.sqrt(1 + y**2)
     value = closed.subs(y, tilt)
     proof.integral(slope_square, y**2 / size, (y, 0, tilt), closed, _SQUARE, value=value)
-    return proof.done(slope_square, value)
 
 
-_STEEP = (
-    r"$\frac{1}{R} \int h'^2\, dx$ from the lowest point to where the slope is $\hat h'$. The integrand is "
-    "positive; where the slope is small the closed form cancels, and the integral does not."
-)
 _SQUARE = "the slope as variable"
 
 
-def _peak() -> Derivation:
-    proof = _theorem("circle-peak", title="True circle: peak pressure", text=_HIGHEST)
+@result("circle-peak")
+def _peak(proof: Proof) -> None:
+    r"""True circle: peak pressure.
+
+    Ahead of the lowest point the pressure is $p = K [\delta - R (1 - \sqrt{1 - y^2}) + l_{\mathrm{r}}
+    y/\sqrt{1 - y^2}]$ at $x = -R y$. It rises up to $y = \hat s$, and again beyond the other positive root:
+    the peak is there or at the leading edge. For $\hat l > 2/(3 \sqrt{3})$ it rises all the way.
+    """
     y, root = sp.Symbol("y", positive=True), sp.sqrt(3)
     proof.where(y < 1, "within the radius")
     height, slope = 1 - sp.sqrt(1 - y**2), y / sp.sqrt(1 - y**2)
@@ -205,14 +208,9 @@ def _peak() -> Derivation:
     proof.define(turning, 2 * sp.sin(turning_angle) / root, "where the slope changes its sign")
     others = y**2 + turning * y + turning**2 - 1
     proof.equal(rise, (y - turning) * others, r"$\hat s$ is the smallest positive root")
-    return proof.done(turning, 2 * sp.sin(turning_angle) / root)
+    proof.done(turning, 2 * sp.sin(turning_angle) / root)
 
 
-_HIGHEST = (
-    r"Ahead of the lowest point the pressure is $p = K [\delta - R (1 - \sqrt{1 - y^2}) + l_{\mathrm{r}} "
-    r"y/\sqrt{1 - y^2}]$ at $x = -R y$. It rises up to $y = \hat s$, and again beyond the other positive "
-    r"root: the peak is there or at the leading edge. For $\hat l > 2/(3 \sqrt{3})$ it rises all the way."
-)
 _NUMBER = (
     r"$\hat l = l_{\mathrm{r}}/R$, if $\hat l \le 2/(3 \sqrt{3})$, with $0 < \hat \theta \le "
     r"\frac{\pi}{6}$"

@@ -4,45 +4,32 @@ Let h be even, convex, h' > 0 for x > 0. The contact is one interval for every d
 the indenter if ln h' is concave for x > 0, and for no other shape; a wedge of two slopes is a counterexample.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .model import R
+from .nomenclature import function, letter, symbol
+from .power_law import L, excess
 from .step import Proof, tex
-from .symbols import (
-    E,
-    L,
-    R,
-    earlier,
-    excess,
-    inclination,
-    logarithm,
-    ratio_gain,
-    ratio_near,
-    ratio_now,
-    slope_rate,
-    time,
-    travelled,
-    y,
-    zeta,
-)  # fmt: skip
-from .transient_memory import SECTION
+from .transient_memory import SECTION, earlier, time, zeta
+from .wedge import inclination
+
+letter(r"\bar k", r"relaxed depth less the present one, $E \bar d_1 - d$")
+logarithm = function("psi", real=True)
+E = symbol("E", "decay since an earlier instant")
+travelled = symbol("m", "scaled displacement since an earlier instant", printed=r"\bar m")
+letter(r"\bar d_1", "depth at an earlier instant, where $d$ is the present one")
+letter(r"\bar f", r"$E\, h(\xi - \bar m) - h(\xi)$, relaxed earlier shape less the present one")
+y = symbol("y", "distance from the lowest line, scaled", printed=r"\hat y")
+letter(r"\hat y_1", "first of two scaled distances from the lowest line")
+letter(r"\hat y_2", "second of two scaled distances from the lowest line")
+slope_rate = function("chi", r"slope of the logarithm of $h'$, $(\ln h')'$", real=True)
+ratio_gain = symbol("beta_1", "ratio of slopes in a counterexample", latex=r"\beta")
+ratio_near = symbol("rho_1", "ratio of slopes at one position")
+ratio_now = symbol("rho_2", "ratio of slopes at another position")
 
 m = travelled
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F9 for every shape with ln h' concave, the converse, and the counterexample."""
-    return (
-        _condition(),
-        _interval(),
-        *(_shape(*case) for case in _SHAPES),
-        _circle(),
-        _converse(),
-        _two_slopes(),
-    )
+result = Chapter(SECTION)
 
 
 def _slope(place: sp.Expr) -> sp.Expr:
@@ -55,13 +42,15 @@ def _height(place: sp.Expr) -> sp.Expr:
     return sp.Integral(_slope(zeta), (zeta, 0, place))
 
 
-def _condition() -> Derivation:
-    proof = _theorem(
-        "F9-difference",
-        title="Contact condition from one past instant",
-        text=_NOTATION,
-        uses=("F8",),
-    )
+@result("F9-difference", uses=("F8",))
+def _condition(proof: Proof) -> None:
+    r"""Contact condition from one past instant.
+
+    An element is now at $\xi$, where the indenter is at $d - h(\xi)$; at $s_1 < s$ it was at $\xi - m$, and
+    the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ may be scaled arbitrarily. By F8 the element
+    is in contact if and only if $D_1 \ge 0$ for every past instant and $e^{s} (d - h) \ge u_0$, which is zero
+    or the same difference for $s_1 = 0$; and $d \ge h(\xi)$ on one interval, because $h$ is even and convex.
+    """
     h = sp.Function("h", real=True)
     now, then = sp.symbols("d d_1", real=True)
     place = sp.Symbol("xi", real=True)
@@ -76,21 +65,21 @@ def _condition() -> Derivation:
         left="D_1",
         right=r"e^{s} \left[(d - E d_1) + f(\xi)\right]",
     )
-    return proof.done(margin, form)
 
 
-_NOTATION = (
-    r"An element is now at $\xi$, where the indenter is at $d - h(\xi)$; at $s_1 < s$ it was at "
-    r"$\xi - m$, and the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ may be scaled "
-    r"arbitrarily. By F8 the element is in contact if and only if $D_1 \ge 0$ for every past "
-    r"instant and $e^{s} (d - h) \ge u_0$, which is zero or the same difference for $s_1 = 0$; and "
-    r"$d \ge h(\xi)$ on one interval, because $h$ is even and convex."
-)
+@result("F9-shapes", uses=("F8", "F9-difference"))
+def _interval(proof: Proof) -> None:
+    r"""The contact is one interval, for many shapes.
 
-
-def _interval() -> Derivation:
-    proof = _theorem("F9-shapes", title="The contact is one interval, for many shapes", text=_INTERVAL,
-                     uses=("F8", "F9-difference"))  # fmt: skip
+    Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion in the other
+    direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with $y$:
+    going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$. So $f$ rises to one place
+    and falls beyond it, $D_1 \ge 0$ on one interval for each past instant, and intervals intersect in an
+    interval, or not at all: the contact is described by two edges. Not checked by machine: that a function
+    which first rises and then falls is at or above a given value on an interval; that the integral of a
+    non-positive function is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself,
+    $\rho(y_2) \le \rho(y_1)$ for $y_2 > y_1$, takes the place of the integral.
+    """
     ahead = -_height(y) + E * _height(y + m)
     between = -_height(y) + E * _height(m - y)
     behind = -_height(y) + E * _height(y - m)
@@ -117,48 +106,53 @@ def _interval() -> Derivation:
         *(gain, rate, (zeta, y, y + m), slope_rate(zeta)),
         r"$J$ is the slope of $\ln \rho$, with $\chi = (\ln h')'$: not positive, as $\ln h'$ is concave",
     )  # fmt: skip
-    return proof.done(-sp.diff(ahead, y), turning)
+    proof.done(-sp.diff(ahead, y), turning)
 
 
-_INTERVAL = (
-    r"Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion "
-    r"in the other direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ "
-    r"does not grow with "
-    r"$y$: going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$. So $f$ "
-    r"rises to one place and falls beyond it, $D_1 \ge 0$ on one interval for each past instant, "
-    "and intervals intersect in an interval, or not at all: the contact is described by two edges. "
-    "Not checked by machine: that a function which first rises and then "
-    "falls is at or above a given value on an interval; that the integral of a non-positive "
-    r"function is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself, $\rho(y_2) \le "
-    r"\rho(y_1)$ for $y_2 > y_1$, takes the place of the integral."
-)
-
-
-_SHAPES = (
-    ("power", "every power law", r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
-     (y / L) ** excess, excess / y**2),
-    ("catenary", "a catenary", r"$h = L (\cosh(x/L) - 1)$.", sp.sinh(y / L),
-     1 / (L**2 * sp.sinh(y / L) ** 2)),
-    ("wedge", "the wedge",
-     r"$h = c\,|x|$: $\ln h'$ is constant, which concavity includes. That $h'$ jumps at the tip "
-     "changes nothing: $f$ rises, or falls, on either side as before.", inclination, sp.S.Zero),
-)  # fmt: skip
-
-
-def _shape(label: str, name: str, text: str, slope: sp.Expr, form: sp.Expr) -> Derivation:
-    title = f"The contact is one interval: {name}"
-    proof = _theorem(f"F9-{label}", title=title, text=text, uses=("F9-shapes",))
+def _shape(proof: Proof, slope: sp.Expr, form: sp.Expr) -> None:
     curvature = -sp.Derivative(sp.log(slope), (y, 2))
     proof.notation[r"(\ln h')''"] = -curvature
     proof.equal(curvature, form, f"with $h' = {tex(slope)}$", left=r"-(\ln h')''")
     if form != 0:
         proof.holds(form, ">", 0, r"$\ln h'$ is concave")
-    return proof.done(curvature, form)
+    proof.done(curvature, form)
 
 
-def _circle() -> Derivation:
-    proof = _theorem("F9-circle", title="The contact is one interval: a circle", text=_CIRCLE,
-                     uses=("F9-shapes",))  # fmt: skip
+for _label, _name, _text, _rise, _form in (
+    (
+        "power",
+        "every power law",
+        r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
+        (y / L) ** excess,
+        excess / y**2,
+    ),
+    (
+        "catenary",
+        "a catenary",
+        r"$h = L (\cosh(x/L) - 1)$.",
+        sp.sinh(y / L),
+        1 / (L**2 * sp.sinh(y / L) ** 2),
+    ),
+    (
+        "wedge",
+        "the wedge",
+        r"$h = c\,|x|$: $\ln h'$ is constant, which concavity includes. That $h'$ jumps at the tip "
+        "changes nothing: $f$ rises, or falls, on either side as before.",
+        inclination,
+        sp.S.Zero,
+    ),
+):
+    result(f"F9-{_label}", title=f"The contact is one interval: {_name}", text=_text, uses=("F9-shapes",),
+           slope=_rise, form=_form)(_shape)  # fmt: skip
+
+
+@result("F9-circle", uses=("F9-shapes",))
+def _circle(proof: Proof) -> None:
+    r"""The contact is one interval: a circle.
+
+    $h = R - \sqrt{R^2 - x^2}$ meets the condition for $|x| < R/\sqrt{3}$: the theorem holds as long as no
+    element is touched farther out, that is, up to a depth of $0.18 R$.
+    """
     slope = y / sp.sqrt(R**2 - y**2)
     form = R**2 * (R**2 - 3 * y**2) / (y**2 * (R**2 - y**2) ** 2)
     curvature = -sp.Derivative(sp.log(y) - sp.log(R**2 - y**2) / 2, (y, 2))
@@ -168,18 +162,19 @@ def _circle() -> Derivation:
     proof.notation[r"(\ln h')''"] = -curvature
     proof.equal(curvature, form, "by differentiation", left=r"-(\ln h')''")
     proof.holds(form, ">", 0, r"$\ln h'$ is concave")
-    return proof.done(curvature, form)
+    proof.done(curvature, form)
 
 
-_CIRCLE = (
-    r"$h = R - \sqrt{R^2 - x^2}$ meets the condition for $|x| < R/\sqrt{3}$: the theorem holds as "
-    "long as no element is touched farther out, that is, up to a depth of $0.18 R$."
-)
+@result("F9-converse", uses=("F9-shapes",))
+def _converse(proof: Proof) -> None:
+    r"""Necessary condition for a single contact.
 
-
-def _converse() -> Derivation:
-    proof = _theorem("F9-converse", title="Necessary condition for a single contact", text=_CONVERSE,
-                     uses=("F9-shapes",))  # fmt: skip
+    If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than $\rho(y_1)$ with $y_1 <
+    y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by $m$ while $e^{s}$ grows to $1/E$, and
+    be set down instantly to $d = E d_1 - k$. Elements are in contact where $f \ge k$ and $d \ge h$. With $k$
+    between the bottom of the valley and its lower rim, and $d_1$ so large that all of these elements were
+    compressed, the contact consists of two parts, one on each side of the valley.
+    """
     middle = 2 / (ratio_near + ratio_now)
     proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}
     proof.define(
@@ -194,22 +189,20 @@ def _converse() -> Derivation:
         proof.equal(sign * (1 - E * ratio), form, what,
                     left=rf"{'-' if sign < 0 else ''}\left[1 - E \rho({name})\right]")  # fmt: skip
     proof.holds(form, ">", 0, "so that between them $f$ has a valley")
-    return proof.done(E, middle)
+    proof.done(E, middle)
 
 
-_CONVERSE = (
-    r"If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than "
-    r"$\rho(y_1)$ with $y_1 < y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by "
-    "$m$ while $e^{s}$ grows to $1/E$, and be set down instantly to $d = E d_1 - k$. Elements are "
-    r"in contact where $f \ge k$ and $d \ge h$. With $k$ between the bottom of the valley and its "
-    "lower rim, and $d_1$ so large that all of these elements were compressed, the contact consists "
-    "of two parts, one on each side of the valley."
-)
+@result("F9-two-slopes", uses=("F8", "F9-converse"))
+def _two_slopes(proof: Proof) -> None:
+    r"""Two contacts: a wedge of two slopes.
 
-
-def _two_slopes() -> Derivation:
-    proof = _theorem("F9-two-slopes", title="Two contacts: a wedge of two slopes", text=_TWO_SLOPES,
-                     uses=("F8", "F9-converse"))  # fmt: skip
+    The wedge $h = |x| + 3 \max(0, |x| - 1)$ is even and convex, but $\ln h'$ jumps up at $|x| = 1$. It rests
+    at the depth 4, is lifted, moved by $m = \frac{1}{2}$ during $s = \ln 2$, and set down instantly to
+    $\frac{15}{8}$. By F8 the surface at $\xi$ is then at $u = \frac{1}{2} \left[4 - h(\xi -
+    \frac{1}{2})\right]$, and the indenter at $g = \frac{15}{8} - h(\xi)$: the contact is $[-\frac{19}{16},
+    -\frac{5}{8}]$ and $[-\frac{1}{4}, \frac{1}{12}]$. (While it is being set down the indenter has pressed no
+    element farther than in the end.)
+    """
     half = sp.Rational(1, 2)
 
     def height(place: sp.Expr) -> sp.Expr:
@@ -229,14 +222,4 @@ def _two_slopes() -> Derivation:
     ):  # fmt: skip
         where, found = sp.Rational(place), sp.Rational(value)
         proof.equal(lead(where), found, what, left=rf"D({sp.latex(where)})")
-    return proof.done(lead(-half), -sp.Rational(1, 8))
-
-
-_TWO_SLOPES = (
-    r"The wedge $h = |x| + 3 \max(0, |x| - 1)$ is even and convex, but $\ln h'$ jumps up at $|x| = "
-    r"1$. It rests at the depth 4, is lifted, moved by $m = \frac{1}{2}$ during $s = \ln 2$, and "
-    r"set down instantly to $\frac{15}{8}$. By F8 the surface at $\xi$ is then at $u = \frac{1}{2} "
-    r"\left[4 - h(\xi - \frac{1}{2})\right]$, and the indenter at $g = \frac{15}{8} - h(\xi)$: the "
-    r"contact is $[-\frac{19}{16}, -\frac{5}{8}]$ and $[-\frac{1}{4}, \frac{1}{12}]$. (While it is "
-    "being set down the indenter has pressed no element farther than in the end.)"
-)
+    proof.done(lead(-half), -sp.Rational(1, 8))

@@ -15,11 +15,10 @@ from sympy.core.function import AppliedUndef
 from .atoms import atoms
 from .book import tex
 from .letters import letters, printed
-from .nomenclature import BY_LATEX
+from .nomenclature import BY_LATEX, TEX
 from .record import Derivation
 from .rubber_transient import Determinant
 from .step import Greatest
-from .symbols import TEX
 
 Dimension = tuple[sp.Expr, ...]
 

@@ -4,17 +4,22 @@ Stresses are in units of the stiffness K_i of the arm, time of the step h. The s
 line, by the rise r; z = h/tau_i. Everything is linear, so that one arm is enough.
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
 from .element_schemes import SECTION
-from .record import Derivation
+from .nomenclature import letter
 from .step import Proof
+
+letter(r"\check z", "time step over the relaxation time of an arm")
+letter(r"\check t", "elapsed part of a time step")
+letter(r"\check r", "rise of the surface in a time step", "m")
+letter(r"\check s", "stress of an arm, in units of $K_i$", "m")
+letter(r"\check s_0", r"$\check s$ at the start of the step", "m")
 
 _z, _y = sp.symbols("z y", positive=True)
 _rise, _first, _stress = sp.symbols("r s_0 s", real=True)
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 END = (1 - sp.exp(-_z)) / _z
 """phi_1: the stress of a unit ramp at the end of the step."""
@@ -23,13 +28,17 @@ MEAN = (1 - END) / _z
 STRESS = _first * sp.exp(-_z * _y) + _rise * (1 - sp.exp(-_z * _y)) / _z
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive the law of an arm over a step, and that its energy is balanced."""
-    return (_arm(),)
+@result("element-arms")
+def _arm(proof: Proof) -> None:
+    r"""An arm over a step.
 
-
-def _arm() -> Derivation:
-    proof = _theorem("element-arms", title="An arm over a step", text=_ARM)
+    The stress of an arm grows by $K_i u'$ with the compression $u$ and decays at the rate $1/\tau_i$. In
+    units of $K_i$ and of the step, with $z$ the step over $\tau_i$ and a surface that rises by $r$ along a
+    straight line, the stress $s$ obeys $s' = r - z s$ over $0 < y < 1$. The mean stress times the rise is the
+    work done on the arm, so that a step of elements in contact balances energy exactly. A spring and a damper
+    in parallel can replace the arm on a ramp: the damper of a fast arm is $K_i \tau_i$, that of a slow one is
+    of second order in the step.
+    """
     proof.equal(
         sp.Derivative(STRESS, _y) + _z * STRESS,
         _rise,
@@ -58,14 +67,4 @@ def _arm() -> Derivation:
     proof.equal(
         _z * damper, 1 + sp.exp(-_z) - 2 * END, r"in units of $K_i \tau_i$: 1 for a fast arm"
     )
-    return proof.done(sp.Subs(STRESS, _y, 1), ends)
-
-
-_ARM = (
-    r"The stress of an arm grows by $K_i u'$ with the compression $u$ and decays at the rate "
-    r"$1/\tau_i$. In units of $K_i$ and of the step, with $z$ the step over $\tau_i$ and a surface that "
-    r"rises by $r$ along a straight line, the stress $s$ obeys $s' = r - z s$ over $0 < y < 1$. The mean "
-    r"stress times the rise is the work done on the arm, so that a step of elements in contact balances "
-    r"energy exactly. A spring and a damper in parallel can replace the arm on a ramp: the damper "
-    r"of a fast arm is $K_i \tau_i$, that of a slow one is of second order in the step."
-)
+    proof.done(sp.Subs(STRESS, _y, 1), ends)

@@ -4,21 +4,33 @@ Elements are a distance Delta apart. The default scheme of the simulator, "edge-
 and `END` at each edge to the area of the compression; forces are reported by trapezoids up to the edges.
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
 from .element_schemes import SECTION
-from .record import Derivation
+from .model import C, V, x
+from .nomenclature import letter
 from .step import Proof
-from .symbols import C, V, x
+
+letter("x_k", "position of an element behind the leading edge", "m")
+letter(
+    r"\vartheta",
+    "position of an edge between two elements, or of a rim between two strips, in spacings",
+    source="F15-sawtooth",
+)
+letter(r"m_{\mathrm{k}}", "angle of two surfaces that meet")
+letter(r"\hat w_0", "indenter below the free surface, at the last element outside", "m")
+letter(r"\hat w_1", "indenter below the free surface, at the first element inside", "m")
+letter(r"\hat w", "indenter below the free surface, along an element", "m")
+letter(r"\hat w_2", r"second derivative of $\hat w$", "1/m")
+letter(r"f_\Delta", "excess of the sum over elements", "N/m")
 
 _slope, _spacing, _share = sp.symbols("m Delta vartheta", positive=True)
 _inside, _outside = sp.Symbol("w_1", positive=True), sp.Symbol("w_0", negative=True)
 _surplus, _bend = sp.symbols("f_Delta w_2", real=True)
 _end, _rise = sp.symbols("p_e p_s", real=True)
 _u = sp.Function("u", real=True)
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 KINK = _spacing * _inside * _outside / (2 * (_inside - _outside))
 """The area missed by the chord over a kink."""
@@ -26,13 +38,17 @@ END = _spacing * (_inside - _outside) / 12
 """The area missed by trapezoids where the surface has the slope of the indenter immediately."""
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive the noise of whole elements, the rule of trapezoids with its ends, and the kink."""
-    return _sawtooth(), _trapezoids(), _kink(), _bent()
+@result("F15-sawtooth")
+def _sawtooth(proof: Proof) -> None:
+    r"""Noise of elements entering the contact.
 
-
-def _sawtooth() -> Derivation:
-    proof = _theorem("F15-sawtooth", title="Noise of elements entering the contact", text=_SAWTOOTH)
+    The pressure jumps to $p_e$ at the leading edge and changes from there as $p_e + p_s x$; elements are at
+    $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each represents the length $\Delta$ around it,
+    with the exact integral of a straight line, so that the sum begins at $(\vartheta - \frac{1}{2}) \Delta$
+    instead of 0. As elements enter, the normal force has a sawtooth of $\pm p_e \Delta/2$, and the friction
+    force one of that times $-h'$: first order in the spacing. The edge-corrected scheme reports forces by
+    trapezoids up to the edge.
+    """
     first = (_share - sp.Rational(1, 2)) * _spacing
     line = _end + _rise * x
     missed = -(_end * first + _rise * first**2 / 2)
@@ -49,21 +65,18 @@ def _sawtooth() -> Derivation:
     mended = missed + _spacing * (_share * (inside + _end) - inside) / 2
     reason = "with a trapezoid up to the edge for half of the first element: no sawtooth"
     proof.equal(mended, -_rise * _spacing**2 / 8, reason)
-    return proof.done(just_in, largest)
+    proof.done(just_in, largest)
 
 
-_SAWTOOTH = (
-    r"The pressure jumps to $p_e$ at the leading edge and changes from there as $p_e + p_s x$; "
-    r"elements are at $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each represents the "
-    r"length $\Delta$ around it, with the exact integral of a straight line, so that the sum begins "
-    r"at $(\vartheta - \frac{1}{2}) \Delta$ instead of 0. As elements enter, the normal force has a "
-    r"sawtooth of $\pm p_e \Delta/2$, and the friction force one of that times $-h'$: first order "
-    r"in the spacing. The edge-corrected scheme reports forces by trapezoids up to the edge."
-)
+@result("element-trapezoids")
+def _trapezoids(proof: Proof) -> None:
+    r"""Trapezoids between elements.
 
-
-def _trapezoids() -> Derivation:
-    proof = _theorem("element-trapezoids", title="Trapezoids between elements", text=_ENDS)
+    For a compression $u$ with four continuous derivatives from one element to the next. Summed over elements,
+    the slopes cancel but for those at both ends: the trapezoidal sum is too large by $\Delta^2/12$ times the
+    slope at the end less that at the beginning. Under a parabola $u'''' = 0$, so that there is no other
+    error.
+    """
     over = (x, 0, _spacing)
     kernel = x**2 * (_spacing - x) ** 2 / 24
     derivatives = [sp.Derivative(_u(x), (x, order)) for order in (4, 3, 2, 1)]
@@ -83,21 +96,18 @@ def _trapezoids() -> Derivation:
         r"the remaining error per element is at most this times the greatest $|u''''|$",
         value=_spacing**5 / 720,
     )  # fmt: skip
-    return proof.done(sp.Integral(integrand, over), value)
+    proof.done(sp.Integral(integrand, over), value)
 
 
-_ENDS = (
-    r"For a compression $u$ with four continuous derivatives from one element to the next. Summed over "
-    r"elements, the slopes cancel but for those at both ends: the trapezoidal sum is too large by "
-    r"$\Delta^2/12$ times the slope at the end less that at the beginning. Under a "
-    r"parabola $u'''' = 0$, "
-    r"so that there is no other error."
-)
+@result("element-kink", uses=("F15-sawtooth", "element-trapezoids"))
+def _kink(proof: Proof) -> None:
+    r"""Part of an element at an edge.
 
-
-def _kink() -> Derivation:
-    proof = _theorem("element-kink", title="Part of an element at an edge", text=_KINK,
-                     uses=("F15-sawtooth", "element-trapezoids"))  # fmt: skip
+    Between an element outside, where the indenter is above the free surface by $-w_0 > 0$, and the next one
+    inside, where it is below by $w_1 > 0$, the surface has a kink. The rule of trapezoids takes its chord.
+    The edge-corrected scheme adds the difference to $U = \int u \, dx$, of which the force is $K U + C \dot
+    U$: with it the sawtooth of the forces is gone, and the forces are of second order in the spacing.
+    """
     line = _outside + (_inside - _outside) * x / _spacing
     meets = -_outside * _spacing / (_inside - _outside)
     area = _spacing * _inside**2 / (2 * (_inside - _outside))
@@ -126,21 +136,17 @@ def _kink() -> Derivation:
         *(C * sp.Derivative(in_cell, _share) * -V / _spacing, _end * _spacing * (1 - 2 * _share) / 2,
           r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),
     )  # fmt: skip
-    return proof.done(left_out, KINK + END)
+    proof.done(left_out, KINK + END)
 
 
-_KINK = (
-    r"Between an element outside, where the indenter is above the free surface by $-w_0 > 0$, and the "
-    r"next one inside, where it is below by $w_1 > 0$, the surface has a kink. The rule of trapezoids "
-    r"takes its chord. The edge-corrected scheme adds the difference to $U = \int u \, dx$, of which "
-    r"the force is $K U + C \dot U$: with it the sawtooth of the forces is gone, and the forces are "
-    r"of second order in the spacing."
-)
+@result("element-bent", uses=("element-kink", "element-trapezoids"))
+def _bent(proof: Proof) -> None:
+    r"""Error of the part of an element.
 
-
-def _bent() -> Derivation:
-    proof = _theorem("element-bent", title="Error of the part of an element", text=_BENT,
-                     uses=("element-kink", "element-trapezoids"))  # fmt: skip
+    Where the surfaces do not meet in straight lines, but with an overlap $w$ of curvature $w_2$: the error of
+    the scheme is of third order in the spacing, $\Delta^3 w_2$ times a bounded factor, so that the forces are
+    of second order.
+    """
     overlap = _slope * (x - _share * _spacing) + _bend * (x - _share * _spacing) ** 2 / 2
     over = (x, _share * _spacing, _spacing)
     area = sp.Integral(overlap, over)
@@ -157,7 +163,6 @@ def _bent() -> Derivation:
     proof.where(slope > 0, "the overlap grows inward")
     result = -(_spacing**3) * _bend * rest / (24 * slope)
     proof.equal(due, result, "the exact value less that of the scheme", left=_DUE, right=_LEFT)
-    return proof.done(due, result)
 
 
 _DUE = (
@@ -167,10 +172,4 @@ _DUE = (
 _LEFT = (
     r"-\frac{\Delta^3 w_2}{24} \cdot \frac{2 m (1 - 6 \vartheta^2 + 4 \vartheta^3) + \Delta w_2 (1 - 2 "
     r"\vartheta + 4 \vartheta^3 - 2 \vartheta^4)}{2 m + \Delta w_2 (1 - 2 \vartheta)}"
-)
-_BENT = (
-    r"Where the surfaces do not meet in straight lines, but with an overlap $w$ of curvature $w_2$: "
-    r"the error of the scheme is of third order in the spacing, $\Delta^3 w_2$ times a bounded "
-    r"factor, so that "
-    r"the forces are of second order."
 )

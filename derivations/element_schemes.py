@@ -5,13 +5,46 @@ scaled by the static state, with b = (3/4) L/a_0 for its length, h for the time 
 z = h b/epsilon = dt C L/M, the stability number.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .nomenclature import letter, symbol
 from .step import Proof
-from .symbols import b, compression, eps, eta, kappa, sigma, time, zeta
+from .theorems import kappa
+from .transient_memory import compression, time, zeta
+from .transient_rates import sigma
+from .transient_scaling import eps
+
+letter("d_1", "depth at the end of a step")
+letter(r"\Delta x", "spacing of the elements", "m")
+letter(r"\Delta t", "step in time", "s")
+letter(r"\ell_{\mathrm{c}}", "length of the contact", "m")
+letter(r"\hat R", "factor of a step")
+letter(r"\hat z", "damping number of a step, the step times the rate of the fast mode")
+letter("k_1", "first slope of the Runge-Kutta method")
+letter("k_2", "second slope")
+letter("k_3", "third slope")
+letter("k_4", "fourth slope")
+letter(r"\theta", "weight of the end of a step in the velocity")
+letter(r"\theta_{+}", r"$\theta - \frac{1}{2}$")
+eta = symbol("eta", "weight of the end of a step in the mean force", printed=r"\hat \eta")
+letter(r"\hat D", "relative change in a step")
+b = symbol("b", "damping of the contact in the elements' motion, scaled", printed=r"b_{\mathrm{e}}")
+letter(r"\varpi", r"variable of the half plane, $\hat D = 2 \varpi/(1 - \varpi)$")
+letter("v_0", "scaled velocity at the beginning of a step")
+letter("v_1", "scaled velocity at the end of a step")
+letter(r"\hat \varrho", "residual of the exact motion in the equation of a step")
+letter(r"\hat \varrho_1", "bounded factor of a remainder")
+letter(r"\hat \varrho_2", "bounded factor of a remainder")
+letter(r"\hat \varrho_3", "bounded factor of a remainder")
+letter("p_e", "pressure at the leading edge", "Pa")
+letter("p_s", "slope of the pressure there", "Pa/m")
+letter(r"\hat \eta_{+}", r"$\hat\eta - \frac{1}{2}$")
+letter("c_0", "constant coefficient of a quadratic")
+letter("c_1", "coefficient of its linear term")
+letter("c_2", "coefficient of its square")
+letter(r"\tilde x", "real part of a root")
+letter(r"\tilde y", "imaginary part of a root")
 
 SECTION = "Discrete elements"
 
@@ -33,20 +66,18 @@ FIT = 1 / (1 - sp.exp(-_z)) - 1 / _z
 WEIGHT = 1 / (1 - sp.exp(-_h))
 """eta: the weight of a change of the depth within the step in the mean force of F8."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the limits of the explicit schemes, the stability of the others, and orders."""
-    return (
-        *(_runge_kutta(), _euler(), _mean_force(), _fitted(), _unconditional()),
-        _orders(),
-    )
+@result("F15-runge-kutta", uses=("F12",))
+def _runge_kutta(proof: Proof) -> None:
+    r"""Stability limit of the paper's scheme.
 
-
-def _runge_kutta() -> Derivation:
-    proof = _theorem("F15-runge-kutta", title="Stability limit of the paper's scheme", text=_PAPER,
-                     uses=("F12",))  # fmt: skip
+    The fast mode of F12, $d'' = -(b/\varepsilon) d'$, is the damping of the mass $M$ by the damping $C L$ of
+    all elements in contact. A step of length $\Delta t$ of the classical Runge-Kutta method multiplies the
+    velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = 2 \Delta x/V$ the paper's simulation becomes
+    unstable below $V = 2 \Delta x\, C L/(2.785 M)$.
+    """
     for stage, at in ((_k1, 0), (_k2, _k1 / 2), (_k3, _k2 / 2), (_k4, _k3)):
         proof.define(stage, -_z * (1 + at))
     proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
@@ -58,33 +89,30 @@ def _runge_kutta() -> Derivation:
     stable, unstable = sp.Rational(2785, 1000), sp.Rational(2786, 1000)
     proof.sign(CUBIC, ">", 0, (_z, 0, stable), r"stable for $z \le 2.785$")
     proof.sign(CUBIC, "<", 0, (_z, unstable, sp.oo), r"unstable for $z \ge 2.786$")
-    return proof.done(_R, RUNGE_KUTTA)
+    proof.done(_R, RUNGE_KUTTA)
 
 
-_PAPER = (
-    r"The fast mode of F12, $d'' = -(b/\varepsilon) d'$, is the damping of the mass $M$ by the "
-    r"damping $C L$ of all elements in contact. A step of length $\Delta t$ of the classical "
-    r"Runge-Kutta method multiplies the velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = "
-    r"2 \Delta x/V$ the paper's simulation becomes unstable below $V = 2 \Delta x\, C L/(2.785 M)$."
-)
+@result("F15-euler", uses=("F15-runge-kutta",))
+def _euler(proof: Proof) -> None:
+    """Stability limit of Euler's method.
 
-
-def _euler() -> Derivation:
-    proof = _theorem("F15-euler", title="Stability limit of Euler's method", text=_EULER,
-                     uses=("F15-runge-kutta",))  # fmt: skip
+    The same mode by explicit Euler steps.
+    """
     proof.define(_R, 1 - _z, "after one step")
     proof.equal(1 - _R**2, _z * (2 - _z), r"positive exactly for $z < 2$")
     proof.sign(_z * (2 - _z), ">", 0, (_z, 0, 2), "stable")
     proof.sign(_z * (2 - _z), "<", 0, (_z, 2, sp.oo), "unstable")
-    return proof.done(1 - _R**2, _z * (2 - _z))
+    proof.done(1 - _R**2, _z * (2 - _z))
 
 
-_EULER = r"The same mode by explicit Euler steps."
+@result("element-mean-force", uses=("F8-update",))
+def _mean_force(proof: Proof) -> None:
+    """Mean force on an element.
 
-
-def _mean_force() -> Derivation:
-    proof = _theorem("element-mean-force", title="Mean force on an element", text=_MEAN,
-                     uses=("F8-update",))  # fmt: skip
+    The memory of F8 gives the pressure on an element, averaged over a step with the weight $e^{s}$, from the
+    compressions at its ends alone. Where F8 is used for the end of the step, it is never negative. It differs
+    from the plain mean by $h^2/12$ times the rate of the pressure.
+    """
     u = compression
     over = (zeta, time, time + _h)
     push = u(zeta) + sp.Derivative(u(zeta), zeta)
@@ -104,7 +132,7 @@ def _mean_force() -> Derivation:
     mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
     proof.equal(impulse / whole, mean, "their ratio, which is zero for an element without contact")
     _centre(proof)
-    return proof.done(impulse / whole, mean)
+    proof.done(impulse / whole, mean)
 
 
 def _centre(proof: Proof) -> None:
@@ -139,16 +167,14 @@ def _centre(proof: Proof) -> None:
     )  # fmt: skip
 
 
-_MEAN = (
-    r"The memory of F8 gives the pressure on an element, averaged over a step with the weight "
-    r"$e^{s}$, from the compressions at its ends alone. Where F8 is used for the end of the step, it "
-    r"is never negative. It differs from the plain mean by $h^2/12$ times the rate of the pressure."
-)
+@result("element-fit", uses=("element-mean-force",))
+def _fitted(proof: Proof) -> None:
+    r"""Exponential fit of the damping.
 
-
-def _fitted() -> Derivation:
-    proof = _theorem("element-fit", title="Exponential fit of the damping", text=_FITTED,
-                     uses=("element-mean-force",))  # fmt: skip
+    The step $v_1 = v_0 - z [(1-\theta) v_0 + \theta v_1]$ multiplies the velocity of the fast mode by $[1 -
+    (1-\theta) z]/(1 + \theta z)$. With $\theta = 1/(1 - e^{-z}) - 1/z$ this is exact, whatever the step;
+    $\theta$ lies between $1/2$ and 1.
+    """
     proof.notation[r"\theta"] = FIT
     proof.equal(
         *(THETA_STEP.subs(_theta, FIT), sp.exp(-_z), "the exact decay of the velocity"),
@@ -164,19 +190,18 @@ def _fitted() -> Derivation:
                 r"it is convex: $\theta > \frac{1}{2}$ for $z > 0$")  # fmt: skip
     proof.leading_order(FIT, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z,
                         left=r"\theta")  # fmt: skip
-    return proof.done(THETA_STEP.subs(_theta, FIT), sp.exp(-_z))
+    proof.done(THETA_STEP.subs(_theta, FIT), sp.exp(-_z))
 
 
-_FITTED = (
-    r"The step $v_1 = v_0 - z [(1-\theta) v_0 + \theta v_1]$ multiplies the velocity of the fast mode "
-    r"by $[1 - (1-\theta) z]/(1 + \theta z)$. With $\theta = 1/(1 - e^{-z}) - 1/z$ this is exact, "
-    r"whatever the step; $\theta$ lies between $1/2$ and 1."
-)
+@result("element-stability", uses=("element-mean-force", "element-fit"))
+def _unconditional(proof: Proof) -> None:
+    r"""Stability at any step.
 
-
-def _unconditional() -> Derivation:
-    proof = _theorem("element-stability", title="Stability at any step", text=_ALWAYS,
-                     uses=("element-mean-force", "element-fit"))  # fmt: skip
+    Both implicit schemes: $\varepsilon (v_1 - v_0)/h = -b\,[d_0 + \eta (d_1 - d_0)] - \kappa\,[(1-\theta) d_0
+    + \theta d_1]$ with $\eta = 1/(1 - e^{-h})$ from the mean force, and $d_1 - d_0 = h [(1-\theta) v_0 +
+    \theta v_1]$. A quadratic with positive coefficients has its roots in the left half plane: no mode grows,
+    for any step, mass, spring and contact, if $\theta \ge 1/2$.
+    """
     second = eps / _h**2 + _theta * (b * eta + kappa * _theta)
     first = _theta * (b + kappa) + b * eta + kappa * _theta
     zeroth = b + kappa
@@ -202,16 +227,7 @@ def _unconditional() -> Derivation:
     proof.holds(middle, ">", 0, "$c_1$")
     proof.holds(zeroth, ">", 0, "and $c_0$")
     _routh(proof)
-    return proof.done(motion, second * _D**2 + first * _D + zeroth)
-
-
-_ALWAYS = (
-    r"Both implicit schemes: $\varepsilon (v_1 - v_0)/h = -b\,[d_0 + \eta (d_1 - d_0)] - "
-    r"\kappa\,[(1-\theta) d_0 + \theta d_1]$ with $\eta = 1/(1 - e^{-h})$ from the mean force, and "
-    r"$d_1 - d_0 = h [(1-\theta) v_0 + \theta v_1]$. A quadratic with positive coefficients has its "
-    r"roots in the left half plane: no mode grows, for any step, mass, spring and contact, if $\theta "
-    r"\ge 1/2$."
-)
+    proof.done(motion, second * _D**2 + first * _D + zeroth)
 
 
 def _routh(proof: Proof) -> None:
@@ -235,10 +251,14 @@ def _routh(proof: Proof) -> None:
     proof.holds(shown.subs(imaginary, 0), ">", 0, "which is positive there: no root has $x \\ge 0$")
 
 
-def _orders() -> Derivation:
-    proof = _theorem(
-        "element-orders", title="Order in time", text=_ORDERS, uses=("element-stability",)
-    )
+@result("element-orders", uses=("element-stability",))
+def _orders(proof: Proof) -> None:
+    r"""Order in time.
+
+    The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is inserted into
+    the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + \kappa \theta) D] =
+    0$ with $D = e^{\sigma h} - 1$. The residual $r$ is of the order of the scheme in $h$.
+    """
     growth = sp.exp(sigma * _h) - 1
     proof.notation |= {"D": growth, r"\eta": WEIGHT, r"\theta": FIT}
     proof.leading_order(growth, sigma * _h, _h, 0, "Taylor", eps=_h, left="D")
@@ -267,15 +287,8 @@ def _orders() -> Derivation:
         proof.notation |= {"D": _D, r"\eta": eta, r"\theta": theta}
         left = motion.subs(_theta, theta)
         proof.leading_order(left, leading, _h, 0, why, eps=_h, short=True, left=_RESIDUAL)
-    return proof.done(motion.subs(_theta, fit), second)
 
 
 _RESIDUAL = (
     r"\frac{\varepsilon D^2}{h^2} + (1 + \theta D) [b + \kappa + (b \eta + \kappa \theta) D]"
-)
-_ORDERS = (
-    r"The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is "
-    r"inserted into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
-    r"\kappa \theta) D] = 0$ with $D = e^{\sigma h} - 1$. The residual $r$ is of the order of the "
-    r"scheme in $h$."
 )

@@ -4,18 +4,27 @@ Strips are a distance Delta apart, in units of the half width; the first inside 
 rim. The force of a strip at the distance y from the rim begins as p_1 y + p_2 y^(3/2).
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
 from .element_schemes import SECTION
-from .record import Derivation
+from .nomenclature import letter
+from .steady import l
 from .step import Proof, tex
-from .symbols import l
+
+letter(r"\Delta y", "spacing of the strips of a ball, in units of its half width")
+letter(r"y_{\mathrm{s}}", "distance from the rim of a ball, in units of its half width")
+letter(r"\breve \psi", r"square root of $y_{\mathrm{s}}$")
+letter(r"v_{\mathrm{s}}", "distance of a strip from the rim, in spacings")
+letter(r"x_{\mathrm{s}}", "distance from that strip inward, in spacings")
+letter(r"Q_{\mathrm{s}}", "what trapezoids leave out between two strips")
+letter(r"\zeta_{\mathrm{H}}", "zeta function of Hurwitz")
+letter(r"\breve p_1", r"slope of a strip's load over $y_{\mathrm{s}}$ at the rim")
+letter(r"\breve p_2", r"the same over $y_{\mathrm{s}}^{3/2}$")
 
 _spacing, _share, _y, _v, _x, _root = sp.symbols("Delta vartheta y v x psi", positive=True)
 _rest = sp.Symbol("Q", real=True)
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 POWER = sp.Rational(3, 2)
 BERNOULLI = _share**2 - _share + sp.Rational(1, 6)
@@ -26,14 +35,17 @@ START = _v**POWER / 2 - 2 * _v ** sp.Rational(5, 2) / 5 - sp.sqrt(_v) / 8
 """Half of the first strip, without what lies before it and with the slope at which trapezoids begin."""
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive how a ball ends at its rim, and what the rule over strips leaves out there."""
-    return _rim(), _rule()
+@result("strips-rim", uses=("F21-load", "F20-load"))
+def _rim(proof: Proof) -> None:
+    r"""Strips at the rim of a ball.
 
-
-def _rim() -> Derivation:
-    proof = _theorem("strips-rim", title="Strips at the rim of a ball", text=_RIM,
-                     uses=("F21-load", "F20-load"))  # fmt: skip
+    By F21-load the strip at the distance $\psi^2$ from the rim, in units of the half width, carries this
+    load, in units of $K \delta a$. It begins in proportion to the distance, at rest with its power
+    $\frac{3}{2}$, and goes on in powers of $\psi$. Its contact is as long as an element where $\psi$ is of
+    the order of $\Delta$ over the half length: strips nearer to the rim carry the order of $\Delta^4$, and by
+    element-bent all others are wrong by the order of $\Delta^2$. So is a ball, whatever the spacing of its
+    strips.
+    """
     width = _root**2 * (2 - _root**2)
     proof.where(2 - _root**2 > 0, "on this side of the opposite rim")
     load = sp.Rational(2, 3) * (width**POWER + (width + l**2) ** POWER - l**3)
@@ -43,22 +55,24 @@ def _rim() -> Derivation:
     over, line = (_y, 0, _root**2), 2 * l * _y
     proof.integral(sp.Integral(line, over), line, over, l * _y**2,
                    "what all strips nearer to the rim carry, in sliding", value=l * _root**4)  # fmt: skip
-    return proof.done(load, 2 * l * _root**2)
+    proof.done(load, 2 * l * _root**2)
 
 
-_RIM = (
-    r"By F21-load the strip at the distance $\psi^2$ from the rim, in units of the half width, carries this "
-    r"load, in units of $K \delta a$. It begins in proportion to the distance, at rest with its power "
-    r"$\frac{3}{2}$, and goes on in powers of $\psi$. Its contact is as long as an element where $\psi$ is "
-    r"of the order of $\Delta$ over the half length: strips nearer to the rim carry the order of $\Delta^4$, "
-    r"and by element-bent all others are wrong by the order of $\Delta^2$. So is a ball, whatever the "
-    "spacing of its strips."
-)
+@result("strips-rule", uses=("strips-rim", "element-trapezoids"))
+def _rule(proof: Proof) -> None:
+    r"""Order of the rule over the strips of a ball.
 
-
-def _rule() -> Derivation:
-    proof = _theorem("strips-rule", title="Order of the rule over the strips of a ball", text=_RULE,
-                     uses=("strips-rim", "element-trapezoids"))  # fmt: skip
+    Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and the
+    load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for the load
+    is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, $\frac{1}{2}
+    \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge 0} Q(\vartheta +
+    j)$, where $Q$ makes the sum converge. This solves the last equation, as Hurwitz's
+    $\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for
+    great $\vartheta$, so that they are the same. With the correction the rule over strips has $p_2
+    \Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta +
+    \frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and terms of the order of $\Delta^3$: its order is
+    $\frac{5}{2}$.
+    """
     over = (_y, 0, _share * _spacing)
     line = sp.Integral(_y, over)
     begun = _share**2 * _spacing**2 / 2
@@ -80,7 +94,6 @@ def _rule() -> Derivation:
         _v**POWER,
         r"the difference equation of $\zeta_{\mathrm{H}}(-\frac{3}{2}, v)$",
     )
-    return proof.done(START - later - _rest, _v**POWER)
 
 
 _MORE = r"\frac{\Delta (\vartheta^2 - \vartheta + \frac{1}{6})}{2 (1 + \vartheta)}"
@@ -101,17 +114,3 @@ def _cell(proof: Proof) -> None:
     least = 9 * kernel / 16
     proof.integral(sp.Integral(least, over), least, over, sp.integrate(least, _x),
                    r"so that $Q < \frac{1}{1280} v^{-5/2}$", value=sp.Rational(1, 1280))  # fmt: skip
-
-
-_RULE = (
-    r"Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and "
-    r"the load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for "
-    r"the load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, "
-    r"$\frac{1}{2} \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge "
-    r"0} Q(\vartheta + j)$, where $Q$ makes the sum converge. This solves the last equation, as Hurwitz's "
-    r"$\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for "
-    r"great $\vartheta$, so that they are the same. With the correction the rule over strips has $p_2 "
-    r"\Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + "
-    r"\frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and terms of the order of $\Delta^3$: its order is "
-    r"$\frac{5}{2}$."
-)

@@ -1,34 +1,23 @@
 """Dissipation of the power of the friction force: theorem F6, and the identity behind it for any shape."""
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .model import C, K, R, V, delta, h, x
+from .nomenclature import letter, symbol
+from .steady import F, a, l, l_r, q, x_le, x_te
 from .step import Proof
-from .symbols import (
-    C,
-    F,
-    F_elastic,
-    F_viscous,
-    K,
-    R,
-    V,
-    a,
-    delta,
-    eta,
-    h,
-    l,
-    l_r,
-    phi,
-    q,
-    x,
-    x_le,
-    x_te,
-)
-from .theorems import FRICTION_FORCE, NUMBER, RATIO, UNIT, B
+from .theorems import NUMBER, RATIO, UNIT, B, phi
 
-SECTION = "Energy"
+letter(r"u_{\mathrm{TE}}", "compression at the trailing edge", "m")
+F_elastic = symbol(
+    "F_elastic", "elastic part of the friction force", "N/m", latex=r"F_{\mathrm{e}}"
+)
+F_viscous = symbol(
+    "F_viscous", "viscous part of the friction force", "N/m", latex=r"F_{\mathrm{v}}"
+)
+eta = symbol("eta", "part of the power $F V$ that is dissipated inside the contact")
+
 
 _shape = h(x)
 _slope = sp.Derivative(_shape, x)
@@ -46,37 +35,31 @@ _TWO_LOSSES = (
 )
 _BEHIND = r"\frac{1}{V} \int_{x_{\mathrm{TE}}}^{\infty} C \dot{u}^2 \, dx"
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter("Energy")
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the energy identity for any shape, then F6 for the parabola."""
-    return _split(), _relaxation(), _any_shape(), _parabola()
+@result("energy-split")
+def _split(proof: Proof) -> None:
+    r"""Friction force: an elastic and a viscous part.
 
-
-def _split() -> Derivation:
-    proof = _theorem(
-        "energy-split",
-        title="Friction force: an elastic and a viscous part",
-        text=_ASSUMPTIONS,
-    )
+    Any shape $h$ whose slope may jump, in contact on one interval at whose leading edge $u = \delta - h$
+    vanishes.
+    """
     whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
-    proof.recall("eq29", C, K * l_r / V)
+    proof.recall("eq29", C)
     proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
     proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
     proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
     proof.define(F, F_elastic + F_viscous, "the friction force")
-    return proof.done(F, F_elastic + F_viscous)
 
 
-def _relaxation() -> Derivation:
-    proof = _theorem(
-        "energy-behind",
-        title="Energy lost behind the contact",
-        text=r"Per distance slid: the surface that leaves the contact with $u = u_{\mathrm{TE}}$ relaxes "
-        r"freely, $u = u_{\mathrm{TE}} e^{-(x - x_{\mathrm{TE}})/l_{\mathrm{r}}}$ (Eqs. 25, 29).",
-        uses=("eq25", "eq29"),
-    )
+@result("energy-behind", uses=("eq25", "eq29"))
+def _relaxation(proof: Proof) -> None:
+    r"""Energy lost behind the contact.
+
+    Per distance slid: the surface that leaves the contact with $u = u_{\mathrm{TE}}$ relaxes freely, $u =
+    u_{\mathrm{TE}} e^{-(x - x_{\mathrm{TE}})/l_{\mathrm{r}}}$ (Eqs. 25, 29).
+    """
     u_te = delta - h(x_te)
     surface = u_te * sp.exp(-(x - x_te) / l_r)
     proof.notation |= {
@@ -91,22 +74,19 @@ def _relaxation() -> Derivation:
         left=_BEHIND,
         right=r"\frac{K}{2} u_{\mathrm{TE}}^2",
     )
-    return proof.done(behind, K * u_te**2 / 2)
 
 
-def _any_shape() -> Derivation:
-    proof = _theorem(
-        "energy-any-shape",
-        title="Friction force of any shape is dissipation",
-        text=_ASSUMPTIONS
-        + " The first term is the power lost in the surface that relaxes behind the "
-        r"contact, the second the power lost inside it, both over $V$.",
-        uses=("energy-behind",),
-    )
+@result("energy-any-shape", text=_ASSUMPTIONS, uses=("energy-behind",))
+def _any_shape(proof: Proof) -> None:
+    """Friction force of any shape is dissipation.
+
+    The first term is the power lost in the surface that relaxes behind the contact, the second the power lost
+    inside it, both over $V$.
+    """
     result = K * (delta - h(x_te)) ** 2 / 2 + _INSIDE
     difference = K * (delta - h(x_te)) ** 2 / 2 - K * (delta - h(x_le)) ** 2 / 2
-    proof.recall("energy-split", F, F_elastic + F_viscous)
-    proof.recall("energy-split", F_viscous, _INSIDE)
+    proof.recall("energy-split")
+    proof.recall("energy-split", F_viscous)
     # u is continuous and piecewise smooth, so that kinks of the shape change nothing here.
     elastic = -K * (delta - _shape) * _slope
     stored = K * (delta - _shape) ** 2 / 2
@@ -117,24 +97,22 @@ def _any_shape() -> Derivation:
         *(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$"),
         right=_TWO_LOSSES,
     )
-    return proof.done(F, result)
 
 
-def _parabola() -> Derivation:
-    proof = _theorem(
-        "F6",
-        title="Energy dissipated inside the contact",
-        text=r"The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola "
-        r"is 1 in both limits and never below 4/5, which is reached at $l_{\mathrm{r}} = \frac{3}{4} a$.",
-        uses=("energy-any-shape", "F1"),
-    )
+@result("F6", uses=("energy-any-shape", "F1"))
+def _parabola(proof: Proof) -> None:
+    r"""Energy dissipated inside the contact.
+
+    The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola is 1 in both
+    limits and never below 4/5, which is reached at $l_{\mathrm{r}} = \frac{3}{4} a$.
+    """
     fraction = 4 * (q**2 - q + 1) / B
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.recall("eq28", delta, a**2 / (2 * R))
-    proof.recall("scaling", l, NUMBER, RATIO)
-    proof.recall("F1", phi, FRICTION_FORCE)
-    proof.recall("F1", F, K * delta * a**2 / R * phi)
+    proof.recall("eq28", delta)
+    proof.recall("scaling", reason=RATIO)
+    proof.recall("F1", phi)
+    proof.recall("F1", F)
     proof.integral(
         *(F_viscous, dissipation, (x, -a, q * a), K * l_r * x**3 / (3 * R**2)),
         "inside the contact",
@@ -155,4 +133,4 @@ def _parabola() -> Derivation:
     proof.notation["l"] = sp.Lambda(q, NUMBER)
     proof.equal(half, sp.Rational(3, 4), "the retardation length there", left="l(1/2)")
     proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")
-    return proof.done(eta, fraction)
+    proof.done(eta, fraction)

@@ -4,39 +4,30 @@ In the contact of a parabola the pressure has the slope -(K/R)(x + l_r), at ever
 So x p is a multiple of p plus a derivative of p**2, and the friction force needs no separate integral.
 """
 
-from functools import partial
-
 import sympy as sp
 
 from . import steady
-from .record import Derivation
+from .chapter import Chapter
+from .model import C, F_x, F_z, K, R, V, delta, h, x
+from .nomenclature import letter, symbol
+from .steady import F, W, a, l, l_r, mu, x_le, x_te
 from .step import Proof
-from .symbols import (
-    C,
-    F,
-    F_x,
-    F_z,
-    K,
-    R,
-    V,
-    W,
-    a,
-    delta,
-    depth_rate_now,
-    h,
-    l,
-    l_r,
-    mu,
-    p_le,
-    p_te,
-    q,
-    r,
-    x,
-    x_le,
-    x_te,
-)  # fmt: skip
 
-SECTION = "Friction without integrals"
+depth_rate_now = symbol("delta_t", latex=r"\dot\delta", real=True)
+p_le = symbol(
+    "p_LE", "pressure at the leading edge", "Pa", latex=r"p_{\mathrm{LE}}", nonnegative=True
+)
+p_te = symbol(
+    "p_TE", "pressure at the trailing edge", "Pa", latex=r"p_{\mathrm{TE}}", nonnegative=True
+)
+r = symbol(
+    "r",
+    r"half the distance of the zeros of the pressure, $\sqrt{a^2 + l_{\mathrm{r}}^2}$",
+    "m",
+    printed=r"\bar r",
+)
+letter("I_p", "integral of $2 p p'$ over the contact", "Pa²")
+
 
 LOAD = K * (a**3 + r**3 - l_r**3) / (3 * R)
 """W, with r = sqrt(a**2 + l_r**2) = x_TE + l_r."""
@@ -44,16 +35,16 @@ FRICTION = l_r * (W - C * V * delta) / R
 
 _pressure = sp.Function("p", real=True)
 _CONTACT = (x, x_le, x_te)
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter("Friction without integrals")
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F21; Eqs. 41 to 46 follow from it in `asymptotics`."""
-    return _any_shape(), _instant(), _load(), _steady()
+@result("F21-shape")
+def _any_shape(proof: Proof) -> None:
+    r"""Friction force of any smooth shape.
 
-
-def _any_shape() -> Derivation:
-    proof = _theorem("F21-shape", title="Friction force of any smooth shape", text=_SHAPE)
+    At every instant of every motion, with $l_{\mathrm{r}} = V \tau$ of that instant. Integrated over the
+    contact, $F_x = l_{\mathrm{r}} \int h'' p \, dx - \frac{1}{2 K} (p_{\mathrm{LE}}^2 - p_{\mathrm{TE}}^2)$.
+    """
     inner = K * (delta - h(x)) + C * (depth_rate_now - V * sp.Derivative(h(x), x))
     bending = C * V * sp.Derivative(h(x), (x, 2))
     proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row",
@@ -63,25 +54,20 @@ def _any_shape() -> Derivation:
     result = sp.Derivative(_pressure(x) ** 2, x) / (2 * K) + bending / K * _pressure(x)
     proof.equal(work, result, "the integrand of Eq. (15)", left="-h' p",
                 right=r"\frac{1}{2 K} \frac{d}{d x} p^2 + l_{\mathrm{r}} h'' p")  # fmt: skip
-    return proof.done(work, result)
 
 
-_SHAPE = (
-    r"At every instant of every motion, with $l_{\mathrm{r}} = V \tau$ of that instant. Integrated "
-    r"over the contact, $F_x = l_{\mathrm{r}} \int h'' p \, dx - \frac{1}{2 K} (p_{\mathrm{LE}}^2 "
-    r"- p_{\mathrm{TE}}^2)$."
-)
+@result("F21", uses=("F21-shape",))
+def _instant(proof: Proof) -> None:
+    """Friction force at every instant.
 
-
-def _instant() -> Derivation:
-    proof = _theorem(
-        "F21", title="Friction force at every instant", text=_INSTANT, uses=("F21-shape",)
-    )
+    For the parabola, for any drive and any motion of the indenter, under any support; LE and TE are the two
+    ends of the contact, whichever way they move, and $V$ has its sign.
+    """
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)
     load, squares = sp.Integral(_pressure(x), _CONTACT), sp.Symbol("I_p", real=True)
     inner = K * (delta - x**2 / (2 * R)) + C * (depth_rate_now - V * x / R)
     slope = -K / R * (x + l_r)
-    proof.recall("eq29", C, K * l_r / V)
+    proof.recall("eq29", C)
     proof.notation["p"] = sp.Lambda(x, inner)
     reason = r"neither $\delta$ nor $\dot\delta$ matters"
     proof.equal(sp.Derivative(inner, x), slope, reason, left="p'")
@@ -97,52 +83,44 @@ def _instant() -> Derivation:
     proof.define(_pressure(x_te), p_te, "at the trailing edge")
     proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term")  # fmt: skip
     proof.equal(F_x, whole, "friction without an integral")
-    return proof.done(F_x, whole)
 
 
-_INSTANT = (
-    "For the parabola, for any drive and any motion of the indenter, under any support; LE and TE "
-    "are the two ends of the contact, whichever way they move, and $V$ has its sign."
-)
+@result("F21-load")
+def _load(proof: Proof) -> None:
+    r"""Load of steady sliding in one line.
 
-
-def _load() -> Derivation:
-    proof = _theorem("F21-load", title="Load of steady sliding in one line", text=_LOAD)
-    proof.recall("eq28", delta, a**2 / (2 * R))
+    With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$.
+    """
+    proof.recall("eq28", delta)
     proof.define(r, sp.sqrt(a**2 + l_r**2), r"$x_{\mathrm{TE}} = r - l_{\mathrm{r}}$, Eq. (27)")
     centred = K / (2 * R) * (r**2 - (x + l_r) ** 2)
     proof.equal(steady.pressure, centred, "the pressure of steady sliding")
     primitive = K / (2 * R) * ((a**2 + l_r**2) * x - (x + l_r) ** 3 / 3)
     proof.integral(W, centred, (x, -a, r - l_r), primitive, "Eq. (14)", value=LOAD)
-    return proof.done(W, LOAD)
 
 
-_LOAD = r"With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$."
+@result("F21-steady", uses=("pressure", "eq26", "eq27"))
+def _steady(proof: Proof) -> None:
+    r"""Friction force of steady sliding in one line.
 
-
-def _steady() -> Derivation:
-    proof = _theorem("F21-steady", title="Friction force of steady sliding in one line", text=_STEADY,
-                     uses=("pressure", "eq26", "eq27"))  # fmt: skip
-    proof.recall("F21", F_x, l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K))
-    proof.recall("eq26", x_le, -a)
-    proof.recall("eq28", delta, a**2 / (2 * R))
-    proof.recall("eq29", C, K * l_r / V)
-    for lhs, rhs in ((x_te, a * q), (l_r, a * l), (l, steady.number)):
-        proof.recall("scaling", lhs, rhs)
+    With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding.
+    """
+    proof.recall("F21")
+    proof.recall("eq26")
+    proof.recall("eq28", delta)
+    proof.recall("eq29", C)
+    proof.recall("scaling", x_te, l_r, l)
     for edge, place in ((p_te, x_te), (p_le, x_le)):
         proof.define(edge, steady.pressure.subs(x, place), "the pressure of steady sliding")
     proof.equal(p_te, sp.S.Zero, "none at the trailing edge")
     proof.equal(p_le, K * l_r * a / R, "at the leading edge only the damper acts")
-    proof.recall("F21-load", W, LOAD)
+    proof.recall("F21-load")
     proof.define(r, sp.sqrt(a**2 + l_r**2))
     proof.define(F_z, W, "in steady sliding")
     proof.define(F, F_x, "likewise")
     proof.equal(F, FRICTION, "the total friction force")
-    proof.recall("eq37", mu, F / W)
+    proof.recall("eq37")
     proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and the terms that it neglects")
     exact = steady.friction.subs(delta, a**2 / (2 * R))
     proof.equal(F, exact, "the same as by the integral of Eq. (15)")
-    return proof.done(F, FRICTION)
-
-
-_STEADY = r"With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding."
+    proof.done(F, FRICTION)

@@ -7,18 +7,28 @@ would have two.
 The base dimensions are force per unit width N, horizontal length X, vertical length Z and time T.
 """
 
+from collections.abc import Mapping
+
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from .record import Derivation
+from .chapter import Chapter
+from .friction_identity import depth_rate_now
+from .model import K, M, R, V, delta, tau, x
+from .nomenclature import letter, symbol
 from .rules import Computed
+from .steady import W, mu
 from .step import Proof, tex
-from .symbols import K, M, R, V, W, delta, depth_rate_now, mu, tau, x
 
-SECTION = "Dimensionless groups"
+letter(r"\mathbf{D}", "matrix of the dimensions")
+letter(r"\mathbf{E}", "matrix of the exponents of the groups")
+letter(r"\mathsf{N}", "dimension of a force per unit width", "dimension", source="dimension")
+letter(r"\mathsf{X}", "dimension of a length along the foundation", "dimension", source="dimension")
+letter(r"\mathsf{Z}", "dimension of a vertical length", "dimension", source="dimension")
+letter(r"\mathsf{T}", "dimension of a time", "dimension", source="dimension")
+k_s = symbol("k_s", "stiffness of the suspension per unit width", "N/m²", source="")
 
-k_s = sp.Symbol("k_s", positive=True)
-"""Stiffness of the spring of a suspended indenter."""
+result = Chapter("Dimensionless groups")
 
 BASE = sp.symbols("N X Z T", positive=True)
 _N, _X, _Z, _T = BASE
@@ -37,16 +47,19 @@ DIMENSIONS = {
 
 _third = sp.Rational(1, 3)
 
-fixed_groups = (V * tau / sp.sqrt(R * delta), mu * sp.sqrt(R / delta))
-dead_weight_groups = (
-    V * tau * (K / (R * W)) ** _third,
-    mu * (K * R**2 / W) ** _third,
-)
-transient_groups = (
-    V * tau / sp.sqrt(R * delta),
-    M * delta / (W * tau**2),
-    k_s * delta / W,
-)
+fixed_groups = {
+    r"\frac{V \tau}{\sqrt{R \delta}}": V * tau / sp.sqrt(R * delta),
+    r"\mu \sqrt{\frac{R}{\delta}}": mu * sp.sqrt(R / delta),
+}
+dead_weight_groups = {
+    r"V \tau \left(\frac{K}{R W}\right)^{1/3}": V * tau * (K / (R * W)) ** _third,
+    r"\mu \left(\frac{K R^2}{W}\right)^{1/3}": mu * (K * R**2 / W) ** _third,
+}
+transient_groups = {
+    r"\frac{V \tau}{\sqrt{R \delta}}": V * tau / sp.sqrt(R * delta),
+    r"\frac{M \delta}{W \tau^2}": M * delta / (W * tau**2),
+    r"\frac{k_s \delta}{W}": k_s * delta / W,
+}
 
 
 class Rank(Computed):
@@ -64,38 +77,9 @@ class Rank(Computed):
         return rf"\mathrm{{rank}} {printer._print(self.args[0])}"
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive the groups of steady sliding and of the transient."""
-    fixed = (R, K, tau, V, delta, mu)
-    dead_weight = (R, K, tau, V, W, mu)
-    transient = (R, tau, V, delta, M, W, k_s)
-    return (
-        _lengths(),
-        _groups("fixed", "fixed indenter", fixed, fixed_groups, _STEADY, _FIXED),
-        _groups("dead-weight", "dead weight", dead_weight, dead_weight_groups, _STEADY, _DEAD),
-        _groups("transient", "transient", transient, transient_groups, _TRANSIENT, _SCALED),
-    )
-
-
-_STEADY = "One group of the operation and the scaled friction coefficient, so one master curve."
-_TRANSIENT = (
-    r"Drive number $\lambda = V \tau/\sqrt{2 R \delta}$, inertia number "
-    r"$\epsilon = M \delta/(W \tau^2)$ and support number $\kappa = k_s \delta/W$, with the depth "
-    r"$\delta$ and the load $W$ at rest, which together determine $K$."
-)
 _INDEPENDENT = "the exponents $E$ of these groups are independent"
 _COMPLETE = "and they span the null space of $D$, so there is no other group"
 _ISOTROPIC = "one length for both directions would leave one group more, and no master curve"
-_FIXED = (r"\frac{V \tau}{\sqrt{R \delta}}", r"\mu \sqrt{\frac{R}{\delta}}")
-_DEAD = (
-    r"V \tau \left(\frac{K}{R W}\right)^{1/3}",
-    r"\mu \left(\frac{K R^2}{W}\right)^{1/3}",
-)
-_SCALED = (
-    r"\frac{V \tau}{\sqrt{R \delta}}",
-    r"\frac{M \delta}{W \tau^2}",
-    r"\frac{k_s \delta}{W}",
-)
 
 
 def dimension_matrix(quantities: tuple[sp.Symbol, ...]) -> sp.Matrix:
@@ -110,10 +94,16 @@ def isotropic(matrix: sp.Matrix) -> sp.Matrix:
     return sp.Matrix.vstack(force, along + up, time)
 
 
-def _lengths() -> Derivation:
-    """Prove that the model keeps its form when both lengths change by factors of their own."""
-    proof = Proof("groups-lengths", None, section=SECTION, title="Two lengths", text=_LENGTHS,
-                  uses=("eq3", "eq7", "eq12"))  # fmt: skip
+@result("groups-lengths", uses=("eq3", "eq7", "eq12"))
+def _lengths(proof: Proof) -> None:
+    """Two lengths.
+
+    Let lengths along the foundation change by a factor $X$, vertical ones by $Z$, forces by $N$ and times by
+    $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. Shape and pressure
+    keep their form, whatever the factors, and with them load and friction force, integrals over $x$ of $p$
+    and $-h' p$. So $X$ and $Z$ count as two dimensions. This is due to the small slope: the shape is a
+    parabola, and $-h'$ replaces the inclination; a circle does not allow it.
+    """
     units = DIMENSIONS | {depth_rate_now: _Z / _T, x: _X}
     sag = x**2 / (2 * R)
     pressure = K * (delta - sag) + K * tau * (depth_rate_now - V * x / R)
@@ -134,7 +124,7 @@ def _lengths() -> Derivation:
         left=_CHANGED, right=r"\frac{N}{X} [K (\delta - h) + K \tau (\dot\delta - V h')]",
     )  # fmt: skip
     _circle(proof)
-    return proof.done(changed, _N / _X * pressure)
+    proof.done(changed, _N / _X * pressure)
 
 
 def _circle(proof: Proof) -> None:
@@ -155,32 +145,16 @@ _CHANGED = (
     r"\frac{N}{X Z} K (Z \delta - Z h) + \frac{N}{X Z} K T \tau \left(\frac{Z}{T} \dot\delta - "
     r"\frac{X}{T} V \frac{Z}{X} h'\right)"
 )
-_LENGTHS = (
-    r"Let lengths along the foundation change by a factor $X$, vertical ones by $Z$, forces by $N$ and "
-    r"times by $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. "
-    r"Shape and pressure keep their form, whatever the factors, and with them load and friction force, "
-    r"integrals over $x$ of $p$ and $-h' p$. So $X$ and $Z$ count as two dimensions. This is due to "
-    r"the small slope: the shape is a parabola, and $-h'$ replaces the inclination; a "
-    r"circle does not allow it."
-)
 
 
-def _groups(
-    name: str,
-    scene: str,
-    quantities: tuple[sp.Symbol, ...],
-    groups: tuple[sp.Expr, ...],
-    text: str,
-    shown: tuple[str, ...],
-) -> Derivation:
-    proof = Proof(f"groups-{name}", None, section=SECTION, title=f"Groups: {scene}", text=text)
+def _groups(proof: Proof, groups: Mapping[str, sp.Expr], quantities: tuple[sp.Symbol, ...]) -> None:
     for quantity in quantities:
         proof.define(quantity, DIMENSIONS[quantity], "dimension", left=rf"[{tex(quantity)}]")
-    for group, display in zip(groups, shown, strict=True):
+    for display, group in groups.items():
         proof.equal(group, sp.S.One, "all dimensions cancel", left=rf"\left[{display}\right]")
     matrix = dimension_matrix(quantities)
     free = matrix.nullspace()
-    powers = [group.as_powers_dict() for group in groups]
+    powers = [group.as_powers_dict() for group in groups.values()]
     exponents = [sp.Matrix([power[quantity] for quantity in quantities]) for power in powers]
     n, m = len(quantities), len(groups)
     for found, expected, reason in (
@@ -194,4 +168,19 @@ def _groups(
         (n - Rank(isotropic(matrix)), m + 1, _ISOTROPIC),
     ):
         proof.equal(found, sp.Integer(expected), reason)
-    return proof.done(groups[0], 1)
+    proof.done(next(iter(groups.values())), 1)
+
+
+_STEADY = "One group of the operation and the scaled friction coefficient, so one master curve."
+_TRANSIENT = (
+    r"Drive number $\lambda = V \tau/\sqrt{2 R \delta}$, inertia number "
+    r"$\epsilon = M \delta/(W \tau^2)$ and support number $\kappa = k_s \delta/W$, with the depth "
+    r"$\delta$ and the load $W$ at rest, which together determine $K$."
+)
+for _name, _scene, _quantities, _scaled, _text in (
+    ("fixed", "fixed indenter", (R, K, tau, V, delta, mu), fixed_groups, _STEADY),
+    ("dead-weight", "dead weight", (R, K, tau, V, W, mu), dead_weight_groups, _STEADY),
+    ("transient", "transient", (R, tau, V, delta, M, W, k_s), transient_groups, _TRANSIENT),
+):
+    result(f"groups-{_name}", title=f"Groups: {_scene}", text=_text,
+           groups=_scaled, quantities=_quantities)(_groups)  # fmt: skip

@@ -3,52 +3,53 @@ r"""The dead-weight indenter over its velocity: master curve, friction maximum, 
 ``q`` = x_TE/a in (0, 1) names the state, as in `derivations.theorems`, whose section this continues.
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .asymptotics import alpha
 from .book import established
-from .record import Derivation, Table
+from .chapter import Chapter
+from .model import C, K, R, V, delta, tau
+from .nomenclature import symbol
+from .record import Table
+from .steady import Lambda, W, a, l, l_r, mu, q
 from .step import Proof
-from .symbols import (
-    C,
-    K,
-    Lambda,
-    Lambda_fixed,
-    Lambda_peak,
-    Lambda_weight,
-    R,
-    T,
-    V,
-    V_max,
-    W,
-    X,
-    Y,
-    a,
-    alpha,
-    delta,
-    l,
-    l_r,
-    m,
-    mu,
-    mu_max,
-    mu_peak,
-    q,
-    tau,
-    w,
-)  # fmt: skip
-from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO, SECTION, UNIT, A, B
+from .theorems import RATIO, SECTION, UNIT, A, B, m, w
+
+Lambda_peak = symbol(
+    "Lambda_peak",
+    "scaled velocity at the friction maximum of a dead weight",
+    latex=r"\Lambda_{\max}",
+)
+mu_peak = symbol(
+    "mu_peak",
+    r"scaled friction maximum of a dead weight, $\mu (K R^2/W)^{1/3}$",
+    latex=r"\hat\mu_{\max}",
+)
+Lambda_fixed = symbol(
+    "Lambda_fixed",
+    r"scaled crossing velocity, fixed indenter, $V^{*} \tau/\sqrt{R \delta}$",
+    latex=r"\Lambda^{*}_{\mathrm{FI}}",
+)
+Lambda_weight = symbol(
+    "Lambda_weight",
+    r"scaled crossing velocity, dead weight, $V^{*} \tau (K/(R W))^{1/3}$",
+    latex=r"\Lambda^{*}_{\mathrm{MI}}",
+)
+X = symbol("X", r"$\Lambda^3$", printed=r"\hat X")
+Y = symbol("Y", r"cube of the scaled friction coefficient, $\mu^3 K R^2/W$", printed=r"\hat Y")
+T = symbol(
+    "T", "ratio of the friction coefficient to its low-velocity asymptote", printed=r"\hat T"
+)
+mu_max = symbol(
+    "mu_max", "friction maximum of a dead weight over its velocity", latex=r"\mu_{\max}", source=""
+)
+V_max = symbol("V_max", "velocity of this maximum", "m/s", latex=r"V_{\max}", source="")
 
 DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
 FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)
 PEAK = 2 - sp.sqrt(3)
 
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F2 to F5, and F26."""
-    return _master_curve(), _peak(), _peak_values(), _bell(), *_series(), _intersections()
+result = Chapter(SECTION)
 
 
 def state_at(cubed: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
@@ -58,26 +59,25 @@ def state_at(cubed: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     return polynomial, state
 
 
-def _master_curve() -> Derivation:
-    proof = _theorem(
-        "F2",
-        title="Master curve of the dead-weight indenter",
-        text=r"With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, "
-        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: depth, friction force and "
-        r"friction coefficient follow from one root $q$ of a quartic. With $T = \mu R K/(C V)$, so "
-        r"that $T^3 = Y/X$, the "
-        "curve is one polynomial relation between $T$ and $X$, of degrees 4 and 3: the resultant.",
-    )
+@result("F2")
+def _master_curve(proof: Proof) -> None:
+    r"""Master curve of the dead-weight indenter.
+
+    With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, $X$ falls from
+    $\infty$ to 0 while $q$ goes from 0 to 1: depth, friction force and friction coefficient follow from one
+    root $q$ of a quartic. With $T = \mu R K/(C V)$, so that $T^3 = Y/X$, the curve is one polynomial relation
+    between $T$ and $X$, of degrees 4 and 3: the resultant.
+    """
     quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
     relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
     proof.crossing(DRIVE_CUBED - X, UNIT, "one state for each velocity: this falls with $q$")
-    proof.recall("scaling", l, NUMBER, RATIO)
-    proof.recall("F1", w, LOAD)
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.recall("scaling", reason=RATIO)
+    proof.recall("F1", w)
+    proof.recall("F1")
     proof.define(V, l * a / tau, "Eq. (29)")
-    proof.recall("F1", W, K * delta * a * w)
-    proof.recall("F1", mu, a * m / R)
-    proof.recall("eq28", delta, a**2 / (2 * R))
+    proof.recall("F1", W)
+    proof.recall("F1", mu)
+    proof.recall("eq28", delta)
     proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
     proof.equal(X, DRIVE_CUBED, "scaled velocity")
     proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
@@ -90,45 +90,49 @@ def _master_curve() -> Derivation:
     proof.equal(T, q * B / ((1 + q) * A), "rational")
     proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
     proof.equal(relation, sp.S.Zero, "$q$ eliminated: the resultant")
-    return proof.done(X, DRIVE_CUBED)
+    proof.done(X, DRIVE_CUBED)
 
 
-def _peak() -> Derivation:
-    proof = _theorem(
-        "F3",
-        title="Friction maximum of the dead-weight indenter",
-        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation "
-        r"length is $\sqrt{3}$ times the half length of the contact.",
-    )
+@result("F3")
+def _peak(proof: Proof) -> None:
+    r"""Friction maximum of the dead-weight indenter.
+
+    $\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is $\sqrt{3}$
+    times the half length of the contact.
+    """
     parabola = q**2 - 4 * q + 1
     rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
-    proof.recall("F2", Y, FRICTION_CUBED)
+    proof.recall("F2", Y)
     proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
     proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
     proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
     proof.root(parabola, q, PEAK, "friction maximum", over=UNIT)
-    return proof.done(q, PEAK)
 
 
-def _peak_values() -> Derivation:
-    proof = _theorem("F3-values", title="Values at the friction maximum")
+@result("F3-values")
+def _peak_values(proof: Proof) -> None:
+    """Values at the friction maximum."""
     third = sp.cbrt(3 - sp.sqrt(3))
-    proof.recall("F3", q, PEAK)
-    proof.recall("scaling", l, NUMBER, RATIO)
+    proof.recall("F3")
+    proof.recall("scaling", reason=RATIO)
     proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.recall("F1")
     proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
-    proof.recall("F2", X, DRIVE_CUBED)
+    proof.recall("F2")
     proof.define(Lambda_peak, sp.cbrt(X), r"$V \tau (K/(R W))^{1/3}$")
     proof.equal(Lambda_peak, sp.sqrt(3) / third, "1.60027...")
     proof.define(mu_peak, m * Lambda_peak / l, r"$\mu (K R^2/W)^{1/3}$")
     proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
-    return proof.done(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third))
 
 
-def _bell() -> Derivation:
-    proof = _theorem("F26", title="Stiffness and retardation time from the friction maximum", text=_BELL,
-                     uses=("F3-values", "eq42"))  # fmt: skip
+@result("F26", uses=("F3-values", "eq42"))
+def _bell(proof: Proof) -> None:
+    r"""Stiffness and retardation time from the friction maximum.
+
+    The maximum of $\mu(V)$ of a dead weight, of the height $\mu_{\max}$ at the velocity $V_{\max}$, gives
+    both constants of a Kelvin-Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, on every
+    linear foundation (F18-low).
+    """
     third = sp.cbrt(3 - sp.sqrt(3))
     height, place = 3 * (sp.sqrt(3) - 1) / (4 * third), sp.sqrt(3) / third
     proof.notation |= {r"\hat\mu_{\max}": height, r"\Lambda_{\max}": place}
@@ -144,53 +148,39 @@ def _bell() -> Derivation:
         r"\Lambda_{\max}": place,
     }
     rows = tuple((f"${name}$", str(sp.N(value, 9))) for name, value in numbers.items())
-    return proof.done(tau, time, table=Table(("Number", "Value"), rows))
-
-
-_BELL = (
-    r"The maximum of $\mu(V)$ of a dead weight, of the height $\mu_{\max}$ at the velocity $V_{\max}$, "
-    r"gives both constants of a Kelvin-Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, "
-    "on every linear foundation (F18-low)."
-)
-
-
-def _series() -> tuple[Derivation, ...]:
-    """Prove the first terms of m in both limits, and the order of the remainder."""
-    low, high = l - 3 * l**2 / 4, sp.Rational(2, 3) - 7 / (36 * l)
-    return tuple(_expansion(*case) for case in (
-        ("F4-low", "low", 1, l, (l, low), 9 * l**4 / 16, r"m - l + \frac{3}{4} l^2"),
-        ("F4-high", "high", 0, 1 / l, (sp.Rational(2, 3), high), -1 / (27 * l**2),
-         r"m - \frac{2}{3} + \frac{7}{36 l}"),
-    ))  # fmt: skip
+    proof.done(tau, time, table=Table(("Number", "Value"), rows))
 
 
 def _expansion(
-    label: str,
-    regime: str,
+    proof: Proof,
     end: int,
     small: sp.Expr,
-    sums: tuple[sp.Expr, ...],
+    first: sp.Expr,
+    second: sp.Expr,
     last: sp.Expr,
     shown: str,
-) -> Derivation:
-    proof = _theorem(label, title=f"Friction coefficient at {regime} velocity: series")
-    proof.recall("scaling", l, NUMBER, RATIO)
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
-    proof.leading_order(m, sums[0], q, end, "the asymptote", eps=small)
-    proof.leading_order(
-        m - sums[1], last, q, end, "the remainder after two terms", eps=small, left=shown
-    )
-    return proof.done(m - sums[1], last)
+) -> None:
+    proof.recall("scaling", reason=RATIO)
+    proof.recall("F1")
+    proof.leading_order(m, first, q, end, "the asymptote", eps=small)
+    proof.leading_order(m - first - second, last, q, end, "the remainder after two terms", eps=small,
+                        left=shown)  # fmt: skip
 
 
-def _intersections() -> Derivation:
-    proof = _theorem(
-        "F5",
-        title="Crossing velocity and friction maximum",
-        text="The crossing velocity is where the two asymptotes of the friction coefficient meet. "
-        "For a dead-weight indenter the maximum is at 1.664 times that velocity.",
-        uses=("eq42", "eq45", "eq46"),
-    )
+result("F4-low", title="Friction coefficient at low velocity: series", end=1, small=l, first=l,
+       second=-3 * l**2 / 4, last=9 * l**4 / 16, shown=r"m - l + \frac{3}{4} l^2")(_expansion)  # fmt: skip
+result("F4-high", title="Friction coefficient at high velocity: series", end=0, small=1 / l,
+       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2),
+       shown=r"m - \frac{2}{3} + \frac{7}{36 l}")(_expansion)  # fmt: skip
+
+
+@result("F5", uses=("eq42", "eq45", "eq46"))
+def _intersections(proof: Proof) -> None:
+    """Crossing velocity and friction maximum.
+
+    The crossing velocity is where the two asymptotes of the friction coefficient meet. For a dead-weight
+    indenter the maximum is at 1.664 times that velocity.
+    """
     low = C * V / (R * K)
     fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
     proof.define(C, K * tau, "Eq. (22)")
@@ -203,7 +193,6 @@ def _intersections() -> Derivation:
         *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
         name=Lambda_weight, right=r"\alpha^{2/3}",
     )  # fmt: skip
-    proof.recall("F3-values", Lambda_peak, sp.sqrt(3) / sp.cbrt(3 - sp.sqrt(3)))
+    proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3
     proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")
-    return proof.done(beyond, 27 * (1 + sp.sqrt(3)) / 16)

@@ -2,22 +2,25 @@
 
 import sympy as sp
 
-from .record import Derivation
-from .steady import SECTION, half_length, trailing_edge
+from .chapter import Chapter
+from .model import R, delta
+from .nomenclature import letter
+from .steady import SECTION, l_r, x_te
 from .step import Proof
-from .symbols import R, a, delta, l_r, x_te
+
+letter(r"x_{\mathrm{b}}", "distance behind the trailing edge", "m")
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove that indenter and free surface separate."""
-    return (_one_contact(),)
+@result("one-contact", uses=("eq25", "eq29"))
+def _one_contact(proof: Proof) -> None:
+    """No second contact.
 
-
-def _one_contact() -> Derivation:
-    proof = Proof("one-contact", None, section=SECTION, title="No second contact", text=_ONE,
-                  uses=("eq25", "eq29"))  # fmt: skip
-    proof.recall("eq28", a, half_length)
-    proof.recall("eq27", x_te, trailing_edge)
+    Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a parabola.
+    Both leave the edge with the same slope, and then separate.
+    """
+    proof.recall("eq28")
+    proof.recall("eq27")
     y, part = sp.symbols("y zeta", positive=True)
     indenter, left = delta - (x_te + y) ** 2 / (2 * R), l_r * x_te / R
     proof.equal(delta - x_te**2 / (2 * R), left, "the compression at the trailing edge")
@@ -30,10 +33,4 @@ def _one_contact() -> Derivation:
     gap = left * sp.exp(-y / l_r) - indenter
     proof.equal(gap, y**2 / (2 * R) + left * above, "the gap between indenter and free surface")
     proof.holds(y**2 / (2 * R) + left * above, ">=", y**2 / (2 * R), "never again in contact")
-    return proof.done(gap, y**2 / (2 * R) + left * above)
-
-
-_ONE = (
-    r"Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a "
-    r"parabola. Both leave the edge with the same slope, and then separate."
-)
+    proof.done(gap, y**2 / (2 * R) + left * above)

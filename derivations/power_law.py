@@ -5,43 +5,47 @@ load, friction force and the rest are sums of positive terms in l, q and Q, whic
 overflow. They hold for n = 1 as well, the wedge, where q = max(0, 1 - l); `derivations.wedge` proves it.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .model import C, K, V, delta
+from .nomenclature import symbol
+from .steady import F, W, a, l, l_r, mu, q
 from .step import Proof
-from .symbols import (
-    C,
-    F,
-    K,
-    L,
-    P,
-    P_n,
-    Q,
-    V,
-    W,
-    a,
-    delta,
-    eta_n,
-    excess,
-    exponent,
-    l,
-    l_r,
-    lost_ahead,
-    lost_behind,
-    m_n,
-    mu,
-    phi_ahead,
-    phi_behind,
-    phi_n,
-    q,
-    w_ahead,
-    w_behind,
-    w_n,
-    y,
-    z_peeled,
-)  # fmt: skip
+from .theorems import P
+
+z_peeled = symbol("peeled", latex="z")
+exponent = symbol("n", "exponent of a power law", source="F19-pressure")
+excess = symbol("nu", "$n - 1$", latex=r"\nu")
+L = symbol("L", "length that gives the size of a shape", "m")
+Q = symbol("Q", "$q^{n - 1}$")
+y = symbol("y", "distance from the lowest line in half lengths, $|x|/a$")
+w_n = symbol("w_n", "scaled load of a power law")
+w_ahead = symbol(
+    "w_ahead", "part of the scaled load ahead of the lowest line", latex=r"w_{\mathrm{a}}"
+)
+w_behind = symbol(
+    "w_behind", "part of the scaled load behind it", latex=r"w_{\mathrm{b}}", nonnegative=True
+)
+phi_n = symbol("phi_n", "scaled friction force of a power law", latex=r"\varphi_n")
+phi_ahead = symbol(
+    "phi_ahead",
+    "part of the scaled friction force ahead of the lowest line",
+    latex=r"\varphi_{\mathrm{a}}",
+)
+phi_behind = symbol(
+    "phi_behind",
+    "part of the scaled friction force behind it",
+    latex=r"\varphi_{\mathrm{b}}",
+    nonnegative=True,
+)
+m_n = symbol("m_n", "scaled friction coefficient of a power law")
+eta_n = symbol("eta_n", "dissipated part inside the contact of a power law")
+lost_ahead = symbol("e_ahead", "dissipation ahead of the lowest line", latex=r"\eta_{\mathrm{a}}")
+lost_behind = symbol(
+    "e_behind", "dissipation behind it", latex=r"\eta_{\mathrm{b}}", nonnegative=True
+)
+P_n = symbol("P_n", "maximum of the scaled pressure of a power law", latex=r"\hat p_{\max,n}")
 
 SECTION = "Power law and wedge"
 
@@ -62,15 +66,7 @@ LOW_SLOPE = n * (n + 1) / (2 * n - 1)
 HIGH_COEFFICIENT = n**2 / (2 * n - 1)
 """m for l -> oo."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F19 for every exponent n > 1."""
-    return (
-        *(_pressure(), _edge(), _load(), _friction(), _coefficient()),
-        *(_peak_pressure(), _energy()),
-    )
+result = Chapter(SECTION)
 
 
 def in_q(proof: Proof) -> None:
@@ -80,12 +76,16 @@ def in_q(proof: Proof) -> None:
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
 
 
-def _pressure() -> Derivation:
-    proof = _theorem("F19-pressure", title="Power law: pressure", text=_PRESSURE,
-                     uses=("eq22", "eq29", "pressure"))  # fmt: skip
+@result("F19-pressure", uses=("eq22", "eq29", "pressure"))
+def _pressure(proof: Proof) -> None:
+    r"""Power law: pressure.
+
+    The indenter $h = |x|^n/(n L^{n-1})$ with $n > 1$ has the slope 1 at $x = L$; $n = 2$ is the parabola of
+    radius $L$. Here $l = l_{\mathrm{r}}/a$, and $y = |x|/a$ is the distance from the tip.
+    """
     height, slope = (y * a) ** n / (n * L ** (n - 1)), (y * a / L) ** (n - 1)
     proof.define(delta, a**n / (n * L ** (n - 1)), r"$h(a) = \delta$: the half length at rest")
-    proof.recall("eq29", C, K * l_r / V)
+    proof.recall("eq29", C)
     proof.define(l_r, l * a, "the retardation length over the half length")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
         proof.notation |= {"h": height, "h'": -side * slope, "C": C, "V": V, "K": K}
@@ -101,20 +101,17 @@ def _pressure() -> Derivation:
     proof.equal(
         sp.Derivative(BEHIND, y), -n * y ** (n - 2) * (y + (n - 1) * l), "falling behind the tip"
     )
-    return proof.done(P, BEHIND)
+    proof.done(P, BEHIND)
 
 
-_PRESSURE = (
-    "The indenter $h = |x|^n/(n L^{n-1})$ with $n > 1$ has the slope 1 at $x = L$; $n = 2$ is the "
-    r"parabola of radius $L$. Here $l = l_{\mathrm{r}}/a$, and $y = |x|/a$ is the distance from "
-    "the tip."
-)
+@result("F19-edge", uses=("F19-pressure",))
+def _edge(proof: Proof) -> None:
+    r"""Power law: trailing edge.
 
-
-def _edge() -> Derivation:
-    proof = _theorem(
-        "F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",)
-    )
+    The pressure falls from the tip to $x = a$, where it is not positive; it vanishes once between, at
+    $x_{\mathrm{TE}} = q a$. In the variable $\ln q$ the equation $(n - 1) \ln q + \ln(q + n l) = 0$ is
+    increasing and convex, so that Newton's method descends to its root from every point above.
+    """
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
     proof.define(l, NUMBER, "$l$ for an edge at $y = q$")
     proof.notation |= {r"\hat p": sp.Lambda(y, BEHIND), "l": sp.Lambda(q, NUMBER)}
@@ -131,19 +128,14 @@ def _edge() -> Derivation:
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
     proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
     proof.equal(1 / (q + n * l), Q, "one equation for $q$, without a difference")
-    return proof.done(1 / (q + n * l), Q)
 
 
-_EDGE = (
-    "The pressure falls from the tip to $x = a$, where it is not positive; it vanishes once "
-    r"between, at $x_{\mathrm{TE}} = q a$. In the variable $\ln q$ the equation $(n - 1) \ln q + "
-    r"\ln(q + n l) = 0$ is increasing and convex, so that Newton's method descends to its root "
-    "from every point above."
-)
+@result("F19-load", uses=("F19-edge",))
+def _load(proof: Proof) -> None:
+    """Power law: load.
 
-
-def _load() -> Derivation:
-    proof = _theorem("F19-load", title="Power law: load", text=_SUMS, uses=("F19-edge",))
+    With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in either limit.
+    """
     in_q(proof)
     primitive = y - y ** (n + 1) / (n + 1)
     proof.integral(w_ahead, AHEAD, (y, 0, 1), primitive + l * y**n, "ahead of the tip")
@@ -152,16 +144,17 @@ def _load() -> Derivation:
     explicit = n / (n + 1) + q - q ** (n + 1) / (n + 1) + (1 - q**n) ** 2 / (n * q ** (n - 1))
     proof.equal(w_n, explicit, "as a function of $q$")
     proof.equal(w_n, LOAD, "a sum of positive terms")
-    return proof.done(w_n, LOAD)
 
 
 _SUMS = r"With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in either limit."
 
 
-def _friction() -> Derivation:
-    proof = _theorem(
-        "F19-friction", title="Power law: friction force", text=_SUMS, uses=("F19-edge",)
-    )
+@result("F19-friction", uses=("F19-edge",))
+def _friction(proof: Proof) -> None:
+    """Power law: friction force.
+
+    With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in either limit.
+    """
     in_q(proof)
     primitive = y**n - y ** (2 * n) / 2
     damper = n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
@@ -178,32 +171,32 @@ def _friction() -> Derivation:
     explicit += n * (1 - q**n) * (1 + q ** (2 * n - 1)) / ((2 * n - 1) * q ** (n - 1))
     proof.equal(phi_n, explicit, "as a function of $q$")
     proof.equal(phi_n, FRICTION_FORCE, "a sum of positive terms")
-    return proof.done(phi_n, FRICTION_FORCE)
 
 
-def _coefficient() -> Derivation:
-    proof = _theorem("F19", title="Power law: friction coefficient", text=_COEFFICIENT)
-    proof.recall("F19-load", w_n, LOAD)
-    proof.recall("F19-friction", phi_n, FRICTION_FORCE)
+@result("F19")
+def _coefficient(proof: Proof) -> None:
+    r"""Power law: friction coefficient.
+
+    For $h = |x|^n/(n L^{n-1})$, $n > 1$, with $q = x_{\mathrm{TE}}/a$, $Q = q^{n-1}$ and $l =
+    l_{\mathrm{r}}/a = (1 - q^n)/(n Q)$. For $n = 2$ this is F1.
+    """
+    proof.recall("F19-load")
+    proof.recall("F19-friction")
     proof.define(F, K * delta**2 * phi_n, "friction force")
     proof.define(W, K * delta * a * w_n, "load")
-    proof.recall("eq37", mu, F / W)
+    proof.recall("eq37")
     proof.define(m_n, mu * a / delta, r"$\mu$ in units of $\delta/a$")
     proof.equal(m_n, phi_n / w_n, "the same")
     proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")
-    return proof.done(m_n, FRICTION_COEFFICIENT)
 
 
-_COEFFICIENT = (
-    r"For $h = |x|^n/(n L^{n-1})$, $n > 1$, with $q = x_{\mathrm{TE}}/a$, $Q = q^{n-1}$ and $l = "
-    r"l_{\mathrm{r}}/a = (1 - q^n)/(n Q)$. For $n = 2$ this is F1."
-)
+@result("F19-peak", uses=("F19-pressure",))
+def _peak_pressure(proof: Proof) -> None:
+    r"""Power law: peak pressure.
 
-
-def _peak_pressure() -> Derivation:
-    proof = _theorem(
-        "F19-peak", title="Power law: peak pressure", text=_PEAK, uses=("F19-pressure",)
-    )
+    The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the leading edge,
+    and at the leading edge from there on.
+    """
     slope = n * y ** (n - 2) * ((n - 1) * l - y)
     proof.notation[r"\hat p"] = sp.Lambda(y, AHEAD)
     proof.equal(
@@ -217,18 +210,15 @@ def _peak_pressure() -> Derivation:
     proof.equal(form.subs(y, 1), n * l, "at the leading edge", left=r"\hat p(1)")
     proof.define(y, sp.Min(1, (n - 1) * l), "where the peak is")
     proof.define(P_n, form, "both cases in one form")
-    return proof.done(P_n, form)
 
 
-_PEAK = (
-    r"The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the "
-    "leading edge, and at the leading edge from there on."
-)
+@result("F19-energy", uses=("energy-any-shape",))
+def _energy(proof: Proof) -> None:
+    r"""Power law: energy dissipated inside the contact.
 
-
-def _energy() -> Derivation:
-    proof = _theorem("F19-energy", title="Power law: energy dissipated inside the contact",
-                     text=_ENERGY, uses=("energy-any-shape",))  # fmt: skip
+    Of the power $F V$ the fraction $\eta$ is dissipated inside the contact, the rest in the surface that
+    relaxes behind it. It is 1 in both limits.
+    """
     inside = lost_ahead, lost_behind
     proof.define(n, 1 + excess, r"$n > 1$")
     proof.define(Q, SLOPE_POWER)
@@ -239,12 +229,5 @@ def _energy() -> Derivation:
         proof.integral(name, density, (y, 0, end), primitive, where)  # fmt: skip
     form = 2 * (1 + q * Q**2) / (2 * (1 + q * Q**2) + (2 * n - 1) * l * Q**2)
     proof.define(eta_n, (lost_ahead + lost_behind) / phi_n, "by definition")
-    proof.recall("F19-friction", phi_n, FRICTION_FORCE)
+    proof.recall("F19-friction")
     proof.equal(eta_n, form, "fraction inside")
-    return proof.done(eta_n, form)
-
-
-_ENERGY = (
-    r"Of the power $F V$ the fraction $\eta$ is dissipated inside the contact, the rest in the "
-    "surface that relaxes behind it. It is 1 in both limits."
-)

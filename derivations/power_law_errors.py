@@ -5,50 +5,94 @@ parts 1 - q and 1 - Q and the bend l - (1 - q), which have forms without cancell
 """
 
 from dataclasses import dataclass
-from functools import partial
 
 import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 
+from .chapter import Chapter
+from .nomenclature import letter, symbol
 from .power_law import (
     FRICTION_FORCE,
     HIGH_COEFFICIENT,
     LOAD,
     LOW_SLOPE,
     SECTION,
+    Q,
+    excess,
     in_q,
     n,
+    y,
     z,
 )
 from .power_law_weight import AT_REST
-from .record import Derivation
+from .steady import l, q
 from .step import Proof, tex
-from .symbols import (
-    Q,
-    bend,
-    blunt,
-    damped,
-    e_n_depth_high,
-    e_n_friction_high,
-    e_n_friction_low,
-    e_n_l1,
-    e_n_l2,
-    e_n_load_high,
-    e_n_load_low,
-    excess,
-    gap_edge,
-    gap_slope,
-    l,
-    omega,
-    phi_fall,
-    phi_rise,
-    psi,
-    q,
-    sharp,
-    tip,
-    whole,
-    y,
-)  # fmt: skip
+
+gap_edge = symbol("gap_q", latex=r"\bar q")
+gap_slope = symbol("gap_Q", "$1 - Q$", latex=r"\bar Q")
+bend = symbol("bend", "$l - (1 - q)$, the difference of $l$ and $1 - q$", latex="b_n")
+letter(r"\phi_2", r"$\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators")
+phi_rise = symbol("phi_rise", r"$\phi_2$ at a positive argument", latex=r"\phi_{2,+}")
+phi_fall = symbol("phi_fall", r"$\phi_2$ at a negative argument", latex=r"\phi_{2,-}")
+psi = symbol("psi", r"logarithmic slope of $\varphi_n$ over $l$")
+omega = symbol("omega", "logarithmic slope of $w_n$ over $l$")
+letter(r"\varrho", r"$1 - \psi$, positive because $\varphi_n/l$ falls")
+blunt = symbol(
+    "blunt",
+    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that vanishes for a wedge",
+    latex=r"D_{\mathrm{b}}",
+)
+damped = symbol("damped", r"$(2 n - 1) \varphi_n/(n^2 l)$", latex=r"D_{\mathrm{d}}")
+sharp = symbol(
+    "sharp",
+    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that remains for a wedge",
+    latex=r"D_{\mathrm{s}}",
+)
+tip = symbol("tip", "$n (n + 1) (w_n - l)$", latex=r"D_{\mathrm{t}}")
+whole = symbol("whole", "$(n + 1) w_n/n$", latex=r"D_{\mathrm{w}}")
+e_n_l1 = symbol(
+    "e_L1_n",
+    "relative error of the asymptote for low velocity, power law",
+    latex=r"e_{\mathrm{L1},n}",
+    real=True,
+)
+e_n_l2 = symbol(
+    "e_L2_n",
+    "relative error of the asymptote for high velocity, power law",
+    latex=r"e_{\mathrm{L2},n}",
+    real=True,
+)
+e_n_load_low = symbol(
+    "e_W_low_n",
+    "relative error of the load for low velocity, power law",
+    latex=r"e_{W\!,\,V\to0,n}",
+    real=True,
+)
+e_n_load_high = symbol(
+    "e_W_high_n",
+    "relative error of the load for high velocity, power law",
+    latex=r"e_{W\!,\,V\to\infty,n}",
+    real=True,
+)
+e_n_friction_low = symbol(
+    "e_F_low_n",
+    "relative error of the friction force for low velocity, power law",
+    latex=r"e_{F\!,\,V\to0,n}",
+    real=True,
+)
+e_n_friction_high = symbol(
+    "e_F_high_n",
+    "relative error of the friction force for high velocity, power law",
+    latex=r"e_{F\!,\,V\to\infty,n}",
+    real=True,
+)
+e_n_depth_high = symbol(
+    "e_depth_high_n",
+    "relative error of the depth for high velocity, power law",
+    latex=r"e_{\delta,\,V\to\infty,n}",
+    real=True,
+)
+letter("j", "counter", source="counter")
 
 _SHORT = {
     damped: 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2,
@@ -119,17 +163,16 @@ ASYMPTOTES = (
     ),
 )
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the errors of the asymptotes of a power law, and that they are monotonic."""
-    return (_peeled(), _bend(), *map(_error, ASYMPTOTES), _monotonic())
+@result("F19-peeled", uses=("F19-edge",))
+def _peeled(proof: Proof) -> None:
+    r"""Power law: the peeled parts.
 
-
-def _peeled() -> Derivation:
-    proof = _theorem("F19-peeled", title="Power law: the peeled parts", text=_PEELED,
-                     uses=("F19-edge",))  # fmt: skip
+    For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the functions
+    $\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$.
+    """
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
     proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
@@ -150,7 +193,6 @@ def _peeled() -> Derivation:
     proof.define(gap_slope, 1 - Q, "the decrease of the slope there")
     proof.equal(gap_slope, -slope, "without a difference",
                 right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
-    return proof.done(gap_slope, -slope)
 
 
 def _brace(power: sp.Expr) -> str:
@@ -158,15 +200,13 @@ def _brace(power: sp.Expr) -> str:
     return r"\left(" + shown.replace("LOG", r"\operatorname{log1p}(-z)") + r"\right)"
 
 
-_PEELED = (
-    "For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the "
-    r"functions $\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$."
-)
+@result("F19-bend", uses=("F19-edge",))
+def _bend(proof: Proof) -> None:
+    r"""Power law: the bend of the trailing edge.
 
-
-def _bend() -> Derivation:
-    proof = _theorem("F19-bend", title="Power law: the bend of the trailing edge", text=_BEND,
-                     uses=("F19-edge",))  # fmt: skip
+    With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > 0$, and $y =
+    -\ln q$.
+    """
     form = (n - 1) * y**2 * ((n - 1) * phi_rise + phi_fall) / n
     in_q(proof)
     proof.define(q, sp.exp(-y), r"$y = -\ln q$")
@@ -175,38 +215,41 @@ def _bend() -> Derivation:
     proof.define(phi_fall, (sp.exp(-y) - 1 + y) / y**2, r"$\phi_2(-y)$")
     proof.define(bend, l - (1 - q), "the difference of $l$ and $1 - q$")
     proof.equal(bend, form, "without a difference")
-    return proof.done(bend, form)
 
 
-_BEND = (
-    r"With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > "
-    r"0$, and $y = -\ln q$."
-)
-
-
-def _error(asymptote: Asymptote) -> Derivation:
-    proof = _theorem(
-        f"F19-error-{asymptote.label}", title=f"Power law: error of the {asymptote.title}",
-        text=f"The asymptote over the exact value is 1 plus this error, which tends to {asymptote.limit}.",
-        uses=("F19-load", "F19-friction"),
-    )  # fmt: skip
+def _error(proof: Proof, asymptote: Asymptote) -> None:
     in_q(proof)
-    for symbol, difference, label in (
+    for part, difference, label in (
         (gap_edge, 1 - q, "F19-peeled"), (gap_slope, 1 - Q, "F19-peeled"), (bend, l - (1 - q), "F19-bend"),
     ):  # fmt: skip
-        if asymptote.form.has(symbol):
-            proof.recall(label, symbol, difference)
-    for symbol, sum_of in _SHORT.items():
-        if asymptote.form.has(symbol):
-            proof.define(symbol, sum_of, "a shorthand")
+        if asymptote.form.has(part):
+            proof.recall(label, (part, difference))
+    for part, sum_of in _SHORT.items():
+        if asymptote.form.has(part):
+            proof.define(part, sum_of, "a shorthand")
     proof.define(asymptote.symbol, asymptote.ratio - 1, "asymptote over exact value")
     proof.equal(asymptote.symbol, asymptote.form, "in this form exact also where it is small")
-    return proof.done(asymptote.symbol, asymptote.form)
 
 
-def _monotonic() -> Derivation:
-    proof = _theorem("F19-error-monotonic", title="Power law: the errors are monotonic", text=_MONOTONIC,
-                     uses=("F19-monotonic", "F19-balance"))  # fmt: skip
+for _each in ASYMPTOTES:
+    result(
+        f"F19-error-{_each.label}", title=f"Power law: error of the {_each.title}",
+        text=f"The asymptote over the exact value is 1 plus this error, which tends to {_each.limit}.",
+        uses=("F19-load", "F19-friction"), asymptote=_each,
+    )(_error)  # fmt: skip
+
+
+@result("F19-error-monotonic", uses=("F19-monotonic", "F19-balance"))
+def _monotonic(proof: Proof) -> None:
+    r"""Power law: the errors are monotonic.
+
+    At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, $\varphi_n/l$ and
+    $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ (F19-balance), under a spring
+    between that and 0: the error of the asymptote for low velocity grows with the velocity (for $n > 2$ the
+    spring only reduces a positive term). The asymptote for high velocity over the exact value is
+    $(W_\infty/W)^{1 - 1/n} (w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a
+    tolerance on a half-line of velocities.
+    """
     rest = sp.Symbol("varrho", positive=True)
     proof.define(psi, 1 - rest, r"$d \ln \varphi_n/d \ln l < 1$, because $\varphi_n/l$ falls")
     sinking = -omega / (n + 1)
@@ -215,15 +258,4 @@ def _monotonic() -> Derivation:
     proof.define(n, 1 + excess, r"$n > 1$")
     proof.equal(slope, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
     proof.holds(form, ">", 0, r"$\omega = d \ln w_n/d \ln l > 0$")
-    return proof.done(slope, form)
-
-
-_MONOTONIC = (
-    "At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, "
-    r"$\varphi_n/l$ and $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ "
-    "(F19-balance), under a spring between that and 0: the error of the asymptote for low "
-    "velocity grows with the velocity (for $n > 2$ the spring only reduces a positive term). The "
-    r"asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} "
-    "(w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance "
-    "on a half-line of velocities."
-)
+    proof.done(slope, form)

@@ -1,9 +1,9 @@
 r"""A power law at a given depth over velocity: monotonicity, both limits, and their crossing (F19)."""
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
+from .nomenclature import letter, symbol
 from .power_law import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
@@ -14,25 +14,31 @@ from .power_law import (
     SECTION,
     SLOPE_POWER,
     SQUARES,
+    Q,
+    excess,
     in_q,
     n,
     z,
 )
-from .record import Derivation
+from .steady import l, q
 from .step import Proof
-from .symbols import Q, excess, l, l_cross, m_high, m_low, q, w_rest
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+letter(r"\bar z", "$1 - q^n$")
+w_rest = symbol("w_rest", "scaled load of a power law at rest", latex="w_{n,0}")
+m_low = symbol("m_low", "its coefficient at low velocity", latex="m_{n,0}'")
+m_high = symbol("m_high", "its limit at high velocity", latex=r"m_{n,\infty}")
+l_cross = symbol("l_cross", "scaled retardation length where the asymptotes meet", latex="l^{*}")
+
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove how the forces of a power law depend on the velocity."""
-    return _monotonic(), _low(), _high(), _crossing()
+@result("F19-monotonic", uses=("F19-load", "F19-friction"))
+def _monotonic(proof: Proof) -> None:
+    r"""Power law: forces grow with velocity.
 
-
-def _monotonic() -> Derivation:
-    proof = _theorem("F19-monotonic", title="Power law: forces grow with velocity", text=_MONOTONIC,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
+    At a given depth load, friction force and friction coefficient grow with the velocity, while $w_n/l$,
+    $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$.
+    """
     in_q(proof)
     state = {l: NUMBER, Q: SLOPE_POWER}
     load, friction = (form.subs(state) for form in (LOAD, FRICTION_FORCE))
@@ -60,36 +66,31 @@ def _monotonic() -> Derivation:
         left=r"2 (n + 1) (2 n - 1) (w_n \varphi_n' - \varphi_n w_n')",
     )
     proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive")
-    return proof.done(LOAD - l * load_rate, rest)
+    proof.done(LOAD - l * load_rate, rest)
 
 
-_MONOTONIC = (
-    r"At a given depth load, friction force and friction coefficient grow with the velocity, while "
-    r"$w_n/l$, $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$."
-)
+@result("F19-low", uses=("F19-load", "F19-friction"))
+def _low(proof: Proof) -> None:
+    r"""Power law: low velocity.
 
-
-def _low() -> Derivation:
-    proof = _theorem("F19-low", title="Power law: low velocity", text=_LOW,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
+    At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K \delta a$ and
+    $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$.
+    """
     rest = {q: 1, Q: 1, l: 0}
     ratio = sp.cancel(FRICTION_COEFFICIENT / l)
     proof.define(w_rest, LOAD.subs(rest), "load at rest")
     proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
     proof.define(m_low, ratio.subs(rest), "friction coefficient per $l$")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
-    return proof.done(m_low, LOW_SLOPE)
 
 
-_LOW = (
-    r"At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K "
-    r"\delta a$ and $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$."
-)
+@result("F19-high", uses=("F19-load", "F19-friction"))
+def _high(proof: Proof) -> None:
+    r"""Power law: high velocity.
 
-
-def _high() -> Derivation:
-    proof = _theorem("F19-high", title="Power law: high velocity", text=_HIGH,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
+    For $l \to \infty$ the edge goes to the tip, $q \to 0$ and $Q \to 0$ with $n l Q \to 1$: $W \to C V
+    \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$.
+    """
     proof.define(l, z / (n * Q), "$n l Q = 1 - q^n = z$")
     fast = {q: 0, Q: 0, z: 1}
     share = n * ((1 + q) * n * Q / z + 1 + z / n) / (n + 1)
@@ -99,19 +100,13 @@ def _high() -> Derivation:
     proof.equal(share.subs(fast), sp.S.One, "the damper carries the total load")
     proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
     proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
-    return proof.done(m_high, HIGH_COEFFICIENT)
 
 
-_HIGH = (
-    r"For $l \to \infty$ the edge goes to the tip, $q \to 0$ and $Q \to 0$ with $n l Q \to 1$: $W "
-    r"\to C V \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$."
-)
+@result("F19-crossing", uses=("F19-low", "F19-high"))
+def _crossing(proof: Proof) -> None:
+    """Power law: crossing of the asymptotes.
 
-
-def _crossing() -> Derivation:
-    proof = _theorem("F19-crossing", title="Power law: crossing of the asymptotes",
-                     text="At a given depth; for $n = 2$ this is Eq. (47).",
-                     uses=("F19-low", "F19-high"))  # fmt: skip
+    At a given depth; for $n = 2$ this is Eq. (47).
+    """
     proof.root(LOW_SLOPE * l - HIGH_COEFFICIENT, l, n / (n + 1), "the asymptotes meet")
     proof.define(l_cross, n / (n + 1), r"$V^{*} \tau/a$")
-    return proof.done(l_cross, n / (n + 1))

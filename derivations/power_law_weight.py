@@ -3,10 +3,11 @@ r"""A power law under a weight: balance of forces, exponents, and the one fricti
 In units of the static state: s = a/a_0, delta/delta_0 = s**n, lambda = V tau/a_0, f = W/W_0.
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
+from .model import C, K, V, delta
+from .nomenclature import letter, symbol
 from .power_law import (
     FRICTION_FORCE,
     HIGH_COEFFICIENT,
@@ -16,39 +17,27 @@ from .power_law import (
     SECTION,
     SLOPE_POWER,
     SQUARES,
-    in_q,
-    n,
-    z,
-)
-from .record import Derivation
-from .step import Proof, tex
-from .symbols import (
-    C,
-    K,
     L,
     Q,
-    T_n,
-    V,
-    W,
-    a,
-    a_0,
-    delta,
-    delta_0,
     excess,
-    kappa,
-    l,
-    lam,
-    lam_cross,
+    in_q,
     m_n,
-    mu,
-    q,
-    r,
-    s,
-    scaled_n,
-    scaled_n_s,
-    slip_n,
+    n,
     w_n,
-)  # fmt: skip
+    z,
+)
+from .steady import W, a, l, mu, q
+from .step import Proof, tex
+from .tables import delta_0
+from .theorems import kappa, lam, r, s
+
+scaled_n = symbol("f_n", "scaled load of a power law that has been lifted, $W/W_0$")
+scaled_n_s = symbol("f_n_s", latex="f_n'")
+letter("L_1", "asymptote of the friction coefficient for low velocity")
+slip_n = symbol("D_n", "logarithmic slope of the friction coefficient of a power law", real=True)
+T_n = symbol("T_n", "scaled friction of a power law over its asymptote for low velocity", real=True)
+lam_cross = symbol("lambda_cross", "drive number where the asymptotes meet", latex=r"\lambda^{*}")
+a_0 = symbol("a_0", "static half length of the contact", "m")
 
 SCALED_LOAD = s**n * (s + r + lam + lam**2 / (r + n * lam)) / 2
 SCALED_SLOPE = (n + 1) * s ** (n - 1) * (s + r + lam) / 2
@@ -60,18 +49,17 @@ _DAMPED = 1 + q * Q**2
 SLIP = _DAMPED * (1 + q + l - (2 * n - 1) * l**2 * Q) - n * (2 * n - 1) * l**3 * Q**3
 """Has the sign of d mu/dV at a given load."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F19 at a given load."""
-    return _scaled_load(), _balance(), _exponents(), _crossing(), _at_load(), _slip(), _maximum()
+@result("F19-scaled-load", uses=("F19-edge", "F19-load"))
+def _scaled_load(proof: Proof) -> None:
+    r"""Power law: load of an indenter that has been lifted.
 
-
-def _scaled_load() -> Derivation:
-    proof = _theorem("F19-scaled-load", title="Power law: load of an indenter that has been lifted",
-                     text=_SCALED, uses=("F19-edge", "F19-load"))  # fmt: skip
-    proof.recall("F19-load", w_n, LOAD)
+    In units of the static state, $s = a/a_0$, so that $\delta/\delta_0 = s^n$, with $\lambda = V \tau/a_0$,
+    $r = x_{\mathrm{TE}}/a_0$ and $W_0 = \frac{2 n}{n + 1} K \delta_0 a_0$.
+    """
+    proof.recall("F19-load")
     proof.define(
         scaled_n, s ** (n + 1) * w_n / AT_REST, r"$W = K \delta a\, w_n$ over its value at rest"
     )
@@ -79,22 +67,22 @@ def _scaled_load() -> Derivation:
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
     proof.define(q, 1 / Q - n * l, "F19-edge")
     proof.equal(scaled_n, SCALED_LOAD, "a sum of positive terms")
-    return proof.done(scaled_n, SCALED_LOAD)
 
 
-_SCALED = (
-    r"In units of the static state, $s = a/a_0$, so that $\delta/\delta_0 = s^n$, with $\lambda = "
-    r"V \tau/a_0$, $r = x_{\mathrm{TE}}/a_0$ and $W_0 = \frac{2 n}{n + 1} K \delta_0 a_0$."
-)
+@result("F19-balance", uses=("F19-scaled-load", "F19-monotonic"))
+def _balance(proof: Proof) -> None:
+    r"""Power law: a unique depth at a load.
 
-
-def _balance() -> Derivation:
-    proof = _theorem("F19-balance", title="Power law: a unique depth at a load", text=_BALANCE,
-                     uses=("F19-scaled-load", "F19-monotonic"))  # fmt: skip
+    On a spring of support number $\kappa$ (none for a dead weight) $G = f_n + \kappa (s^n - 1) - 1$ vanishes.
+    $G$ increases from $-(1 + \kappa)$ at $s = 0$ to $f_n(1) - 1 \ge 0$ at $s = 1$, because the load grows
+    with the velocity; so there is one depth. As $n < d \ln f_n/d \ln s < n + 1$, the relative error of
+    $\delta = s^n \delta_0$ is, to first order, at most that with which the two sides of the balance are
+    computed, and Newton's method in $\ln s$ divides the error by at least $n$ from wherever it starts.
+    """
     in_q(proof)
     proof.define(s, lam / NUMBER, r"at fixed velocity, $\lambda$ constant")
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
-    proof.recall("F19-scaled-load", scaled_n, SCALED_LOAD)
+    proof.recall("F19-scaled-load")
     state = {r: s * q, Q: SLOPE_POWER}
     place = lam / NUMBER
     of_q = SCALED_LOAD.subs(state).subs(s, place)
@@ -110,22 +98,17 @@ def _balance() -> Derivation:
     proof.equal(n + 1 - elasticity, below, "less than for the spring alone")
     proof.holds(above, ">", 0, "a quotient of positive terms")
     proof.holds(below, ">", 0, "likewise")
-    return proof.done(elasticity - n, above)
+    proof.done(elasticity - n, above)
 
 
-_BALANCE = (
-    r"On a spring of support number $\kappa$ (none for a dead weight) $G = f_n + \kappa (s^n - 1) "
-    r"- 1$ vanishes. $G$ increases from $-(1 + \kappa)$ at $s = 0$ to $f_n(1) - 1 \ge 0$ at $s = "
-    r"1$, because the load grows with the velocity; so there is one depth. As $n < d \ln f_n/d \ln "
-    r"s < n + 1$, the relative error of $\delta = s^n \delta_0$ is, to first order, at most that "
-    r"with which the two sides of the balance are computed, and Newton's method in $\ln s$ divides "
-    "the error by at least $n$ from wherever it starts."
-)
+@result("F19-exponents", uses=("F19-high", "F19-balance"))
+def _exponents(proof: Proof) -> None:
+    r"""Power law: dead weight at high velocity.
 
-
-def _exponents() -> Derivation:
-    proof = _theorem("F19-exponents", title="Power law: dead weight at high velocity", text=_EXPONENTS,
-                     uses=("F19-high", "F19-balance"))  # fmt: skip
+    At a given load, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for the parabola
+    (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no decrease for $n \to 1$. At low
+    velocity $\mu \propto V$ for every $n$.
+    """
     power = 1 - 1 / n
     proof.define(delta, W / (C * V), r"F19-high, $W = C V \delta$")
     proof.define(a, (n * L ** (n - 1) * delta) ** (1 / n), r"$h(a) = \delta$")
@@ -133,19 +116,16 @@ def _exponents() -> Derivation:
     result = HIGH_COEFFICIENT * n ** (-1 / n) * (W / (C * V * L)) ** power
     shown = r"\frac{n^{2 - 1/n}}{2 n - 1} \left(\frac{W}{C V L}\right)^{1 - 1/n}"
     proof.equal(mu, result, "falls as a power of the velocity", right=shown)
-    return proof.done(mu, result)
 
 
-_EXPONENTS = (
-    r"At a given load, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for "
-    "the parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no decrease "
-    r"for $n \to 1$. At low velocity $\mu \propto V$ for every $n$."
-)
+@result("F19-crossing-weight", uses=("F19-low", "F19-exponents"))
+def _crossing(proof: Proof) -> None:
+    r"""Power law: crossing of the asymptotes at a load.
 
-
-def _crossing() -> Derivation:
-    proof = _theorem("F19-crossing-weight", title="Power law: crossing of the asymptotes at a load",
-                     text=_CROSSING, uses=("F19-low", "F19-exponents"))  # fmt: skip
+    At a given load the asymptotes $\frac{\delta_0}{a_0} \lambda \frac{n (n + 1)}{2 n - 1}$ and
+    $\frac{\delta}{a} \frac{n^2}{2 n - 1}$ meet at one velocity. For $n = 2$ and $\kappa = 0$ this is Eq.
+    (48).
+    """
     lifted = AT_REST * (1 + kappa) / lam
     proof.notation |= {
         "W_0": AT_REST * K * delta_0 * a_0,
@@ -172,24 +152,18 @@ def _crossing() -> Derivation:
         left=r"n \ln (L_2/L_1)", right=r"(2 n - 1) \ln (\lambda^{*}/\lambda)",
     )  # fmt: skip
     proof.define(lam_cross, CROSSING, r"where it is 1: $V^{*} \tau/a_0$")
-    return proof.done(lam_cross, CROSSING)
-
-
-_CROSSING = (
-    r"At a given load the asymptotes $\frac{\delta_0}{a_0} \lambda \frac{n (n + 1)}{2 n - 1}$ and "
-    r"$\frac{\delta}{a} \frac{n^2}{2 n - 1}$ meet at one velocity. For $n = 2$ and $\kappa = 0$ "
-    "this is Eq. (48)."
-)
 
 
 def _logarithm(expr: sp.Expr) -> sp.Expr:
     return sp.expand_log(sp.log(expr.subs(n, 1 + excess)))
 
 
-def _at_load() -> Derivation:
-    proof = _theorem("F19-at-load", title="Power law: friction coefficient at a load",
-                     text="Under a dead weight, in units of the static state.",
-                     uses=("F19-balance",))  # fmt: skip
+@result("F19-at-load", uses=("F19-balance",))
+def _at_load(proof: Proof) -> None:
+    """Power law: friction coefficient at a load.
+
+    Under a dead weight, in units of the static state.
+    """
     friction = sp.Symbol("varphi_n", positive=True)
     load = AT_REST / s ** (n + 1)
     scaled, power = s ** (n - 1) * friction / load, friction / load ** (2 * n / (n + 1))
@@ -213,12 +187,16 @@ def _at_load() -> Derivation:
         left=r"\ln (s^{n - 1} m_n)",
         right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln w_{n,0}",
     )
-    return proof.done(w_n, load)
+    proof.done(w_n, load)
 
 
-def _slip() -> Derivation:
-    proof = _theorem("F19-slip", title="Power law: friction over velocity at a load", text=_SLIP,
-                     uses=("F19-at-load", "F19-monotonic"))  # fmt: skip
+@result("F19-slip", uses=("F19-at-load", "F19-monotonic"))
+def _slip(proof: Proof) -> None:
+    r"""Power law: friction over velocity at a load.
+
+    Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; $l$ grows
+    with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - \frac{1}{n + 1}$.
+    """
     proof.notation |= {
         "w_n": LOAD, "w_n'": n * l * Q, r"\varphi_n": FRICTION_FORCE, r"\varphi_n'": n**2 * SQUARES,
     }  # fmt: skip
@@ -231,19 +209,16 @@ def _slip() -> Derivation:
         left=r"(n + 1) w_n \varphi_n' - 2 n \varphi_n w_n'",
     )
     proof.define(slip_n, SLIP, "an expression with its sign")
-    return proof.done(slip_n, SLIP)
 
 
-_SLIP = (
-    r"Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; "
-    r"$l$ grows with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - "
-    r"\frac{1}{n + 1}$."
-)
+@result("F19-maximum", uses=("F19-slip",))
+def _maximum(proof: Proof) -> None:
+    """Power law: one friction maximum under a dead weight.
 
-
-def _maximum() -> Derivation:
-    proof = _theorem("F19-maximum", title="Power law: one friction maximum under a dead weight",
-                     text=_MAXIMUM, uses=("F19-slip",))  # fmt: skip
+    $T_n$ increases strictly with $q$ from a negative to a positive value, so that it has one root: for every
+    $n > 1$ the friction coefficient of a dead weight has exactly one maximum over the velocity. For $n = 2$
+    it is that of F3.
+    """
     in_q(proof)
     peeled = 1 - q**n
     damped, double = 1 + q * Q**2, n + excess
@@ -261,11 +236,4 @@ def _maximum() -> Derivation:
     proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
     proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
     proof.crossing(of_q, (q, 0, 1), r"from $-\nu/n^2$ in the fast limit to 2 at rest", slope=slope)
-    return proof.done(slip_scaled, T_n)
-
-
-_MAXIMUM = (
-    "$T_n$ increases strictly with $q$ from a negative to a positive value, so that it has one "
-    "root: for every $n > 1$ the friction coefficient of a dead weight has exactly one maximum "
-    "over the velocity. For $n = 2$ it is that of F3."
-)
+    proof.done(slip_scaled, T_n)

@@ -5,50 +5,84 @@ chapter before this one adds up arms, this one integrates by parts. Beside it: t
 linear solid leaves behind, and the one interval of contact on every Prony series.
 """
 
-from functools import partial
-
 import sympy as sp
 
 from .algebra import antiderivative
-from .record import Derivation
+from .chapter import Chapter
+from .model import K, R
+from .nomenclature import function, letter, symbol
+from .steady import a, x_te
 from .step import Proof, tex
-from .symbols import (
-    K,
-    R,
-    a,
-    arm_length,
-    arm_ratio,
-    behind,
+from .viscoelastic import (
+    MOMENTS,
+    SECTION,
+    UNIT,
+    B,
+    D,
+    E,
+    P,
+    Q,
     contact_length,
-    damper_1,
-    damper_2,
-    edge_distance,
     excess_share,
-    fading,
-    felt,
     from_trailing,
-    left_behind,
-    memory,
     moment_ahead,
     moment_bulge,
     moment_twist,
-    on_off,
-    other_trailing,
-    parting,
-    pressed,
-    repeated,
-    share_1,
-    share_2,
-    shift,
-    slope_free,
-    spare_1,
-    spare_2,
-    spring_1,
-    spring_2,
     spring_share,
-    x_te,
-)  # fmt: skip
-from .viscoelastic import MOMENTS, SECTION, UNIT, B, D, E, P, Q
+)
+
+arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
+memory = function("G_v", positive=True)
+behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
+edge_distance = symbol(
+    "y_v", "distance back from there, or behind the trailing edge", "m", latex=r"\breve y"
+)
+letter(r"\breve G_4", r"integral of $\breve G_3$ over the contact", "N m")
+fading = function(
+    "H_v",
+    "rate of decrease of the relaxation function",
+    "Pa/m²",
+    printed=r"\breve H",
+    nonnegative=True,
+)
+other_trailing = symbol("v_v", r"as $\breve w$, of another position", latex=r"\breve v")
+felt = symbol("J_v", "part of a double integral", latex=r"\breve J", real=True)
+shift = symbol("h_v", r"$\breve a - 1$", latex=r"\breve h", real=True)
+left_behind = symbol("u_v", "compression of the free surface", "m", latex=r"\breve u")
+arm_ratio = symbol(
+    "beta_v", "stiffness of the one arm over that of the spring", latex=r"\breve \beta"
+)
+parting = symbol(
+    "sigma_v", "angle between indenter and surface behind the contact", latex=r"\breve \sigma"
+)
+slope_free = symbol("s_vf", "slope of the free surface", latex=r"\breve \chi_0", real=True)
+pressed = symbol(
+    "g_v", "depth of the indenter below the undisturbed surface", "m", latex=r"\breve g", real=True
+)
+damper_1 = symbol(
+    "u_v1", "extension of the dashpot of an arm", "m", latex=r"\breve u_1", nonnegative=True
+)
+damper_2 = symbol("u_v2", "that of another arm", "m", latex=r"\breve u_2", nonnegative=True)
+spring_1 = symbol("K_v1", "stiffness of one arm per unit area", "N/m³", latex="K_1")
+spring_2 = symbol("K_v2", "stiffness of another arm per unit area", "N/m³", latex="K_2")
+share_1 = symbol(
+    "gamma_v1",
+    "share of an arm in the glassy stiffness",
+    latex=r"\breve \gamma_1",
+    nonnegative=True,
+)
+share_2 = symbol("gamma_v2", "share of another arm", latex=r"\breve \gamma_2", nonnegative=True)
+on_off = symbol(
+    "theta_v",
+    "weight of the indenter relative to the free surface",
+    latex=r"\breve \theta",
+    nonnegative=True,
+)
+spare_1 = symbol(
+    "omega_v1", "remainder of a bound, not negative", latex=r"\breve \omega_1", nonnegative=True
+)
+spare_2 = symbol("omega_v2", "the same of another", latex=r"\breve \omega_2", nonnegative=True)
+repeated = tuple(function(f"G_v{n}", nonnegative=True) for n in range(1, 5))
 
 y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length
 G, (G_1, G_2, G_3, G_4) = memory, repeated
@@ -56,15 +90,7 @@ PRESSURE = sp.Lambda(y, (a * G_1(y) - G_2(y)) / R)
 LOAD = (a * G_2(c) - G_3(c)) / R
 WORK = ((a - c) * (a * G_2(c) - G_3(c)) + a * G_3(c) - G_4(c)) / R**2
 
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F17 for any relaxation function, and the relaxation of the surface behind the contact."""
-    return (
-        *(_pressure(), _concave(), _forces(), _moments(), _positive()),
-        *(_stored(), _stored_springpot(), _surface(), _interval()),
-    )
+result = Chapter(SECTION)
 
 
 def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
@@ -74,28 +100,30 @@ def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
         proof.define(integral(0), sp.S.Zero, "from the leading edge on")
 
 
-def _pressure() -> Derivation:
-    proof = _theorem("F17-any", title="Any relaxation function: the pressure", text=_PRESSURE)
+@result("F17-any")
+def _pressure(proof: Proof) -> None:
+    r"""Any relaxation function: the pressure.
+
+    An element at the distance $\breve X$ behind the leading edge was compressed at the rate $(a - \breve X +
+    \breve y)/R$ when it was $\breve y$ ahead of its present position; $\breve G(\breve y) = G(\breve y/V)$,
+    and $\breve G_1$ to $\breve G_4$ are its repeated integrals. $G$ need not be a sum of arms.
+    """
     name_integrals(proof, 2)
     rate = (a - X + y) / R
     value = PRESSURE(X)
     whole = sp.Integral(G(y) * rate, (y, 0, X))
     proof.integral(whole, G(y) * rate, (y, 0, X), rate * G_1(y) - G_2(y) / R,
                    r"by parts; this is the pressure $p(\breve X)$", value=value)  # fmt: skip
-    return proof.done(whole, value)
 
 
-_PRESSURE = (
-    r"An element at the distance $\breve X$ behind the leading edge was compressed at the rate $(a "
-    r"- \breve X + \breve y)/R$ when it was $\breve y$ ahead of its present position; $\breve "
-    r"G(\breve y) = G(\breve "
-    r"y/V)$, and $\breve G_1$ to $\breve G_4$ are its repeated integrals. $G$ need not be a sum of arms."
-)
+@result("F17-concave", uses=("F17-any",))
+def _concave(proof: Proof) -> None:
+    r"""Any relaxation function: one trailing edge.
 
-
-def _concave() -> Derivation:
-    proof = _theorem("F17-concave", title="Any relaxation function: one trailing edge",
-                     text=_CONCAVE, uses=("F17-any",))  # fmt: skip
+    The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is concave: it
+    vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$. (Where $G$ falls by
+    steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$, which was not checked by machine.)
+    """
     name_integrals(proof, 2)
     first = (a * G(y) - G_1(y)) / R
     proof.equal(sp.Derivative(PRESSURE(y), y), first, "slope of the pressure")
@@ -103,20 +131,17 @@ def _concave() -> Derivation:
     second = -(a * fading(y) + G(y)) / R
     proof.equal(sp.Derivative(first, y), second, "and its slope")
     proof.holds(second, "<", 0, "the pressure is concave")
-    return proof.done(sp.Derivative(first, y), second)
+    proof.done(sp.Derivative(first, y), second)
 
 
-_CONCAVE = (
-    "The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is "
-    r"concave: it vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$. "
-    r"(Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$, which "
-    r"was not checked by machine.)"
-)
+@result("F17-forces", uses=("F17-any",))
+def _forces(proof: Proof) -> None:
+    r"""Any relaxation function: load and friction force.
 
-
-def _forces() -> Derivation:
-    proof = _theorem("F17-forces", title="Any relaxation function: load and friction force",
-                     text=_FORCES, uses=("F17-any",))  # fmt: skip
+    With $a = \breve G_2/\breve G_1$ at $\breve c$ everything is explicit in the length $\breve c$ of the
+    contact. As $p = \int G u'$, the friction force is the quadratic form $\int p\, u' = \int \int G(\breve X
+    - \breve y)\, u'(\breve y)\, u'(\breve X)$ over $\breve y < \breve X$.
+    """
     name_integrals(proof, 4)
     over = (y, 0, c)
     load = sp.Integral(PRESSURE(y), over)
@@ -127,19 +152,15 @@ def _forces() -> Derivation:
     whole = rate * primitive + (a * G_3(y) - G_4(y)) / R**2
     proof.integral(work, rate * PRESSURE(y), over, whole, "the work of the pressure, which is $F$",
                    value=WORK)  # fmt: skip
-    return proof.done(work, WORK)
 
 
-_FORCES = (
-    r"With $a = \breve G_2/\breve G_1$ at $\breve c$ everything is explicit in the length $\breve c$ of "
-    r"the contact. As $p = \int G u'$, the friction force is the quadratic form $\int p\, u' = \int \int "
-    r"G(\breve X - \breve y)\, u'(\breve y)\, u'(\breve X)$ over $\breve y < \breve X$."
-)
+@result("F17-parts", uses=("F17-forces", "F17-load", "F17"))
+def _moments(proof: Proof) -> None:
+    """Any relaxation function: the moments by parts.
 
-
-def _moments() -> Derivation:
-    proof = _theorem("F17-parts", title="Any relaxation function: the moments by parts", text=_PARTS,
-                     uses=("F17-forces", "F17-load", "F17"))  # fmt: skip
+    The moments of F17-moments, applied to the whole relaxation function: load and friction force are those of
+    F17-load and F17, whether or not $G$ is a sum of arms. (F17-sign shows that the moments are positive.)
+    """
     name_integrals(proof, 4)
     parts = (G_1(y), G_2(y), G_3(y), G_4(y))
     for name in (moment_ahead, moment_bulge, moment_twist):
@@ -156,19 +177,18 @@ def _moments() -> Derivation:
     proof.equal(load, c**3 / R * (moment_bulge + e * moment_ahead), "the load of F17-load")
     form = c**4 / R**2 * (moment_twist + e**2 * moment_ahead)
     proof.equal(work, form, "the friction force of F17")
-    return proof.done(work, form)
 
 
-_PARTS = (
-    "The moments of F17-moments, applied to the whole relaxation function: load and friction force are "
-    "those of F17-load and F17, whether or not $G$ is a sum of arms. (F17-sign shows that the moments "
-    "are positive.)"
-)
+@result("F17-sign", uses=("F17-parts",))
+def _positive(proof: Proof) -> None:
+    r"""Any relaxation function: friction is positive.
 
-
-def _positive() -> Derivation:
-    proof = _theorem("F17-sign", title="Any relaxation function: friction is positive", text=_SIGN,
-                     uses=("F17-parts",))  # fmt: skip
+    Each moment is a multiple of $\breve G$ at the trailing edge and an integral of its fall $\breve H$, both
+    with factors that are not negative. Where $G$ does not rise, $F = (\breve c^4/R^2)(\breve E + \breve
+    \eta^2 \breve P)$ with $\breve \eta = \breve B/\breve A$ is therefore positive unless $G$ is constant:
+    convexity of $G$ is not needed. A springpot, infinite at $\breve w = 0$, gives no boundary term there,
+    because $\breve w\, G$ vanishes.
+    """
     proof.define(sp.Derivative(G(w), w), -fading(w), "the relaxation function does not rise")
     for name in (P, Q, D, B, E):
         weight = (1 - 2 * w) / 2 if name == B else MOMENTS[name][0]
@@ -177,21 +197,20 @@ def _positive() -> Derivation:
         proof.integral(sp.Integral(inside, UNIT), inside, UNIT, gained * G(w), rf"${tex(name)}$ by parts",
                        value=end)  # fmt: skip
         proof.holds(sp.Integral(gained * fading(w), UNIT), ">=", 0, "not negative in the contact")
-    return proof.done(sp.Integral(inside, UNIT), end)
+    proof.done(sp.Integral(inside, UNIT), end)
 
 
-_SIGN = (
-    r"Each moment is a multiple of $\breve G$ at the trailing edge and an integral of its fall $\breve "
-    r"H$, both with factors that are not negative. Where $G$ does not rise, $F = (\breve c^4/R^2)(\breve "
-    r"E + \breve \eta^2 \breve P)$ with $\breve \eta = \breve B/\breve A$ is therefore positive unless "
-    r"$G$ is constant: convexity of $G$ is not needed. A springpot, infinite at $\breve w = 0$, gives no "
-    r"boundary term there, because $\breve w\, G$ vanishes."
-)
+@result("F17-stored", uses=("F17-energy",))
+def _stored(proof: Proof) -> None:
+    r"""Any relaxation function: energy behind the contact.
 
-
-def _stored() -> Derivation:
-    proof = _theorem("F17-stored", title="Any relaxation function: energy behind the contact",
-                     text=_STORED, uses=("F17-energy",))  # fmt: skip
+    Half of the square of this is the energy stored in the spring of an arm (F17-energy), $\frac{1}{2} \int
+    \int e^{-\breve z (\breve w + \breve w')} u' u'$. Added up over arms it is $\frac{1}{2} \int \int G(\breve
+    w + \breve w')\, u'(\breve w)\, u'(\breve w')$ for every $G$ that is a sum or an integral of arms
+    (Bernstein: that is completely monotone), the springpot among them. It is lost while the surface relaxes
+    behind the contact; the rest of $F$ is lost inside it. For other relaxation functions $G$ alone does not
+    determine the stored energy.
+    """
     from .viscoelastic import PRESSURE as ARM
     from .viscoelastic import b, z
     from .viscoelastic import y as at
@@ -200,27 +219,15 @@ def _stored() -> Derivation:
     primitive = -sp.exp(-z * w) * ((b - 1 + w) / z + 1 / z**2)
     proof.integral(held, sp.exp(-z * w) * (b - 1 + w), UNIT, primitive,
                    "stress of an arm at the trailing edge", value=ARM.subs(at, 1))  # fmt: skip
-    return proof.done(held, ARM.subs(at, 1))
 
 
-_STORED_SPRINGPOT = (
-    r"With $u' \sim \breve h + \breve w$, $\breve h = a/\breve c - 1$, and $G \sim \breve w^{\breve \nu - "
-    "1}$: twice the energy of the springpot at the trailing edge, in the units of F17-springpot."
-)
-_STORED = (
-    r"Half of the square of this is the energy stored in the spring of an arm (F17-energy), "
-    r"$\frac{1}{2} \int \int "
-    r"e^{-\breve z (\breve w + \breve w')} u' u'$. Added up over arms it is $\frac{1}{2} \int \int "
-    r"G(\breve w + \breve w')\, u'(\breve w)\, u'(\breve w')$ for every $G$ that is a sum or an integral "
-    "of arms (Bernstein: that is completely monotone), the springpot among them. It is lost while the "
-    "surface relaxes behind the contact; the rest of $F$ is lost inside it. For other relaxation "
-    "functions $G$ alone does not determine the stored energy."
-)
+@result("F17-stored-springpot", uses=("F17-stored",))
+def _stored_springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: energy behind the contact.
 
-
-def _stored_springpot() -> Derivation:
-    proof = _theorem("F17-stored-springpot", title="Fractional Kelvin-Voigt: energy behind the contact",
-                     text=_STORED_SPRINGPOT, uses=("F17-stored",))  # fmt: skip
+    With $u' \sim \breve h + \breve w$, $\breve h = a/\breve c - 1$, and $G \sim \breve w^{\breve \nu - 1}$:
+    twice the energy of the springpot at the trailing edge, in the units of F17-springpot.
+    """
     nu, h, v = spring_share, shift, other_trailing
     both = w + v
     parts = (h + v) * both**nu / nu - both ** (nu + 1) / (nu * (nu + 1))
@@ -243,12 +250,18 @@ def _stored_springpot() -> Derivation:
     )
     value = square + 2 * h * mixed + h**2 * none
     proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
-    return proof.done(outer, value)
 
 
-def _surface() -> Derivation:
-    proof = _theorem("F17-surface", title="Standard linear solid: the surface behind the contact",
-                     text=_SURFACE, uses=("F17-concave",))  # fmt: skip
+@result("F17-surface", uses=("F17-concave",))
+def _surface(proof: Proof) -> None:
+    r"""Standard linear solid: the surface behind the contact.
+
+    A spring $K$ in parallel with one arm of $K_1 = \breve \beta K$ leaves the contact with the compression
+    $\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve y/((1 + \breve \beta)
+    l_i)}$: the free surface relaxes with the time $(1 + \breve \beta) \tau_i$, which is $\tau = C/K$ for
+    $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin-Voigt,
+    and does not touch again.
+    """
     rate = slope_free
     u, stretch = left_behind, (1 + arm_ratio) * l
     free = K * arm_ratio * rate + K * rate + K * u / l
@@ -272,23 +285,25 @@ def _surface() -> Derivation:
     form = y**2 / (2 * R) + parting * y + u * above
     proof.equal(gap, form, "the gap between indenter and free surface")
     proof.holds(form, ">=", y**2 / (2 * R), "never again in contact")
-    return proof.done(gap, form)
+    proof.done(gap, form)
 
 
-_SURFACE = (
-    r"A spring $K$ in parallel with one arm of $K_1 = \breve \beta K$ leaves the contact with the "
-    r"compression $\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve "
-    r"y/((1 + \breve "
-    r"\beta) l_i)}$: the free surface relaxes with the time $(1 + \breve \beta) \tau_i$, which is $\tau = "
-    r"C/K$ for $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is "
-    r"zero for Kelvin-Voigt, and does not touch again."
-)
+@result("F17-interval")
+def _interval(proof: Proof) -> None:
+    r"""Prony series: the contact is one interval.
 
-
-def _interval() -> Derivation:
-    proof = _theorem(
-        "F17-interval", title="Prony series: the contact is one interval", text=_INTERVAL
-    )
+    The dashpot of an arm follows $\tau_i\, \mathrm{d}\breve u_1/\mathrm{d}t = \breve u - \breve u_1$; the
+    surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + \breve \gamma_2
+    \breve u_2$. Shown with two arms; nothing depends on their number. Not checked by machine: the larger of
+    two is the upper bound of all mixtures with weights $\breve \theta$ and $1 - \breve \theta$, so that by
+    the comparison theorem of cooperative systems (Kamke) each extension is the upper bound, over all
+    histories $\breve \theta(t)$, of the solution of a linear system: an integral of the past of $\breve g$
+    with weights that are not negative and add up to $1 - \breve \omega_1$, at most 1. Along the foundation
+    $\breve g$ is one parabola, displaced from instant to instant, so that the height of the indenter over the
+    free surface is a lower bound of concave functions, and concave. An element is in contact where it is not
+    negative, which is one interval, for any drive and any motion: two edges describe the contact on every
+    Prony series, as F9 says for Kelvin-Voigt.
+    """
     u, stiff = left_behind, K + spring_1 + spring_2
     pressure = K * u + spring_1 * (u - damper_1) + spring_2 * (u - damper_2)
     proof.define(share_1, spring_1 / stiff, "share of an arm in the glassy stiffness")
@@ -311,20 +326,4 @@ def _interval() -> Derivation:
         -1 + weights, bend, "second derivative along the foundation, over that of the indenter"
     )
     proof.holds(bend, "<", 0, "concave")
-    return proof.done(-1 + weights, bend)
-
-
-_INTERVAL = (
-    r"The dashpot of an arm follows $\tau_i\, \mathrm{d}\breve u_1/\mathrm{d}t = \breve u - \breve u_1$; "
-    r"the surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + "
-    r"\breve \gamma_2 \breve u_2$. Shown with two arms; nothing depends on their number. Not "
-    r"checked by machine: the larger of two is the upper bound of all mixtures with weights $\breve "
-    r"\theta$ and $1 - \breve \theta$, so that by the comparison theorem of cooperative systems (Kamke) "
-    r"each extension is the upper bound, over all histories $\breve \theta(t)$, of the solution of a "
-    r"linear system: an integral of the past of $\breve g$ with weights that are not negative and add up "
-    r"to $1 - \breve \omega_1$, at most 1. Along the foundation $\breve g$ is one parabola, displaced "
-    "from instant to instant, so that the height of the indenter over the free surface is a lower bound "
-    "of concave functions, and concave. An element is in contact where it is not negative, which is one "
-    "interval, for any drive and any motion: two edges describe the contact on every Prony series, "
-    "as F9 says for Kelvin-Voigt."
-)
+    proof.done(-1 + weights, bend)

@@ -4,44 +4,50 @@ An element of the foundation is named by xi = x - Y, where Y' = v is the sliding
 linear in the relaxation function, so that one arm is enough; the forces of several arms add up.
 """
 
-from functools import partial
-
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from .record import Derivation
+from .chapter import Chapter
+from .model import K, R, delta_t, t
+from .nomenclature import function, symbol
+from .relaxation import spring_1, spring_2
 from .rules import Computed
 from .step import Proof
-from .symbols import (
-    E_i,
-    I_n,
-    K,
-    K_i,
-    R,
-    S_i,
-    T_i,
-    Y_t,
-    alpha_i,
-    beta_i,
-    delta_t,
-    fading_rate,
-    glassy,
-    le_t,
-    rates,
-    spring_1,
-    spring_2,
-    stress_i,
-    t,
-    t_1,
-    t_in,
-    tau_i,
-    te_t,
-    v_t,
-    xi,
-)  # fmt: skip
+from .viscoelastic_limits import rates
 
-SECTION = "Rubber in transient sliding"
-_theorem = partial(Proof, equation=None, section=SECTION)
+le_t = function("x_LE", negative=True)
+te_t = function("x_TE", real=True)
+K_i = symbol("K_i", "stiffness of an arm per unit area", "N/m³", source="")
+tau_i = symbol("tau_i", "relaxation time of an arm", "s", source="")
+I_n = (
+    symbol("I_0", "length of the contact", "m", real=True),
+    symbol("I_1", "integral of $x$ over the contact", "m²", real=True),
+    symbol("I_2", "integral of $x^2$ over the contact", "m³", real=True),
+)
+Y_t = function("Y", "distance slid", "m", printed=r"X_{\mathrm{s}}", real=True)(t)
+v_t = function("v", "sliding velocity", "m/s", printed=r"V_{\mathrm{s}}", source="", real=True)(t)
+xi = symbol(
+    "xi",
+    r"element of the foundation, $x - X_{\mathrm{s}}$",
+    "m",
+    latex=r"\xi",
+    printed=r"\tilde \xi",
+    real=True,
+)
+t_1 = symbol("t_1", "present time", "s", real=True)
+t_in = symbol(
+    "t_in", "time at which an element entered the contact", "s", latex=r"t_{\mathrm{in}}", real=True
+)
+alpha_i = function("alpha_i", "what an arm has accumulated of the depth", "m", real=True)
+beta_i = function("beta_i", "what it has accumulated of the distance slid", "m", real=True)
+E_i = symbol("E_i", "share of a stress at entry that an arm still has")
+stress_i = function("s_i", "stress of an arm in an element", "Pa", real=True)
+S_i = function("S_i", "integral of this stress over the contact", "N/m", real=True)(t)
+T_i = function("T_i", "its first moment", "N", real=True)(t)
+glassy = symbol("K_g", "glassy stiffness", "N/m³", latex=r"K_{\mathrm{g}}")
+fading_rate = symbol("rho_r", "rate of the free surface", "1/s", latex=r"\tilde \varrho", real=True)
+
+result = Chapter("Rubber in transient sliding")
 
 RATE = delta_t.diff(t) - v_t * (xi + Y_t) / R
 """Of the compression of an element in contact."""
@@ -63,19 +69,20 @@ MOMENTS = {
 """How the moments of the stress of an arm over the contact change."""
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive the equations of an arm, its trailing edge, and the free surface behind the contact."""
-    return _stress(), _moments(), _edge(), _surface()
-
-
 def _slide(proof: Proof) -> None:
     proof.notation |= {r"x_{\mathrm{LE}}": le_t(t), r"x_{\mathrm{TE}}": te_t(t), "s_i": stress_i}
     proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element",
                  left=r"\dot{Y}", right="v")  # fmt: skip
 
 
-def _stress() -> Derivation:
-    proof = _theorem("F23-stress", title="Rubber: stress of an element", text=_STRESS)
+@result("F23-stress")
+def _stress(proof: Proof) -> None:
+    r"""Rubber: stress of an element.
+
+    Two accumulators for each arm hold what all its elements remember: at the time $t_1$ an element that
+    entered at $t_{\mathrm{in}}$ has the pressure $p = K u + \sum s_i$, which is 0 at entry. An element that
+    was in contact at the start, in equilibrium, has $t_{\mathrm{in}} = 0$ and $\alpha_i = \beta_i = 0$ there.
+    """
     _slide(proof)
     compression = delta_t - (xi + Y_t) ** 2 / (2 * R)
     proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact",
@@ -92,7 +99,6 @@ def _stress() -> Derivation:
     proof.integral(whole, fades * RATE, over, primitive, "stress $s_i$ of the arm", value=STRESS,
                    left=r"\int_{t_{\mathrm{in}}}^{t_1} K_i e^{-(t_1 - t)/\tau_i} "
                    rf"\left({_STRAINED}\right) \, dt", right=_SHOWN)  # fmt: skip
-    return proof.done(whole, STRESS)
 
 
 _STRAINED = r"\dot{\delta} - \frac{(\xi + Y) v}{R}"
@@ -100,17 +106,15 @@ _SHOWN = (
     r"K_i \left[\alpha_i(t_1) - E_i \alpha_i(t_{\mathrm{in}}) - \frac{\xi}{R} \left(\beta_i(t_1) "
     r"- E_i \beta_i(t_{\mathrm{in}})\right)\right]"
 )
-_STRESS = (
-    "Two accumulators for each arm hold what all its elements remember: at the time $t_1$ an element "
-    r"that entered at $t_{\mathrm{in}}$ has the pressure $p = K u + \sum s_i$, which is 0 at entry. An "
-    r"element that was in contact at the start, in equilibrium, has $t_{\mathrm{in}} = 0$ and $\alpha_i = "
-    r"\beta_i = 0$ there."
-)
 
 
-def _moments() -> Derivation:
-    proof = _theorem("F23", title="Rubber: forces of an arm in a transient", text=_FORCES,
-                     uses=("F23-stress",))  # fmt: skip
+@result("F23", uses=("F23-stress",))
+def _moments(proof: Proof) -> None:
+    r"""Rubber: forces of an arm in a transient.
+
+    The forces are $F_z = K \int u\, \mathrm{d}x + \sum S_i$ and $F_x = -\frac{1}{R} [K \int x u\, \mathrm{d}x
+    + \sum T_i]$: four equations for each arm replace all elements in contact.
+    """
     _slide(proof)
     stress, over = stress_i(xi, t), (xi, le_t(t) - Y_t, te_t(t) - Y_t)
     ends = r"\int_{x_{\mathrm{LE}} - Y}^{x_{\mathrm{TE}} - Y}"
@@ -135,7 +139,7 @@ def _moments() -> Derivation:
         value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
         proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "evaluated",
                        value=value, right=_POWERS[n])  # fmt: skip
-    return proof.done(T_i.diff(t), MOMENTS[T_i])
+    proof.done(T_i.diff(t), MOMENTS[T_i])
 
 
 _LEAVES = r"s_i(x_{\mathrm{TE}} - Y, t) \left(\dot{x}_{\mathrm{TE}} - v\right)"
@@ -143,15 +147,17 @@ _POWERS = (
     r"x_{\mathrm{TE}} - x_{\mathrm{LE}}",
     *(rf"\frac{{x_{{\mathrm{{TE}}}}^{n} - x_{{\mathrm{{LE}}}}^{n}}}{{{n}}}" for n in (2, 3)),
 )
-_FORCES = (
-    r"The forces are $F_z = K \int u\, \mathrm{d}x + \sum S_i$ and $F_x = -\frac{1}{R} [K \int x u\, "
-    r"\mathrm{d}x + \sum T_i]$: four equations for each arm replace all elements in contact."
-)
 
 
-def _edge() -> Derivation:
-    proof = _theorem("F23-edge", title="Rubber: the trailing edge in a transient", text=_EDGE,
-                     uses=("F23-stress",))  # fmt: skip
+@result("F23-edge", uses=("F23-stress",))
+def _edge(proof: Proof) -> None:
+    r"""Rubber: the trailing edge in a transient.
+
+    The pressure vanishes at the trailing edge, in the element $\xi = x_{\mathrm{TE}} - Y$ that entered when
+    $\xi = x_{\mathrm{LE}}(t_{\mathrm{in}}) - Y(t_{\mathrm{in}})$: a delay that depends on the state. The
+    slope of $s_i$ over the elements has the term $E_i x_{\mathrm{LE}}$ only where they have entered, not
+    where they were in contact from the start: $\dot x_{\mathrm{TE}}$ jumps when $t_{\mathrm{in}}$ leaves 0.
+    """
     entered = {t: t_in}
     slide = Y_t.subs(entered)
     for name, law in ((Y_t.func, v_t), *ACCUMULATE.items()):
@@ -167,16 +173,6 @@ def _edge() -> Derivation:
                 left=r"\frac{d s_i}{d t_{\mathrm{in}}}",
                 right=r"-\frac{K_i}{R} \left[\beta_i(t_1) - E_i \beta_i(t_{\mathrm{in}}) + E_i "
                 r"x_{\mathrm{LE}}(t_{\mathrm{in}})\right] \frac{d \xi}{d t_{\mathrm{in}}}")  # fmt: skip
-    return proof.done(sp.Derivative(STRESS, t_in), slope)
-
-
-_EDGE = (
-    r"The pressure vanishes at the trailing edge, in the element $\xi = x_{\mathrm{TE}} - Y$ that entered "
-    r"when $\xi = x_{\mathrm{LE}}(t_{\mathrm{in}}) - Y(t_{\mathrm{in}})$: a delay that depends on the "
-    r"state. The slope of $s_i$ over the elements has the term $E_i x_{\mathrm{LE}}$ only where they have "
-    r"entered, not where they were in contact from the start: $\dot x_{\mathrm{TE}}$ jumps when "
-    r"$t_{\mathrm{in}}$ leaves 0."
-)
 
 
 class Determinant(Computed):
@@ -194,8 +190,15 @@ class Determinant(Computed):
         return rf"\det {printer._print(self.args[0])}"
 
 
-def _surface() -> Derivation:
-    proof = _theorem("F23-surface", title="Rubber: the free surface", text=_FREE)
+@result("F23-surface")
+def _surface(proof: Proof) -> None:
+    r"""Rubber: the free surface.
+
+    Behind the contact $K u + \sum s_i = 0$ and $\dot s_i = K_i \dot u - s_i/\tau_i$: a linear system, with
+    $\dot u = \sum (s_i/\tau_i)/K_{\mathrm{g}}$. Here it has two arms. Its rates are real and negative: the
+    free surface relaxes with as many times as there are arms, each longer than that of its arm. An element is
+    met again where the indenter reaches its compression, and continues from its stresses.
+    """
     rho, (r_1, r_2) = fading_rate, rates
     proof.where(r_2 > r_1, r"rates $1/\tau_i$ of the arms")
     proof.define(glassy, K + spring_1 + spring_2, "the glassy stiffness")
@@ -212,13 +215,4 @@ def _surface() -> Derivation:
     for place, sign, where in ((0, ">", "at 0"), (r_1, "<", "at the slower rate"),
                                (r_2, ">", "at the faster one: two roots in between")):  # fmt: skip
         proof.holds(form.subs(rho, place), sign, 0, where)
-    return proof.done(law, form)
-
-
-_FREE = (
-    r"Behind the contact $K u + \sum s_i = 0$ and $\dot s_i = K_i \dot u - s_i/\tau_i$: a linear system, "
-    r"with $\dot u = \sum (s_i/\tau_i)/K_{\mathrm{g}}$. Here it has two arms. Its rates are real and "
-    "negative: the free surface relaxes with as many times as there are arms, each longer than that of "
-    "its arm. An element is met again where the indenter reaches its compression, and continues from its "
-    "stresses."
-)
+    proof.done(law, form)

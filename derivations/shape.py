@@ -10,32 +10,19 @@ from collections.abc import Iterator
 import sympy as sp
 
 from .book import forget, tex
-from .nomenclature import Symbol
+from .model import C, K, V, delta, h, x
+from .nomenclature import Symbol, symbol
 from .record import Derivation
-from .shape_text import Shape, read_shape
+from .shape_text import Shape, distance, read_shape
+from .steady import F, W, a, l_r, mu, p, q
 from .step import Proof, StepError
-from .symbols import (
-    C,
-    F,
-    F_ahead,
-    F_behind,
-    K,
-    V,
-    W,
-    W_ahead,
-    W_behind,
-    a,
-    delta,
-    distance,
-    h,
-    l_r,
-    mu,
-    p,
-    q,
-    q_root,
-    tau,
-    x,
-)  # fmt: skip
+
+W_ahead, W_behind, F_ahead = (
+    symbol(f"{force}_{side}", latex=rf"{force}_{{\mathrm{{{side[0]}}}}}")
+    for force, side in (("W", "ahead"), ("W", "behind"), ("F", "ahead"))
+)
+F_behind = symbol("F_behind", latex=r"F_{\mathrm{b}}", real=True)
+q_root = symbol("q_root", latex=r"\hat q")
 
 PREMISES = ("eq22", "eq29")
 
@@ -155,8 +142,8 @@ class _Chapter:
     def _pressure(self) -> Derivation:
         form = K * (delta - self.rise - l_r * self.slope)
         proof = self._proof("pressure", "Pressure behind the lowest line")
-        proof.recall("eq22", tau, C / K)
-        proof.recall("eq29", l_r, V * tau)
+        proof.recall("eq22")
+        proof.recall("eq29")
         whole = K * (delta - self.rise) - C * V * self.slope
         proof.define(p, whole, r"$K u + C \dot u$ with $u = \delta - h$ and $\dot u = -V h'$",)  # fmt: skip
         proof.equal(p, form, r"$C V = K l_{\mathrm{r}}$; ahead of it $h'$ has the other sign")
@@ -168,7 +155,7 @@ class _Chapter:
         closed = None if len(self.shape.powers) > 1 else _edge(self.shape)
         text = _trailing_text(closed is not None, self.blunt)
         proof = self._proof("trailing", "Trailing edge", text)
-        proof.recall("shape-pressure", p, K * (delta - self.rise - l_r * self.slope))
+        proof.recall("shape-pressure", p)
         proof.define(delta, depth, "the leading edge")
         fall = -K * (self.slope + l_r * sp.diff(self.slope, distance))
         proof.equal(sp.Derivative(p, distance), fall, _FALLS)
@@ -189,7 +176,7 @@ class _Chapter:
     def _state(self, proof: Proof) -> None:
         """Let depth and retardation length be expressions in a and q."""
         proof.define(delta, self._at(self.rise, a), "the leading edge")
-        proof.recall("shape-trailing", l_r, self._number())
+        proof.recall("shape-trailing", l_r)
 
     def _force(
         self, force: sp.Symbol, ahead: sp.Symbol, behind: sp.Symbol, label: str
@@ -222,10 +209,9 @@ class _Chapter:
         return proof.done(mu, result)
 
     def _recall_forces(self, proof: Proof) -> None:
-        from .book import established
 
         for label, force in (("load", W), ("friction", F)):
-            proof.recall(f"shape-{label}", force, established(f"shape-{label}", force))
+            proof.recall(f"shape-{label}", force)
 
     def _limits(self) -> Iterator[Derivation]:
         area = self._at(_integral(self.rise), a)
@@ -250,7 +236,7 @@ class _Chapter:
     ) -> Derivation:
         proof = self._proof(label, title, text)
         self._recall_forces(proof)
-        proof.recall("shape-trailing", l_r, self._number())
+        proof.recall("shape-trailing", l_r)
         proof.define(mu, F / W, "Eq. (37)")
         ratio = sp.factor(sp.simplify(forces[1] / forces[0]))
         for force, leading in ((W, forces[0]), (F, forces[1]), (mu, ratio)):

@@ -17,7 +17,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from .symbols import distance
+from .nomenclature import symbol
+
+distance = symbol("x_abs", latex=r"\bar x")
+"""Distance from the lowest line of the indenter."""
 
 LONGEST, MOST_TERMS, HIGHEST = 200, 6, 12
 """Characters of a shape, terms of its sum, and its highest power."""
@@ -59,7 +62,7 @@ class Shape:
 
     text: str
     rise: sp.Expr
-    """The height over `symbols.distance`, which is positive."""
+    """The height over `distance`, which is positive."""
     parameters: tuple[sp.Symbol, ...]
     powers: tuple[sp.Rational, ...]
 

@@ -1,54 +1,43 @@
 """A drive with a spring: the motion along the foundation, and its small motions in steady sliding (F22)."""
 
-from functools import partial
-
 import sympy as sp
 
 from .book import established
-from .record import Derivation
+from .chapter import Chapter
+from .model import F_x, V, t, tau
+from .nomenclature import function, letter, symbol
+from .power_law_weight import a_0
 from .step import Proof
-from .symbols import (
-    W_0,
-    C_x,
-    F_x,
-    M_x,
-    V,
-    a,
-    a_0,
-    along,
-    along_0,
-    along_s,
-    along_ss,
-    change,
-    d,
-    d_s,
-    damper,
-    delta_0,
-    eps,
-    eps_x,
-    f_friction,
-    f_normal,
-    k_x,
-    kappa,
-    kappa_x,
-    lam,
-    lam_0,
-    per_depth,
-    per_rate,
-    right,
-    sigma,
-    small,
-    swing,
-    t,
-    tau,
-    time,
-    x_a,
-)  # fmt: skip
-from .transient_motion import JACOBIAN, START
-from .transient_rates import QUADRATIC
+from .tables import delta_0
+from .theorems import kappa, lam
+from .transient_edges import right
+from .transient_memory import time
+from .transient_motion import JACOBIAN, START, a, f_friction
+from .transient_rates import QUADRATIC, change, per_depth, per_rate, sigma
+from .transient_scaling import W_0, d, d_s, eps, f_normal
+
+M_x = symbol("M_x", "mass per unit width that moves along the foundation", "kg/m", source="")
+k_x = symbol("k_x", "stiffness of the spring in the drive per unit width", "N/m²", source="")
+C_x = symbol(
+    "C_x", "damping of the damper beside it per unit width", "N s/m²", source="", nonnegative=True
+)
+letter(r"x_{\mathrm{A}}", "how far the indenter has been dragged along the foundation", "m")
+eps_x = symbol("epsilon_x", "inertia number along the foundation", latex=r"\varepsilon_x")
+damper = symbol("c_x", "damper number", nonnegative=True)
+kappa_x = symbol("kappa_x", "spring number", latex=r"\kappa_x")
+lam_0 = symbol("lambda_0", "drive number of the drive itself", real=True)
+along = symbol("x_d", r"$x_{\mathrm{A}}/a_0$", latex=r"\check x", real=True)
+along_s = symbol("x_ds", latex=r"\check x'", real=True)
+along_ss = symbol("x_dss", latex=r"\check x''", real=True)
+along_0 = symbol("x_d0", r"$\check x$ in steady sliding", latex=r"\check x_0", real=True)
+swing = symbol("x_d1", "amplitude of its change", latex=r"\check x_1", real=True)
+small = symbol(
+    "theta_d", "small number that multiplies both amplitudes", latex=r"\check \theta", real=True
+)
+x_a = function("x_A", real=True)(t)
 
 SECTION = "A drive with a spring"
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 _unit = W_0 * delta_0 / a_0
 """Of the friction force and of all forces along the foundation."""
@@ -58,14 +47,14 @@ COUPLING = sp.Rational(9, 4) * lam**2 * right * sigma * (right + a + right * sig
 QUARTIC = QUADRATIC * LONGITUDINAL - COUPLING
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive the equation of motion along the foundation and the quartic of the rates."""
-    return _scaled(), _forces(), _quartic(), _energy()
+@result("F22-scaled", uses=("scaled-pressure", "eq15"))
+def _scaled(proof: Proof) -> None:
+    r"""Motion along the foundation.
 
-
-def _scaled() -> Derivation:
-    proof = _theorem("F22-scaled", title="Motion along the foundation", text=_SCALED,
-                     uses=("scaled-pressure", "eq15"))  # fmt: skip
+    The indenter, of mass $M_x$ as far as it moves along the foundation, hangs on a spring of stiffness $k_x$
+    and a damper $C_x$; $x_{\mathrm{A}}$ is how far it has been dragged. Two numbers more, and one for the
+    damper, in units of $a_0$, $\tau$ and $W_0 \delta_0/a_0$. For $\kappa_x \to \infty$ the drive is rigid.
+    """
     proof.define(
         along_s, tau * x_a.diff(t) / a_0, left=r"\check x'", right=r"\tau \dot{x}_{\mathrm{A}}/a_0"
     )
@@ -87,20 +76,15 @@ def _scaled() -> Derivation:
     proof.equal(
         eps_x * along_ss, result, "scaled motion", right=r"f_x - c_x \check x' - \kappa_x \check x"
     )
-    return proof.done(eps_x * along_ss, result)
 
 
-_SCALED = (
-    "The indenter, of mass $M_x$ as far as it moves along the foundation, hangs on a spring of stiffness "
-    r"$k_x$ and a damper $C_x$; $x_{\mathrm{A}}$ is how far it has been dragged. Two numbers more, and one "
-    r"for the damper, in units of $a_0$, $\tau$ and $W_0 \delta_0/a_0$. For $\kappa_x \to \infty$ the "
-    "drive is rigid."
-)
+@result("F22-forces", uses=("F11-start",))
+def _forces(proof: Proof) -> None:
+    """Stiffness and damping, along and across.
 
-
-def _forces() -> Derivation:
-    proof = _theorem("F22-forces", title="Stiffness and damping, along and across", text=_SIX,
-                     uses=("F11-start",))  # fmt: skip
+    How both forces depend on the depth, on its rate and on the velocity at which the foundation slides, after
+    a start from rest.
+    """
     proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
     proof.define(right, START[right], "peels")
     proof.define(a, sp.sqrt(d))
@@ -129,22 +113,22 @@ def _forces() -> Derivation:
         proof.equal(slope, here, "in steady sliding, $d' = 0$",
                     left=rf"\left. {_partial(name, latex)} \right|_{{d' = 0}}",
                     right=rf"\left. {sp.latex(value)} \right|_{{d' = 0}}")  # fmt: skip
-    return proof.done(slopes["f_z"], sp.Derivative(forces["f_x"], d_s))
-
-
-_SIX = (
-    "How both forces depend on the depth, on its rate and on the velocity at which the foundation slides, "
-    "after a start from rest."
-)
+    proof.done(slopes["f_z"], sp.Derivative(forces["f_x"], d_s))
 
 
 def _partial(force: str, variable: str) -> str:
     return rf"\frac{{\partial {force}}}{{\partial {variable}}}"
 
 
-def _quartic() -> Derivation:
-    proof = _theorem("F22", title="Rates with a spring in the drive", text=_RATES,
-                     uses=("scaled-form", "F22-scaled", "F11-start", "F12-linear"))  # fmt: skip
+@result("F22", uses=("scaled-form", "F22-scaled", "F11-start", "F12-linear"))
+def _quartic(proof: Proof) -> None:
+    r"""Rates with a spring in the drive.
+
+    Both motions near steady sliding: the depth is $D = a^2 + \check \theta \hat d e^{\sigma s}$, and the
+    indenter is at $\check x = \check x_0 + \check \theta \check x_1 e^{\sigma s}$, so that the foundation
+    slides at $\lambda - \check x'$. To first order both equations of motion hold if $\sigma$ is a root of the
+    quartic.
+    """
     place = a**2 + small * change * sp.exp(sigma * time)
     dragged = along_0 + small * swing * sp.exp(sigma * time)
     rate, slides = place.diff(time), lam - dragged.diff(time)
@@ -187,23 +171,21 @@ def _quartic() -> Derivation:
         + r" - \left(\frac{3}{2} \lambda r \sigma\right) \left(\frac{3}{2} \lambda (r + a + r \sigma)\right)",
         right=both + r" - \frac{9}{4} \lambda^2 r \sigma (r + a + r \sigma)",
     )  # fmt: skip
-    return proof.done(determinant, QUARTIC)
 
 
 _ACROSS = r"\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa"
 _ALONG = r"\varepsilon_x \sigma^2 + (r^3 + a^3 + c_x) \sigma + \kappa_x"
 _FIRST = r"the terms of first order in $\check \theta$"
-_RATES = (
-    r"Both motions near steady sliding: the depth is $D = a^2 + \check \theta \hat d e^{\sigma s}$, and "
-    r"the indenter is at $\check x = \check x_0 + \check \theta \check x_1 e^{\sigma s}$, so that the "
-    r"foundation slides at $\lambda - \check x'$. To first order both equations of motion hold if $\sigma$ "
-    "is a root of the quartic."
-)
 
 
-def _energy() -> Derivation:
-    proof = _theorem("F22-energy", title="Balance of energy with the spring", text=_SPENT,
-                     uses=("F22-scaled", "F14-energy"))  # fmt: skip
+@result("F22-energy", uses=("F22-scaled", "F14-energy"))
+def _energy(proof: Proof) -> None:
+    """Balance of energy with the spring.
+
+    What the drive gives, in dimensional form $F_x V$, becomes energy of the motion along the foundation and
+    of the spring, or is lost in its damper; the rest goes to the foundation and the motion across, as with a
+    rigid drive.
+    """
     place = sp.Function(str(along), real=True)(time)
     moves = sp.Derivative(place, time)
     held = f_friction - damper * moves - kappa_x * place
@@ -219,11 +201,3 @@ def _energy() -> Derivation:
         right=r"\lambda f_x + \frac{d}{ds} \left[\frac{\varepsilon_x \check x'^2}{2} + "
         r"\frac{\kappa_x \check x^2}{2}\right] + c_x \check x'^2",
     )  # fmt: skip
-    return proof.done(lam_0 * f_friction, spent)
-
-
-_SPENT = (
-    "What the drive gives, in dimensional form $F_x V$, becomes energy of the motion along the foundation "
-    "and of the spring, or is lost in its damper; the rest goes to the foundation and the motion across, "
-    "as with a rigid drive."
-)

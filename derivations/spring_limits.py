@@ -1,68 +1,69 @@
 """When steady sliding on a spring is stable at once: limits, and what friction does (F22)."""
 
 from collections.abc import Mapping
-from functools import partial
 
 import sympy as sp
 
 from . import tables
+from .chapter import Chapter
 from .master_curve import state_at
-from .record import Derivation, Table
-from .spring_drive import LONGITUDINAL, QUARTIC, SECTION
-from .spring_stability import DEAD_WEIGHT_RISE, HURWITZ, PEELED, RISE, SQUARE, lay_down
-from .step import Proof, tex
-from .symbols import (
+from .model import K, M, R, V, g, tau
+from .nomenclature import letter, symbol
+from .record import Table
+from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x
+from .spring_stability import (
+    DEAD_WEIGHT_RISE,
+    HURWITZ,
+    PEELED,
+    RISE,
+    SQUARE,
     B_x,
     B_z,
-    K,
-    M,
     Omega_minus,
-    R,
     S_c,
     S_x,
     S_z,
-    T_flutter,
     T_x,
     T_z,
-    V,
-    a,
     bias,
     coupling,
-    damper,
     damper_share,
-    g,
     hurwitz,
-    kappa,
-    kappa_x,
-    lag_minus,
-    lam,
+    lay_down,
     onset_sum,
     own_rise,
-    per_depth,
-    q,
-    right,
     rise,
-    sinks,
     spread,
     support_rate,
-    tau,
     uncoupled,
 )
-from .theorems import LOAD, UNIT
-from .transient_rates import QUADRATIC, steady_sliding
+from .steady import q
+from .step import Proof, tex
+from .theorems import LOAD, UNIT, kappa, lam
+from .transient_edges import right
+from .transient_motion import a
+from .transient_rates import QUADRATIC, per_depth, steady_sliding
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+letter("P", "the quartic of the rates")
+lag_minus = symbol("p_m", r"$\varrho_z - \vartheta_z \Omega_{-}$", latex=r"\check p_{-}")
+T_flutter = symbol(
+    "T_f", r"$\vartheta_z$ from which on there is flutter", latex=r"\vartheta_{\mathrm{f}}"
+)
+sinks = symbol(
+    "d_l", "change of the scaled depth with the drive number", latex=r"d_\lambda", real=True
+)
+
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove what follows for rising and for falling friction, and in the limits."""
-    return _flutter(), _soft(), _limits(), _standard()
+@result("F22-flutter", uses=("F22-critical",))
+def _flutter(proof: Proof) -> None:
+    r"""Flutter where friction rises.
 
-
-def _flutter() -> Derivation:
-    proof = _theorem(
-        "F22-flutter", title="Flutter where friction rises", text=_FLUTTER, uses=("F22-critical",)
-    )
+    Friction that rises with the velocity is stable for every stiffness up to the inertia
+    $\vartheta_{\mathrm{f}}$. With more, both motions, each damped, drive each other where their frequencies
+    are close: steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and $\Omega_{+}$.
+    """
     proof.where(sp.Gt(rise, 0), "friction rises")
     proof.where(sp.Gt(S_z - rise, 0), "in motion")
     proof.define(coupling, (S_z - rise) / S_c, "F22-numbers")
@@ -90,21 +91,17 @@ def _flutter() -> Derivation:
     proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
     proof.define(lag_minus, S_z - T_z * Omega_minus)
     proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z), "likewise")
-    return proof.done(SQUARE, form)
+    proof.done(SQUARE, form)
 
 
-_FLUTTER = (
-    "Friction that rises with the velocity is stable for every stiffness up to the inertia "
-    r"$\vartheta_{\mathrm{f}}$. With more, both motions, each damped, drive each other where their "
-    r"frequencies are close: steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and "
-    r"$\Omega_{+}$."
-)
+@result("F22-soft", uses=("F22-routh", "F22-forces", "F3"))
+def _soft(proof: Proof) -> None:
+    r"""A soft spring.
 
-
-def _soft() -> Derivation:
-    proof = _theorem(
-        "F22-soft", title="A soft spring", text=_SOFT, uses=("F22-routh", "F22-forces", "F3")
-    )
+    $\check H$ has the sign of $\check e$ where $\varrho_x \to 0$, and that is the sign of what friction and
+    damper gain with the velocity: a soft spring needs friction that rises. $f_x$ changes directly, and with
+    the depth, by $d_\lambda$.
+    """
     steady_sliding(proof)
     proof.define(right, a * q)
     half = sp.Rational(3, 2)
@@ -126,20 +123,17 @@ def _soft() -> Derivation:
     proof.define(damper, sp.S.Zero, "no damper")
     proof.equal(rise, DEAD_WEIGHT_RISE, "rational")
     proof.root(DEAD_WEIGHT_RISE, q, 2 - sp.sqrt(3), "the friction maximum of F3", over=(q, 0, 1))
-    return proof.done(rise, DEAD_WEIGHT_RISE)
+    proof.done(rise, DEAD_WEIGHT_RISE)
 
 
-_SOFT = (
-    r"$\check H$ has the sign of $\check e$ where $\varrho_x \to 0$, and that is the sign of what friction "
-    "and damper gain with the velocity: a soft spring needs friction that rises. $f_x$ changes directly, "
-    r"and with the depth, by $d_\lambda$."
-)
+@result("F22-limits", uses=("F22", "F12", "F22-routh"), notation={"P": QUARTIC})
+def _limits(proof: Proof) -> None:
+    r"""Rigid drive, fixed indenter, no inertia.
 
-
-def _limits() -> Derivation:
-    proof = _theorem("F22-limits", title="Rigid drive, fixed indenter, no inertia", text=_LIMITS,
-                     uses=("F22", "F12", "F22-routh"),
-                     notation={"P": QUARTIC})  # fmt: skip
+    The quartic $P$ of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia across
+    the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where friction
+    falls, and none where it rises.
+    """
     for stiffness, other, reason in (
         (kappa_x, QUADRATIC, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
         (
@@ -156,23 +150,20 @@ def _limits() -> Derivation:
     proof.equal(sp.Subs(hurwitz, T_z, 0), light, "a light indenter, across")
     proof.where(sp.Lt(rise, 0), "friction falls")
     proof.root(light, S_x, -rise * (uncoupled + S_z * T_x) / uncoupled, "its critical stiffness")
-    return proof.done(sp.Subs(hurwitz, T_z, 0), light)
-
-
-_LIMITS = (
-    "The quartic $P$ of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia "
-    r"across the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where "
-    "friction falls, and none where it rises."
-)
+    proof.done(sp.Subs(hurwitz, T_z, 0), light)
 
 
 VELOCITIES = (20, 39, 91, 214)
 """In mm/s."""
 
 
-def _standard() -> Derivation:
-    proof = _theorem("F22-table1", title="Critical stiffness under standard conditions", text=_TABLE,
-                     uses=("F22-critical", "F22-falling", "F22-soft", "table1"))  # fmt: skip
+@result("F22-table1", uses=("F22-critical", "F22-falling", "F22-soft", "table1"))
+def _standard(proof: Proof) -> None:
+    """Critical stiffness under standard conditions.
+
+    For the dead weight, with $M_x = M$ and no damper. At 20 mm/s friction rises, and steady sliding is stable
+    for every stiffness.
+    """
     rows = []
     for speed in VELOCITIES:
         at = {**tables.STANDARD, V: sp.Rational(speed, 1000)}
@@ -181,7 +172,7 @@ def _standard() -> Derivation:
         proof.unique_root(quartic, UNIT, f"F2 with the numbers of Table 1 at {speed} mm/s")
         rows.append((str(speed), *_onset_at(sp.N(state, 40), at)))
     heads = ("$V$ [mm/s]", "$q$", r"$\check e$", "Critical stiffness [MN/m²]", "Frequency [Hz]")
-    return proof.done(quartic, 0, table=Table(heads, tuple(rows)))
+    proof.done(quartic, 0, table=Table(heads, tuple(rows)))
 
 
 def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
@@ -209,9 +200,3 @@ def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
     stiffness = ((T_z + T_x) * square - rise).subs(known) * damping / along
     hertz = sp.sqrt(square) / (2 * sp.pi * at[tau])
     return *shown, *(f"{float(sp.N(each, 30)):.4g}" for each in (stiffness / 10**6, hertz))
-
-
-_TABLE = (
-    r"For the dead weight, with $M_x = M$ and no damper. At 20 mm/s friction rises, and steady sliding is "
-    "stable for every stiffness."
-)

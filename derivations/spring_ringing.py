@@ -1,34 +1,25 @@
 """How the dampers of a contact resist a motion along it: the ringing of a stiff spring fades (F22)."""
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
-from .spring_drive import SECTION
+from .chapter import Chapter
+from .nomenclature import letter, symbol
+from .spring_drive import SECTION, along, damper, eps_x, kappa_x
 from .step import Proof
-from .symbols import (
-    along,
-    d_s,
-    damper,
-    eps,
-    eps_x,
-    kappa_x,
-    lam,
-    left,
-    length,
-    middle,
-    power,
-    right,
-    sinks_faster,
-    slides_more,
-    time,
-    xi,
-)
+from .theorems import lam
+from .transient_edges import left, right
+from .transient_memory import time
 from .transient_motion import CONTACT
-from .transient_scaling import PRESSURE
+from .transient_scaling import PRESSURE, d_s, eps, xi
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+slides_more = symbol("v_x", r"change of $\lambda$", latex=r"\check v_x", real=True)
+sinks_faster = symbol("v_z", "change of $d'$", latex=r"\check v_z", real=True)
+letter(r"\check d", "change of $d$ while the spring rings")
+length = symbol("l_c", "length of the contact", latex=r"\check l")
+middle = symbol("c_m", "its middle", latex=r"\check \xi", real=True)
+power = symbol("Pi_c", "power that both changes cost in the dampers", latex=r"\check \Pi")
+
+result = Chapter(SECTION)
 
 RESISTANCE = length**3 / 4
 """Of the contact to a motion along it, at least."""
@@ -39,14 +30,14 @@ _RUBBED = RESISTANCE * slides_more - 2 * middle * _PUSHED
 """By how much both forces change."""
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove how much the dampers take at least, and that a ringing fades at least so fast."""
-    return _dampers(), _ringing()
+@result("F22-dampers", uses=("scaled-pressure", "F11"))
+def _dampers(proof: Proof) -> None:
+    r"""The dampers of a contact resist.
 
-
-def _dampers() -> Derivation:
-    proof = _theorem("F22-dampers", title="The dampers of a contact resist", text=_RESIST,
-                     uses=("scaled-pressure", "F11"))  # fmt: skip
+    If the foundation slides faster by $\check v_x$ and the indenter sinks faster by $\check v_z$, the dampers
+    between the edges $\ell < r$ take the power $\check \Pi$. However the depth follows, it is no less than
+    $\check l^3 \check v_x^2/4$.
+    """
     proof.where(sp.Gt(right - left, 0), "there is a contact")
     proof.define(length, right - left)
     proof.define(middle, (left + right) / 2)
@@ -68,19 +59,17 @@ def _dampers() -> Derivation:
         whole = sp.Integral(force, CONTACT)
         proof.integral(whole, force, CONTACT, sp.integrate(force, xi), reason, value=value)
     proof.holds(power, ">=", RESISTANCE * slides_more**2, "and that is least")
-    return proof.done(whole, RESISTANCE)
+    proof.done(whole, RESISTANCE)
 
 
-_RESIST = (
-    r"If the foundation slides faster by $\check v_x$ and the indenter sinks faster by $\check v_z$, the "
-    r"dampers between the edges $\ell < r$ take the power $\check \Pi$. However the depth follows, it is no "
-    r"less than $\check l^3 \check v_x^2/4$."
-)
+@result("F22-ringing", uses=("F22-scaled", "F22-dampers"))
+def _ringing(proof: Proof) -> None:
+    r"""A stiff spring rings off.
 
-
-def _ringing() -> Derivation:
-    proof = _theorem("F22-ringing", title="A stiff spring rings off", text=_RINGS,
-                     uses=("F22-scaled", "F22-dampers"))  # fmt: skip
+    A ringing that is fast beside the retardation time, while the edges stay: $\check x$ along the foundation,
+    $\check d$ normal to it, $\check v_x = -\check x'$ and $\check v_z = \check d'$. Its energy falls at least
+    as that of an oscillator with the damper $\check l^3/4 + c_x$, however the depth follows.
+    """
     place, deeper = sp.Function(str(along), real=True)(time), sp.Function("d_r", real=True)(time)
     moves, sinks = sp.Derivative(place, time), sp.Derivative(deeper, time)
     proof.notation |= {r"\check x": place, r"\check d": deeper}
@@ -105,12 +94,3 @@ def _ringing() -> Derivation:
         right=r"-\left(\frac{\check l^3}{4} + c_x\right) \check x'^2 - \frac{3 \check l}{4} "
         r"\left(\check d' + 2 \check \xi \check x'\right)^2",
     )  # fmt: skip
-    return proof.done(sp.Derivative(stored, time), fades)
-
-
-_RINGS = (
-    r"A ringing that is fast beside the retardation time, while the edges stay: $\check x$ along the "
-    r"foundation, $\check d$ normal to it, $\check v_x = -\check x'$ and $\check v_z = \check d'$. Its "
-    r"energy falls at least as that of an oscillator with the damper $\check l^3/4 + c_x$, however the depth "
-    r"follows."
-)

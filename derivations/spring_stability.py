@@ -1,49 +1,61 @@
 """Where steady sliding with a spring in the drive is stable (F22): the critical stiffness in closed form."""
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
-from .spring_drive import COUPLING, LONGITUDINAL, SECTION
+from .chapter import Chapter
+from .nomenclature import symbol
+from .spring_drive import COUPLING, LONGITUDINAL, SECTION, damper, eps_x, kappa_x
+from .steady import l, q
 from .step import Proof
-from .symbols import (
-    B_x,
-    B_z,
-    Omega,
-    Omega_minus,
-    Omega_plus,
-    S_c,
-    S_x,
-    S_z,
-    T_x,
-    T_z,
-    a,
-    bias,
-    constant,
-    coupling,
-    damper,
-    damper_share,
-    eps,
-    eps_x,
-    hurwitz,
-    kappa,
-    kappa_x,
-    l,
-    lag_plus,
-    linear,
-    onset_square,
-    onset_sum,
-    own_rise,
-    q,
-    right,
-    rise,
-    sigma,
-    spread,
-    support_rate,
-    uncoupled,
-)  # fmt: skip
-from .transient_rates import QUADRATIC, steady_sliding
+from .theorems import kappa
+from .transient_edges import right
+from .transient_motion import a
+from .transient_rates import QUADRATIC, sigma, steady_sliding
+from .transient_scaling import eps
+
+B_z = symbol("B_z", "damping of the contact across the foundation, scaled")
+B_x = symbol("B_x", "damping of the contact along the foundation, scaled")
+damper_share = symbol("n_x", "damper over the damping of the contact", nonnegative=True)
+T_z = symbol("T_z", r"time of inertia across, over $\tau$", latex=r"\vartheta_z")
+T_x = symbol("T_x", r"time of inertia along, over $\tau$", latex=r"\vartheta_x")
+S_z = symbol("S_z", r"rate of stiffness across, times $\tau$", latex=r"\varrho_z")
+S_x = symbol("S_x", r"rate of stiffness along, times $\tau$", latex=r"\varrho_x")
+support_rate = symbol(
+    "S_s",
+    r"part of $\varrho_z$ due to the suspension",
+    latex=r"\varrho_{\mathrm{s}}",
+    nonnegative=True,
+)
+S_c = symbol("S_c", r"rate of the coupling, times $\tau$", latex=r"\varrho_{\mathrm{c}}")
+coupling = symbol("g_c", "strength of the coupling of both motions", latex=r"\check g")
+uncoupled = symbol("h_c", r"$1 - \check g$", latex=r"\check h")
+rise = symbol("e_c", "what has the sign of $dF/dV$ with the damper", latex=r"\check e", real=True)
+own_rise = symbol(
+    "e_0", "the same of a dead weight without a damper", latex=r"\check e_0", real=True
+)
+hurwitz = symbol("H_c", "determinant of Hurwitz", latex=r"\check H", real=True)
+Omega = symbol("Omega", r"square of the frequency at onset, times $\tau^2$", latex=r"\Omega")
+Omega_plus = symbol("Omega_p", "the larger of two", latex=r"\Omega_{+}", real=True)
+Omega_minus = symbol("Omega_m", "the smaller of two", latex=r"\Omega_{-}", real=True)
+bias = symbol(
+    "m_c", r"$\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$", latex=r"\check m", real=True
+)
+onset_square = symbol(
+    "D_c",
+    r"discriminant of the quadratic in $\Omega$, over $\vartheta_z^{4}$",
+    latex=r"\check D",
+    real=True,
+)
+spread = symbol("s_c", "its root", latex=r"\check w", nonnegative=True)
+onset_sum = symbol("n_c", r"$\check m - 2 \vartheta_z \check e$", latex=r"\check n", real=True)
+lag_plus = symbol("p_p", r"$\varrho_z - \vartheta_z \Omega_{+}$", latex=r"\check p_{+}")
+constant = tuple(
+    symbol(f"c_h{n}", "coefficient of a quadratic factor", latex=rf"\check c_{n}", real=True)
+    for n in (1, 2)
+)
+linear = tuple(
+    symbol(f"b_h{n}", "coefficient of a quadratic factor", latex=rf"\check b_{n}") for n in (1, 2)
+)
 
 PEELED = (1 - q) ** 2 + q
 """1 - q + q**2, without a difference of nearly equal numbers."""
@@ -68,17 +80,18 @@ ONSET = T_z**2 * Omega**2 + (bias - 2 * T_z * rise) * Omega + S_z * rise
 """Vanishes for the square of the frequency at onset."""
 AT_ONSET = Omega * (T_x + (S_c - lag_plus) / (Omega + S_c * lag_plus))
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove when steady sliding is stable."""
-    return _quadratics(), _numbers(), _routh(), _onset(), _critical(), _forms()
+@result("hurwitz")
+def _quadratics(proof: Proof) -> None:
+    r"""Rates of a quartic: the condition of Routh and Hurwitz.
 
-
-def _quadratics() -> Derivation:
-    proof = _theorem("hurwitz", title="Rates of a quartic: the condition of Routh and Hurwitz",
-                     text=_LEMMA)  # fmt: skip
+    Every real quartic has two real quadratic factors, whose roots have negative real parts if and only if
+    their coefficients are positive; then those of the quartic and the determinant are positive. Conversely,
+    where these are, $\check b_1 \check b_2$ and $\check b_1 + \check b_2$ are positive, and so both; and by
+    the constant and the linear coefficient $\check c_1$ and $\check c_2$.
+    """
     (b_1, b_2), (c_1, c_2) = linear, constant
     product = (sigma**2 + b_1 * sigma + c_1) * (sigma**2 + b_2 * sigma + c_2)
     a_3, a_2, a_1, a_0 = b_1 + b_2, c_1 + c_2 + b_1 * b_2, b_1 * c_2 + b_2 * c_1, c_1 * c_2
@@ -93,20 +106,19 @@ def _quadratics() -> Derivation:
     ):
         proof.equal(c_1 * total, parts, what)
         proof.holds(parts, ">", 0, "so the first has the sign of the sum")
-    return proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0,
+    proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0,
                       b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))  # fmt: skip
 
 
-_LEMMA = (
-    "Every real quartic has two real quadratic factors, whose roots have negative real parts if and only "
-    "if their coefficients are positive; then those of the quartic and the determinant are positive. "
-    r"Conversely, where these are, $\check b_1 \check b_2$ and $\check b_1 + \check b_2$ are positive, "
-    r"and so both; and by the constant and the linear coefficient $\check c_1$ and $\check c_2$."
-)
+@result("F22-numbers", uses=("F22",))
+def _numbers(proof: Proof) -> None:
+    r"""The numbers of the rates.
 
-
-def _numbers() -> Derivation:
-    proof = _theorem("F22-numbers", title="The numbers of the rates", text=_SIX, uses=("F22",))
+    With both motions divided by their dampings: $\vartheta$ are times of inertia, $\varrho$ rates of
+    stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how strongly the motions are coupled.
+    $\check h$ and $\check e$ decide about stability; the forms are without differences of nearly equal
+    numbers.
+    """
     steady_sliding(proof)
     proof.define(right, a * q)
     proof.define(B_z, 3 * a * (1 + q) / 4, "the damping of the contact across the foundation")
@@ -130,15 +142,7 @@ def _numbers() -> Derivation:
     proof.define(own_rise, DEAD_WEIGHT_RISE)
     proof.define(rise, RISE)
     proof.equal(S_z - coupling * S_c, rise, "it has the sign of $dF/dV$ (F22-soft)")
-    return proof.done(whole, form)
-
-
-_SIX = (
-    r"With both motions divided by their dampings: $\vartheta$ are times of inertia, $\varrho$ rates of "
-    r"stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how strongly the motions are coupled. "
-    r"$\check h$ and $\check e$ decide about stability; the forms are without differences of nearly equal "
-    "numbers."
-)
+    proof.done(whole, form)
 
 
 def lay_down(proof: Proof) -> None:
@@ -147,10 +151,14 @@ def lay_down(proof: Proof) -> None:
     proof.define(rise, S_z - coupling * S_c)
 
 
-def _routh() -> Derivation:
-    proof = _theorem(
-        "F22-routh", title="Condition of stability", text=_ROUTH, uses=("F22-numbers", "hurwitz")
-    )
+@result("F22-routh", uses=("F22-numbers", "hurwitz"))
+def _routh(proof: Proof) -> None:
+    r"""Condition of stability.
+
+    Steady sliding is stable if every coefficient and $\check H$ are positive (Routh and Hurwitz). All
+    coefficients are but for $\varrho_x + \check e$, and that one is where $\check H$ is: $\check H > 0$ is
+    the whole condition.
+    """
     lay_down(proof)
     series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
     proof.equal(SCALED, series, "by powers of the rate")
@@ -164,18 +172,17 @@ def _routh() -> Derivation:
         hurwitz, form, r"quadratic in $\varrho_x$; its discriminant does not hold $\vartheta_x$"
     )
     proof.equal(sp.Subs(hurwitz, S_x, 0), rise * sp.Subs(REST, S_x, 0), "without a spring")
-    return proof.done(hurwitz, form)
+    proof.done(hurwitz, form)
 
 
-_ROUTH = (
-    r"Steady sliding is stable if every coefficient and $\check H$ are positive (Routh and Hurwitz). All "
-    r"coefficients are but for $\varrho_x + \check e$, and that one is where $\check H$ is: $\check H > 0$ "
-    "is the whole condition."
-)
+@result("F22-onset", uses=("F22-routh",))
+def _onset(proof: Proof) -> None:
+    r"""Frequency at onset.
 
-
-def _onset() -> Derivation:
-    proof = _theorem("F22-onset", title="Frequency at onset", text=_ONSET, uses=("F22-routh",))
+    Where stability is lost a rate is imaginary, $\sigma = i \sqrt{\Omega}$. The frequency depends neither on
+    the mass nor on the spring along the foundation: the spring only has to be such that with this mass it
+    gives this frequency, so that the critical stiffness is linear in the mass.
+    """
     lay_down(proof)
     proof.define(bias, uncoupled - T_z * coupling * S_c)
     proof.define(S_x, (T_z + T_x) * Omega - rise, "the imaginary part of the quartic vanishes")
@@ -185,14 +192,7 @@ def _onset() -> Derivation:
     proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "another form of it",
                 left=r"(\varrho_z - \vartheta_z \Omega)^2 + \check h \Omega - \check g \varrho_{\mathrm{c}} "
                 r"(\varrho_z - \vartheta_z \Omega)")  # fmt: skip
-    return proof.done(real, -ONSET)
-
-
-_ONSET = (
-    r"Where stability is lost a rate is imaginary, $\sigma = i \sqrt{\Omega}$. The frequency depends "
-    "neither on the mass nor on the spring along the foundation: the spring only has to be such that with "
-    "this mass it gives this frequency, so that the critical stiffness is linear in the mass."
-)
+    proof.done(real, -ONSET)
 
 
 def _frequencies(proof: Proof) -> None:
@@ -205,10 +205,15 @@ def _frequencies(proof: Proof) -> None:
     proof.define(onset_sum, bias - 2 * T_z * rise)
 
 
-def _critical() -> Derivation:
-    proof = _theorem(
-        "F22-critical", title="Critical stiffness", text=_CRITICAL, uses=("F22-routh", "F22-onset")
-    )
+@result("F22-critical", uses=("F22-routh", "F22-onset"))
+def _critical(proof: Proof) -> None:
+    r"""Critical stiffness.
+
+    $\check H$ vanishes at the stiffnesses of both frequencies. It is positive above the larger one, so the
+    critical stiffness is that of $\Omega_{+}$. Where friction falls, $\check e < 0$, the product of the
+    frequencies is negative: $\Omega_{-}$ does not exist, and every softer spring is unstable. Without a
+    positive root steady sliding is stable for every stiffness.
+    """
     _frequencies(proof)
     proof.define(Omega_plus, (spread - onset_sum) / (2 * T_z**2))
     proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2))
@@ -224,21 +229,16 @@ def _critical() -> Derivation:
     )
     proof.define(hurwitz, HURWITZ)
     proof.equal(hurwitz, T_z**2 * (S_x - high) * (S_x - low), "F22-onset gives both roots")
-    return proof.done(hurwitz, T_z**2 * (S_x - high) * (S_x - low))
 
 
-_CRITICAL = (
-    r"$\check H$ vanishes at the stiffnesses of both frequencies. It is positive above the larger one, so "
-    r"the critical stiffness is that of $\Omega_{+}$. Where friction falls, $\check e < 0$, the product of "
-    r"the frequencies is negative: $\Omega_{-}$ does not exist, and every softer spring is unstable. "
-    "Without a positive root steady sliding is stable for every stiffness."
-)
+@result("F22-falling", uses=("F22-critical",))
+def _forms(proof: Proof) -> None:
+    r"""The same where friction falls.
 
-
-def _forms() -> Derivation:
-    proof = _theorem(
-        "F22-falling", title="The same where friction falls", text=_FALLING, uses=("F22-critical",)
-    )
+    Friction that falls with the velocity has one critical stiffness, below which steady sliding is unstable;
+    here without a difference of nearly equal numbers, however small the inertia. Where $\check n \le 0$,
+    $\Omega_{+}$ of F22-critical has none.
+    """
     _frequencies(proof)
     proof.where(sp.Lt(rise, 0), "friction falls")
     proof.where(sp.Gt(onset_sum, 0))
@@ -253,11 +253,3 @@ def _forms() -> Derivation:
                 r"so $\check p_{+} < \check g \varrho_{\mathrm{c}} < \varrho_{\mathrm{c}}$")  # fmt: skip
     proof.define(S_x, (T_z + T_x) * Omega - rise)
     proof.equal(S_x, AT_ONSET, "the critical stiffness")
-    return proof.done(S_x, AT_ONSET)
-
-
-_FALLING = (
-    "Friction that falls with the velocity has one critical stiffness, below which steady sliding is "
-    "unstable; here without a difference of nearly equal numbers, however small the inertia. Where "
-    r"$\check n \le 0$, $\Omega_{+}$ of F22-critical has none."
-)

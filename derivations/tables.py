@@ -4,12 +4,18 @@ import sympy as sp
 
 from . import asymptotics as asy
 from . import steady
+from .asymptotics import V_star
 from .book import Shown
-from .record import Derivation, Table
+from .chapter import Chapter
+from .model import C, K, M, N, R, V, delta, g, tau
+from .nomenclature import symbol
+from .record import Table
+from .steady import W, a, q
 from .step import Proof
-from .symbols import C, K, M, N, R, V, V_star, W, a, delta, delta_0, g, q, tau
 
-SECTION = "Tables"
+delta_0 = symbol("delta_0", "static depth", "m", source="scaled-pressure")
+
+result = Chapter("Tables")
 
 _milli, _third = sp.Rational(1, 1000), sp.Rational(1, 3)
 
@@ -65,15 +71,15 @@ _DERIVED = (
 )  # fmt: skip
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Derive both tables."""
-    return _standard_values(), _velocity_dependences()
+@result("table1")
+def _standard_values(proof: Proof) -> None:
+    r"""Standard parameter values.
 
-
-def _standard_values() -> Derivation:
-    proof = Proof("table1", None, section=SECTION, title="Standard parameter values", text=_TEXT)
-    proof.recall("load", W, steady.load)
-    proof.recall("eq28", a, _half)
+    The values of the paper and what follows from them, computed exactly and then rounded to six digits; $g =
+    9.80665$ m/s$^2$, and $a_0$ and $\delta_0$ are those of the contact at rest.
+    """
+    proof.recall("load")
+    proof.recall("eq28")
     proof.define(q, sp.S.One, "at rest the contact is symmetric")
     proof.equal(W, 4 * _third * K * a * delta, "the load at rest")
     reason = r"this load is the weight, $\frac{4}{3} K a_0 \delta_0 = M g$"
@@ -87,23 +93,19 @@ def _standard_values() -> Derivation:
         for name, symbol, value, unit, unit_name in (*_GIVEN, *_DERIVED)
     )
     table = Table(("Quantity", "Symbol", "Value", "Unit"), rows)
-    return proof.done(delta_0, static_depth, table=table)
-
-
-_TEXT = (
-    "The values of the paper and what follows from them, computed exactly and then rounded to six "
-    r"digits; $g = 9.80665$ m/s$^2$, and $a_0$ and $\delta_0$ are those of the contact at rest."
-)
+    proof.done(delta_0, static_depth, table=table)
 
 
 def _six_digits(value: sp.Expr, unit: sp.Expr | int) -> str:
     return f"{float(sp.N(value.subs(STANDARD) / unit, 30)):.6g}"
 
 
-def _velocity_dependences() -> Derivation:
-    title = "Velocity dependences of the friction coefficient"
-    uses = ("eq42", "eq45", "eq46", "eq47", "eq48")
-    proof = Proof("table2", None, section=SECTION, title=title, text=_EXACT, uses=uses)
+@result("table2", uses=("eq42", "eq45", "eq46", "eq47", "eq48"))
+def _velocity_dependences(proof: Proof) -> None:
+    r"""Velocity dependences of the friction coefficient.
+
+    Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly.
+    """
     low, meets = asy.low_coefficient, "both asymptotes have this value at $V^{*}$"
     cases = (
         (asy.high_coefficient_dead_weight, asy.critical_dead_weight, asy.HIGH_DEAD_WEIGHT),
@@ -135,7 +137,4 @@ def _velocity_dependences() -> Derivation:
         ),
     )
     table = Table(("", "Fixed indenter", "Dead weight"), rows)
-    return proof.done(at_critical, value, table=table)
-
-
-_EXACT = r"Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly."
+    proof.done(at_critical, value, table=table)

@@ -5,42 +5,24 @@ only two facts are needed: its rate follows from its own compression, and at an 
 indenter.
 """
 
-from functools import partial
-
 import sympy as sp
 
 from .book import established
-from .record import Derivation
+from .chapter import Chapter
+from .model import C, F_z, K, t, tau
+from .nomenclature import letter
+from .power_law_weight import a_0
 from .step import Proof
-from .symbols import (
-    W_0,
-    C,
-    F_z,
-    K,
-    a_0,
-    compression,
-    d,
-    d_s,
-    d_ss,
-    delta_0,
-    depth,
-    eps,
-    f_friction,
-    f_normal,
-    kappa,
-    lam,
-    left,
-    material,
-    right,
-    t,
-    tau,
-    time,
-    travel,
-    xi,
-)  # fmt: skip
-from .transient_memory import OF_TIME, SECTION
-from .transient_motion import CONTACT, FRICTION_FORCE, NORMAL_FORCE
-from .transient_scaling import PRESSURE
+from .tables import delta_0
+from .theorems import kappa, lam
+from .transient_edges import left, right
+from .transient_memory import OF_TIME, SECTION, compression, depth, material, time, travel
+from .transient_motion import CONTACT, f_friction
+from .transient_scaling import PRESSURE, W_0, d, d_s, d_ss, eps, f_normal, xi
+
+letter("U", "integral of the compression over all elements", "m²")
+letter(r"\bar U", r"scaled integral of the compression, $U/(a_0 \delta_0)$")
+letter(r"E_{\mathrm{s}}", "energy of the surface outside the contact")
 
 _ends = sp.symbols("X_1 X_2", real=True)
 """A stretch of the foundation outside of which no element was ever pressed."""
@@ -55,12 +37,7 @@ _height, _rate = d - xi**2, d_s - 2 * lam * xi
 """Compression under the indenter, and its rate in the foundation."""
 _total, _free = (sp.Function(name, real=True) for name in "SE")
 """The compression of all elements (it prints as U with a bar); the energy of those outside."""
-_theorem = partial(Proof, equation=None, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Prove F14."""
-    return _surface(), _force(), _momentum(), _power(), _energy()
+result = Chapter(SECTION)
 
 
 def _outside(density: sp.Expr) -> sp.Expr:
@@ -88,9 +65,14 @@ def _relaxing(proof: Proof) -> None:
         )  # fmt: skip
 
 
-def _surface() -> Derivation:
-    proof = _theorem("F14-surface", title="Energy of the surface that relaxes", text=_HANDED_OVER,
-                     uses=("F8", "F9"))  # fmt: skip
+@result("F14-surface", uses=("F8", "F9"))
+def _surface(proof: Proof) -> None:
+    """Energy of the surface that relaxes.
+
+    Outside the contact each element relaxes freely; beyond $X_1$ and $X_2$ none was ever compressed. The
+    energy that leaves the contact at its edges is stored in the free surface as $E$ and dissipated there at
+    the rate $2 E$.
+    """
     energy = _free(time)
     handed = [
         (depth - edge**2) ** 2 * sp.Derivative(edge - travel, time) for edge in (_left, _right)
@@ -109,19 +91,15 @@ def _surface() -> Derivation:
         right=r"-2 E + \frac{3}{8} \left[(d - \ell^2)^2 (\ell' - \lambda) "
         r"- (d - r^2)^2 (r' - \lambda)\right]",
     )
-    return proof.done(sp.Derivative(energy, time), change)
 
 
-_HANDED_OVER = (
-    r"Outside the contact each element relaxes freely; beyond $X_1$ and $X_2$ none was ever "
-    r"compressed. The energy that leaves the contact at its edges is stored in the free surface as "
-    r"$E$ and dissipated there at the rate $2 E$."
-)
+@result("F14-force", uses=("F9",))
+def _force(proof: Proof) -> None:
+    """Normal force from the compression of all elements.
 
-
-def _force() -> Derivation:
-    proof = _theorem("F14-force", title="Normal force from the compression of all elements",
-                     text=_ALL, uses=("F9",))  # fmt: skip
+    $S$ is the compression of all elements, including those that relax outside the contact. Sliding in the
+    other direction is the mirror image, here and in the balance of energy.
+    """
     total = _total(time)
     force = _share * (total + sp.Derivative(total, time))
     _relaxing(proof)
@@ -129,18 +107,13 @@ def _force() -> Derivation:
     under = _under(proof, _height.subs(_IN_TIME), "under the indenter", _COMPRESSION, _COMPRESSED)
     proof.define(total, _outside(_u) + under, "all elements",
                  right=rf"{_both_sides('u')} + {_COMPRESSION}")  # fmt: skip
-    proof.recall("F11", f_normal, NORMAL_FORCE)
+    proof.recall("F11")
     proof.equal(f_normal, force, _CONTINUOUS, right=r"\frac{3}{4} \left(S + S'\right)")
-    return proof.done(f_normal, force)
 
 
 _COMPRESSION = r"\int_{\ell}^{r} (d - \xi^2) \, d\xi"
 _COMPRESSED = r"(r - \ell) d - \frac{r^3 - \ell^3}{3}"
 _CONTINUOUS = "the terms from moving ends cancel: the surface is continuous at the edges"
-_ALL = (
-    r"$S$ is the compression of all elements, including those that relax outside the contact. "
-    r"Sliding in the other direction is the mirror image, here and in the balance of energy."
-)
 
 
 def _let_move(proof: Proof) -> None:
@@ -153,14 +126,18 @@ def _let_move(proof: Proof) -> None:
 def _obey(proof: Proof) -> None:
     """Let the indenter obey its equation of motion."""
     proof.define(sp.Derivative(depth, (time, 2)), d_ss)
-    proof.recall("scaled-form", eps * d_ss, established("scaled-form", eps * d_ss))
+    proof.recall("scaled-form")
 
 
-def _momentum() -> Derivation:
-    proof = _theorem("F14", title="Balance of momentum", text=_UNITS, notation={"d": depth})
+@result("F14", notation={"d": depth})
+def _momentum(proof: Proof) -> None:
+    """Balance of momentum.
+
+    With $S$ of F14-force, in dimensional form $U$, the integral of the compression over all elements.
+    """
     total, now = _total(time), sp.Function("U", real=True)(t)
     proof.define(d, depth)
-    proof.recall("F14-force", f_normal, established("F14-force", f_normal))
+    proof.recall("F14-force")
     _obey(proof)
     proof.equal(
         sp.Derivative(eps * _speed + _share * total, time),
@@ -169,7 +146,7 @@ def _momentum() -> Derivation:
         left=r"\frac{d}{ds} \left[\varepsilon d' + \frac{3}{4} S\right]",
         right=r"1 - \kappa (d - 1) - \frac{3}{4} S",
     )
-    proof.recall("scaled-pressure", W_0, established("scaled-pressure", W_0))
+    proof.recall("scaled-pressure", W_0)
     proof.define(F_z, W_0 * f_normal)
     proof.define(C, K * tau, "Eq. (22)")
     proof.define(now, a_0 * delta_0 * _total(t / tau))
@@ -178,18 +155,18 @@ def _momentum() -> Derivation:
     proof.equal(
         F_z, result, r"in units of $W_0 = \frac{4}{3} K a_0 \delta_0$", right=r"K U + C \dot{U}"
     )
-    return proof.done(F_z, result)
 
 
-_UNITS = r"With $S$ of F14-force, in dimensional form $U$, the integral of the compression over all elements."
+@result("F14-power", uses=("scaled-pressure",))
+def _power(proof: Proof) -> None:
+    r"""Power given to the foundation.
 
-
-def _power() -> Derivation:
-    proof = _theorem("F14-power", title="Power given to the foundation", text=_POWER,
-                     uses=("scaled-pressure",))  # fmt: skip
+    In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact
+    there is no pressure, and no power.
+    """
     density = sp.expand(_share * PRESSURE * _rate)
-    proof.recall("F11", f_normal, NORMAL_FORCE)
-    proof.recall("F11", f_friction, FRICTION_FORCE)
+    proof.recall("F11")
+    proof.recall("F11", f_friction)
     proof.notation |= {r"\hat p": PRESSURE, "u'": _rate}
     proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p")
     whole = sp.Integral(density, CONTACT)
@@ -198,18 +175,18 @@ def _power() -> Derivation:
         left=r"\frac{3}{4} \int_{\ell}^{r} \hat p u' \, d\xi", right=r"d' f_z + \lambda f_x",
         value=d_s * f_normal + lam * f_friction,
     )  # fmt: skip
-    return proof.done(whole, d_s * f_normal + lam * f_friction)
 
 
-_POWER = (
-    r"In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact "
-    "there is no pressure, and no power."
-)
+@result("F14-energy", uses=("scaled-form", "F14-power"))
+def _energy(proof: Proof) -> None:
+    r"""Balance of energy.
 
-
-def _energy() -> Derivation:
-    proof = _theorem("F14-energy", title="Balance of energy", text=_ENERGY,
-                     uses=("scaled-form", "F14-power"))  # fmt: skip
+    In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. The power of the drive, in dimensional form $F_x V$,
+    becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g \delta$ and $\frac{1}{2} k_s
+    (\delta - \delta_0)^2$, and energy of the springs of the foundation under the indenter and outside, $E$;
+    the rest is lost in its dampers, under the indenter and outside. A fixed indenter has $d' = 0$, and only
+    the foundation is left.
+    """
     _let_move(proof)
     height, rate = (each.subs(_IN_TIME) for each in (_height, _rate))
     proof.notation |= {"u": sp.Lambda(xi, height), "u'": sp.Lambda(xi, rate)}
@@ -220,8 +197,8 @@ def _energy() -> Derivation:
             (_share * rate**2, ("dissipated there", _LOST, _LOST_THERE)),
         )
     )
-    proof.recall("F11", f_normal, NORMAL_FORCE)
-    proof.recall("F11", f_friction, FRICTION_FORCE)
+    proof.recall("F11")
+    proof.recall("F11", f_friction)
     energy, free = _free(time), established("F14-surface", _free(time).diff(time))
     given = _speed * f_normal + lam * f_friction - (free + 2 * energy)
     proof.equal(
@@ -230,7 +207,7 @@ def _energy() -> Derivation:
         right=r"d' f_z + \lambda f_x + \frac{3}{8} \left[(d - r^2)^2 (r' - \lambda) - (d - \ell^2)^2 "
         r"(\ell' - \lambda)\right]",
     )
-    proof.recall("F14-surface", sp.Derivative(energy, time), free)
+    proof.recall("F14-surface")
     _obey(proof)
     moving = eps * _speed**2 / 2 - depth + kappa * (depth - 1) ** 2 / 2
     proof.equal(
@@ -243,7 +220,6 @@ def _energy() -> Derivation:
         left=r"\lambda f_x",
         right=rf"\frac{{d}}{{ds}} \left[{_MOVING} + {_STORED} + E\right] + {_LOST} + 2 E",
     )
-    return proof.done(lam * f_friction, balance)
 
 
 def _under(proof: Proof, density: sp.Expr, reason: str, left: str, right: str) -> sp.Expr:
@@ -264,12 +240,4 @@ _LOST = r"\frac{3}{4} \int_{\ell}^{r} u'^2 \, d\xi"
 _LOST_THERE = (
     r"\frac{3}{4} d'^2 (r - \ell) - \frac{3}{2} (r^2 - \ell^2) \lambda d' "
     r"+ \lambda^2 (r^3 - \ell^3)"
-)
-_ENERGY = (
-    r"In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. The power of the drive, in dimensional "
-    r"form $F_x V$, becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g "
-    r"\delta$ and $\frac{1}{2} "
-    r"k_s (\delta - \delta_0)^2$, and energy of the springs of the foundation under the indenter and "
-    r"outside, $E$; the rest is lost in its dampers, under the indenter and outside. A fixed indenter has "
-    "$d' = 0$, and only the foundation is left."
 )

@@ -4,37 +4,48 @@ An edge at xi = X + Y peels while it moves inward through the foundation and tou
 outward: onto undisturbed ground, or onto ground that it left before and that has not yet recovered.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .contact_interval import E
+from .nomenclature import letter, symbol
 from .step import Proof
-from .symbols import (
-    E,
-    P,
-    b,
-    c,
-    d,
-    d_s,
+from .theorems import lam
+from .transient_memory import (
+    OF_TIME,
+    SECTION,
+    SURFACE,
     depth,
-    drift,
     eta,
-    lam,
-    left,
-    lift,
     material,
-    rho,
-    right,
     sigma,
-    start,
     time,
     travel,
-    xi,
     zeta,
-)  # fmt: skip
-from .transient_memory import OF_TIME, SECTION, SURFACE
-from .transient_scaling import PRESSURE
+)
+from .transient_scaling import PRESSURE, P, d, d_s, xi
+
+start = symbol("s_0", "instant at which ground is left or an edge turns", real=True)
+letter("d_0", "depth at an earlier instant or at the beginning of a step")
+letter(r"X_{\mathrm{e}}", "element at an edge")
+left = symbol("ell", "scaled left edge of the contact", real=True)
+right = symbol("r", "scaled right edge of the contact", real=True)
+b = symbol("b", "scaled length of the contact, from edge to edge", source="F11-peel")
+rho = symbol("rho", r"$\sqrt{d + d' + \lambda^2}$, which is $r + \lambda$ at an edge that peels")
+drift = symbol(
+    "lambda_bar",
+    "mean drive number since an earlier instant, weighted by memory",
+    latex=r"\bar\lambda",
+    real=True,
+)
+lift = symbol(
+    "d_bar", "mean depth since an earlier instant, weighted by memory", latex=r"\bar d", real=True
+)
+c = symbol("c", "rate at which an edge turns", printed=r"c_{\mathrm{t}}")
+letter(r"\bar k_1", "bounded factor of the remainder after the leading order")
+letter(r"\bar k_2", "second bounded factor")
+letter(r"\bar k_3", "third bounded factor")
+letter(r"\bar y", "instant before a turn over the time since")
 
 RADICAND = d + d_s + lam**2
 """rho**2 of the edges that peel."""
@@ -50,19 +61,16 @@ edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
 """p/(K delta_0) at an edge that touches."""
-_theorem = partial(Proof, equation=None, section=SECTION, notation={"g": SURFACE})
+result = Chapter(SECTION, notation={"g": SURFACE})
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F10."""
-    return (
-        *(_peeling(), _touching(), _signs()),
-        *(_at_once(), _soon_and_late(), _gradually(), _turning()),
-    )
+@result("F10-peel", uses=("eq33",))
+def _peeling(proof: Proof) -> None:
+    r"""Edges that peel.
 
-
-def _peeling() -> Derivation:
-    proof = _theorem("F10-peel", title="Edges that peel", text=_PEEL, uses=("eq33",))
+    An edge peels where the pressure vanishes: Eq. (33) in scaled form. If $d + d' + \lambda^2 < 0$ no element
+    can be pressed: the indenter has left the foundation.
+    """
     pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
     radius = sp.sqrt(RADICAND).subs(_MOVING)
     proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
@@ -82,25 +90,30 @@ def _peeling() -> Derivation:
             left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
             right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
         )
-    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.recall("scaled-pressure")
     proof.define(rho, sp.sqrt(RADICAND))
     proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
     for side, sign, name, called in (
         ((xi, -sp.oo, -lam), -1, "left", left), ((xi, -lam, sp.oo), 1, "right", right)
     ):  # fmt: skip
         proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
-    return proof.done(right, rho - lam)
 
 
 _LEAVES = "the element there loses its pressure while the edge moves inward"
-_PEEL = (
-    r"An edge peels where the pressure vanishes: Eq. (33) in scaled form. If $d + d' + \lambda^2 < 0$ "
-    "no element can be pressed: the indenter has left the foundation."
-)
 
 
-def _touching() -> Derivation:
-    proof = _theorem("F10-touch", title="Edges that touch", text=_TOUCH, uses=("F8", "F9", "eq32"))
+@result("F10-touch", uses=("F8", "F9", "eq32"))
+def _touching(proof: Proof) -> None:
+    r"""Edges that touch.
+
+    An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi =
+    \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
+    g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity $X_{\mathrm{e}}'$ of the
+    edge through the foundation, and positive while it moves outward, because $\xi - E \eta$ has the sign of
+    the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$ does not matter: either
+    all of the ground was left at once, or each element when its pressure, and with it $\partial(e^{\sigma}
+    g)/\partial\sigma$, vanished.
+    """
     for sign, called, words in ((-1, left, "left"), (1, right, "right")):
         side = (xi, -sp.oo, 0) if sign < 0 else (xi, 0, sp.oo)
         ground = f"{words} edge on undisturbed ground"
@@ -126,31 +139,26 @@ def _touching() -> Derivation:
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
     proof.notation[r"X_{\mathrm{e}}"] = edge_path
     proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason, right=_SPEED)
-    return proof.done(P, TOUCHING_PRESSURE)
 
 
 _SPEED = r"2 (\xi - E \eta) X_{\mathrm{e}}'"
-_TOUCH = (
-    r"An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi "
-    r"= \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = "
-    r"e^{\sigma} g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity "
-    r"$X_{\mathrm{e}}'$ of the edge through the foundation, and positive while it moves outward, because "
-    r"$\xi - E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ "
-    r"depends on $X$ does not matter: either all of the ground was left at once, or each element when its "
-    r"pressure, and with it $\partial(e^{\sigma} g)/\partial\sigma$, vanished."
-)
 
 
-def _signs() -> Derivation:
-    proof = _theorem("F10-signs", title="Inward an edge peels, outward it touches", text=_SIGNS,
-                     uses=("F9", "F10-peel"))  # fmt: skip
+@result("F10-signs", uses=("F9", "F10-peel"))
+def _signs(proof: Proof) -> None:
+    r"""Inward an edge peels, outward it touches.
+
+    In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, $X_{\mathrm{e}}' <
+    0$: the elements there must lose their pressure, which vanishes. One that touches moves outward, for its
+    pressure is not negative. A left edge is the mirror image.
+    """
     now, speed = depth - (material + travel) ** 2, sp.Derivative(edge_path, time)
     margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     other = margin.subs(material, material - b)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
     proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
     proof.notation |= {r"\xi - E \eta": slope}
-    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
+    proof.recall("F10-touch")
     proof.holds(2 * rho * speed, "<", 0,
                 "F10-peel: an element that detaches on the right loses its pressure",
                 cases=(sp.Lt(speed, 0),))  # fmt: skip
@@ -170,20 +178,15 @@ def _signs() -> Derivation:
     proof.equivalent(
         P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
     )
-    return proof.done(speed, 0)
 
 
-_SIGNS = (
-    r"In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, "
-    r"$X_{\mathrm{e}}' < 0$: the elements there must lose their pressure, which vanishes. One that touches "
-    r"moves outward, for its pressure is not negative. A left edge is the mirror image."
-)
+@result("F10-instant", uses=("F10-touch",))
+def _at_once(proof: Proof) -> None:
+    r"""Ground left at one instant.
 
-
-def _at_once() -> Derivation:
-    proof = _theorem(
-        "F10-instant", title="Ground left at one instant", text=_INSTANT, uses=("F10-touch",)
-    )
+    A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. With $E =
+    e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in $\xi$.
+    """
     left_then = d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)
     quotient = (lift + E * (1 - E) * drift**2) / (E * drift + _radius)
     whole = (zeta, start, time)
@@ -205,19 +208,17 @@ def _at_once() -> Derivation:
     proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
     proof.where(drift > 0, "the foundation has moved on")
     proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
-    return proof.done(right, RIGHT_AT_ONCE)
+    proof.done(right, RIGHT_AT_ONCE)
 
 
-_INSTANT = (
-    r"A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. "
-    r"With $E = e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in "
-    r"$\xi$."
-)
+@result("F10-instant-limits", uses=("F10-instant", "F10-peel", "F10-touch"))
+def _soon_and_late(proof: Proof) -> None:
+    r"""Ground left at one instant: early and late.
 
-
-def _soon_and_late() -> Derivation:
-    proof = _theorem("F10-instant-limits", title="Ground left at one instant: early and late", text=_LIMITS,
-                     uses=("F10-instant", "F10-peel", "F10-touch"))  # fmt: skip
+    The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the depth is
+    $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after it
+    $E$ vanishes, and $m$ is what the way has been.
+    """
     proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
     proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
@@ -235,19 +236,17 @@ def _soon_and_late() -> Derivation:
     ):
         place = sp.Subs(RIGHT_AT_ONCE, means, ends)
         proof.equal(place, edge, words, left=f"r({shown})")
-    return proof.done(place, edge)
 
 
-_LIMITS = (
-    r"The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the "
-    r"depth is $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; "
-    r"long after it $E$ vanishes, and $m$ is what the way has been."
-)
+@result("F10-gradual", uses=("F10-peel", "F10-touch"))
+def _gradually(proof: Proof) -> None:
+    r"""Ground left element by element.
 
-
-def _gradually() -> Derivation:
-    proof = _theorem("F10-gradual", title="Ground left element by element", text=_GRADUAL,
-                     uses=("F10-peel", "F10-touch"))  # fmt: skip
+    An edge that peeled at $\xi = \eta$ left the element $X_{\mathrm{e}}(\sigma)$ at $\sigma$. When it comes
+    back at $s$, it is where $e^{s} g(X_{\mathrm{e}}(\sigma), s) = e^{\sigma} g(X_{\mathrm{e}}(\sigma),
+    \sigma)$: one equation for $\sigma$. The difference of both sides is positive at the innermost of these
+    elements and concave across them (F9), so that it vanishes at most once on the way outward.
+    """
     element, was_depth, moved = (f.subs(time, sigma) for f in (edge_path, depth, travel))
     now, then = depth - (element + travel) ** 2, was_depth - (element + moved) ** 2
     meeting = sp.exp(time) * now - sp.exp(sigma) * then
@@ -266,22 +265,20 @@ def _gradually() -> Derivation:
         r"g(X_{\mathrm{e}}(\sigma), \sigma)\right]",
         right=r"-2 e^{s} (\xi - E \eta) X_{\mathrm{e}}'(\sigma)",
     )
-    return proof.done(sp.Derivative(meeting, sigma), slope)
 
 
-_GRADUAL = (
-    r"An edge that peeled at $\xi = \eta$ left the element $X_{\mathrm{e}}(\sigma)$ at $\sigma$. When it "
-    r"comes back at $s$, it is where $e^{s} g(X_{\mathrm{e}}(\sigma), s) = e^{\sigma} "
-    r"g(X_{\mathrm{e}}(\sigma), \sigma)$: one equation for $\sigma$. The difference of both sides is "
-    "positive at the innermost of these elements and concave across them (F9), so that it vanishes at "
-    "most once on the way outward."
-)
+@result("F10-turn", uses=("F8", "F10-gradual"))
+def _turning(proof: Proof) -> None:
+    r"""Where an edge turns.
 
-
-def _turning() -> Derivation:
-    proof = _theorem(
-        "F10-turn", title="Where an edge turns", text=_TURN, uses=("F8", "F10-gradual")
-    )
+    Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: counted
+    from its turn it is at $X(\zeta) = \frac{c \zeta^2}{2} (1 + k_1 \zeta)$ with $c > 0$, at the time $s_0 +
+    \zeta$, and the pressure $e^{\zeta} \hat p$ is $-2 \rho (1 + k_2 \zeta)$ per distance to it. The edge
+    itself then touches ground that it has just left at $\sigma$: by F8 the pressure must add up to nothing
+    from $\sigma$ to $h$. To leading order it does for $\sigma = -h/2$, and because this root is simple, for
+    $\sigma = -h/2 + k_3 h^2$: the edge follows with a quarter of the curvature, whatever $k_1$, $k_2$ and
+    $k_3$ are.
+    """
     bend, drop, shift, y = sp.symbols("k_1 k_2 k_3 y", real=True)
     peel = c * zeta**2 / 2 * (1 + bend * zeta)
     lost = sp.expand(-2 * rho * (1 + drop * zeta) * (peel.subs(zeta, sigma) - peel))
@@ -301,7 +298,6 @@ def _turning() -> Derivation:
     edge, quarter = peel.subs(zeta, -_h / 2 + shift * _h**2), c * _h**2 / 8
     proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True,
                         left=r"X(-h/2 + k_3 h^2)")  # fmt: skip
-    return proof.done(edge, quarter)
 
 
 _PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
@@ -309,13 +305,4 @@ _PUSHED = (
     r"\frac{\rho c}{3} (h - \sigma)^2 (h + 2 \sigma) + \frac{\rho c k_1}{4} (h - \sigma)^2 "
     r"(h^2 + 2 h \sigma + 3 \sigma^2) + \frac{\rho c k_2}{4} (h^2 - \sigma^2)^2 + "
     r"\frac{\rho c k_1 k_2}{10} (h - \sigma)^2 (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)"
-)
-_TURN = (
-    r"Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: "
-    r"counted from its turn it is at $X(\zeta) = \frac{c \zeta^2}{2} (1 + k_1 \zeta)$ with $c > 0$, at the "
-    r"time $s_0 + \zeta$, and the pressure $e^{\zeta} \hat p$ is $-2 \rho (1 + k_2 \zeta)$ per distance to "
-    r"it. The edge itself then touches ground that it has just left at $\sigma$: by F8 the pressure must "
-    r"add up to nothing from $\sigma$ to $h$. To leading order it does for $\sigma = -h/2$, and because this "
-    r"root is simple, for $\sigma = -h/2 + k_3 h^2$: the edge follows with a quarter of the curvature, "
-    r"whatever $k_1$, $k_2$ and $k_3$ are."
 )

@@ -4,30 +4,55 @@ Element X of the foundation is at xi = X + Y(s), with Y' = lambda, where the sur
 at the compression g(X, s) = d - xi**2: negative where it hangs above the undisturbed foundation.
 """
 
-from functools import partial
-
 import sympy as sp
 
-from .record import Derivation
+from .chapter import Chapter
+from .nomenclature import function, letter, symbol
 from .step import Proof, tex
-from .symbols import (
-    compression,
-    d,
-    d_s,
-    depth,
-    earlier,
-    eta,
-    indenter,
-    lam,
-    material,
-    mix,
-    sigma,
-    time,
-    travel,
-    xi,
-    zeta,
-)  # fmt: skip
-from .transient_scaling import PRESSURE
+from .theorems import lam
+from .transient_scaling import PRESSURE, d, d_s, xi
+
+time = symbol("s", real=True)
+earlier = symbol("s_1", "earlier instant", real=True)
+depth = function("d", real=True)(time)
+compression = function("u", r"scaled compression, $u/\delta_0$", printed=r"\bar u", real=True)
+letter(r"\bar u_0", "scaled compression at the beginning")
+indenter = function(
+    "g",
+    "scaled depth of the indenter's surface, negative above the undisturbed foundation",
+    printed=r"\bar g",
+    real=True,
+)
+material = symbol(
+    "X", "scaled coordinate in the foundation, which moves with it", source="F8", real=True
+)
+letter("X_1", "first of two elements")
+letter("X_2", "second of two elements")
+travel = function("Y", r"scaled displacement of the foundation, with $Y' = \lambda$", real=True)(
+    time
+)
+sigma = symbol(
+    "sigma",
+    "earlier instant, at which an element was at an edge",
+    printed=r"\bar \sigma",
+    real=True,
+)
+eta = symbol("eta", "position of an element then", printed=r"\bar \eta")
+zeta = symbol("zeta", "variable of integration", source="F8", real=True)
+letter(r"\bar c", "rate of a motion within a step")
+letter(r"\check f", "memory $e^{s} g$ within a step, over the exponential at its end")
+letter(r"\check v", r"slope of $\check f$")
+letter(r"\check c", r"difference of $\check M$ and the decrease of that slope")
+letter(r"\check b", "time from the nearer end of a step to the largest value")
+letter(r"\check y", "time from the nearer end of a step")
+letter(r"\check k", "half of the additional distance to the other end")
+letter(r"\check M", r"greatest magnitude of the second derivative of $\check f$")
+letter("J", "jump that a proof excludes")
+letter("D", r"$e^{s} \bar g$ of an element less $e^{s_1} \bar g$ at an earlier instant")
+letter("D_1", "this difference at one position")
+mix = symbol("theta", "share of two elements in one between them", printed=r"\bar \theta")
+letter(r"\Delta s", "scaled step in time")
+letter("D_2", "the difference $D$ at another position")
 
 SECTION = "Transient: theorems"
 
@@ -47,17 +72,18 @@ SURFACE = sp.Lambda((material, time), _HEIGHT)
 OF_TIME = {d: depth, d_s: sp.Derivative(depth, time)}
 """The depth and its rate as functions of the scaled time."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F8 and F9, and their consequences for a step in time and for landing."""
-    return _memory(), _update(), _remainder(), _interval(), _landing()
+@result("F8", text=_NOTATION, uses=("scaled-pressure",), notation={r"\hat p": PUSH})
+def _memory(proof: Proof) -> None:
+    r"""Memory in closed form.
 
-
-def _memory() -> Derivation:
-    proof = _theorem("F8", title="Memory in closed form", text=_MEMORY, uses=("scaled-pressure",),
-                     notation={r"\hat p": PUSH})  # fmt: skip
+    Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never negative, and
+    zero unless $u = g$. Then, for any motion of drive and indenter, $e^{s} u$ is the running maximum of
+    $e^{s} g$. The start counts as a contact with $u_0$, the compression at $s = 0$: an element that has not
+    been touched since keeps $e^{s} u = u_0$, though $u$ itself decays.
+    """
     u, g = compression, indenter
     whole = (zeta, earlier, time)
     pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), whole)
@@ -89,26 +115,23 @@ def _memory() -> Derivation:
     since = kept - sp.exp(sigma) * u(sigma)
     proof.root(*(since, u(time), value, r"the free element since $\sigma$"),
                right=r"e^{\sigma - s} g(\sigma)")  # fmt: skip
-    return proof.done(u(time), value)
 
 
 _BOUND = (
     r"the difference is $\int_{s_1}^{s} e^{\zeta} \hat p \, d\zeta + e^{s_1} c(s_1) \ge 0$, and zero for "
     r"$s_1 = \sigma$: the least upper bound is attained"
 )
-_MEMORY = (
-    _NOTATION
-    + r" Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never "
-    r"negative, and zero unless $u = g$. Then, for any motion of drive and indenter, $e^{s} u$ is "
-    r"the running maximum of $e^{s} g$. The start counts as a contact with $u_0$, the compression "
-    r"at $s = 0$: an "
-    r"element that has not been touched since keeps $e^{s} u = u_0$, though $u$ itself decays."
-)
 
 
-def _update() -> Derivation:
-    proof = _theorem("F8-update", title="Memory from one instant to the next", text=_UPDATE,
-                     uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})  # fmt: skip
+@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})
+def _update(proof: Proof) -> None:
+    r"""Memory from one instant to the next.
+
+    The update needs no contact flag. It is exact if $e^{s} g$ takes its maximum over the step at an end of
+    it, so always where it is monotone. It is inexact only if, within the step, an element is first compressed
+    and then released; there $u$ is too small by at most $h^2/8$ times the greatest $|\hat p + \hat p'|$ of
+    the step (F8-remainder).
+    """
     u, g = compression, indenter
     proof.define(xi, material + travel)
     proof.define(lam, sp.Derivative(travel, time))
@@ -134,22 +157,21 @@ def _update() -> Derivation:
         *(after, larger, "free until then, or in contact at the end"), cases=either,
         right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
     )  # fmt: skip
-    return proof.done(after, larger)
 
 
 _RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
-_UPDATE = (
-    _NOTATION
-    + r" The update needs no contact flag. It is exact if $e^{s} g$ takes its maximum over the step "
-    "at an end of it, so always where it is monotone. It is inexact only if, within the step, an "
-    "element is first compressed and then released; there $u$ is too small by at most $h^2/8$ times "
-    r"the greatest $|\hat p + \hat p'|$ of the step (F8-remainder)."
-)
 
 
-def _remainder() -> Derivation:
-    proof = _theorem("F8-remainder", title="Error of the memory within a step", text=_REMAINDER,
-                     uses=("F8-update",))  # fmt: skip
+@result("F8-remainder", uses=("F8-update",))
+def _remainder(proof: Proof) -> None:
+    r"""Error of the memory within a step.
+
+    Where $e^{s} g$ is largest within a step, at the time $b_8$ from its nearer end, let $f_8(y_8)$ be it over
+    the exponential at its end, at the time $y_8$ from the nearer end; the update takes $f_8(0)$ for
+    $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1 (F8-update), and $M_8$ its
+    greatest magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by $M_8 - c_8$ with $c_8
+    \ge 0$.
+    """
     f, slope = (sp.Function(name, real=True) for name in ("f_8", "v_8"))
     unused = sp.Function("c_8", nonnegative=True)
     y, b, most = sp.symbols("y_8 b_8 M_8", positive=True)
@@ -167,16 +189,7 @@ def _remainder() -> Derivation:
     proof.define(_h, 2 * (b + later), "the other end is at least as far")
     proof.equal(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare, "the rest")
     proof.holds(most * later * (2 * b + later) / 2 + spare, ">=", 0, "never negative")
-    return proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
-
-
-_REMAINDER = (
-    r"Where $e^{s} g$ is largest within a step, at the time $b_8$ from its nearer end, let $f_8(y_8)$ be it "
-    "over the exponential at its end, at the time $y_8$ from the nearer end; the update takes "
-    r"$f_8(0)$ for $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1 (F8-update), and "
-    "$M_8$ its greatest magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by "
-    r"$M_8 - c_8$ with $c_8 \ge 0$."
-)
+    proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
 
 
 def _margin(position: sp.Expr) -> sp.Expr:
@@ -191,9 +204,17 @@ _MARGIN = sp.Lambda(material, _margin(material))
 """e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
 
 
-def _interval() -> Derivation:
-    proof = _theorem("F9", title="The contact is one interval", text=_INTERVAL, uses=("F8",),
-                     notation={"g": SURFACE, "D": _MARGIN})  # fmt: skip
+@result("F9", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, "D": _MARGIN})
+def _interval(proof: Proof) -> None:
+    r"""The contact is one interval.
+
+    By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} g(X, s_1)$
+    at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of these differences,
+    $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by $e^{s}$), so that the
+    elements between two in contact satisfy the same conditions: the contact has no gap. So two edges describe
+    the contact, for any drive $\lambda(s)$ and depth $d(s)$. That the differences are concave needs the
+    parabola, whose curvature is the same everywhere; that the contact is one interval does not.
+    """
     margin = _margin(material)
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
@@ -208,21 +229,11 @@ def _interval() -> Derivation:
     proof.where(mix < 1, "between two elements in contact")
     _between(proof)
     proof.holds(_BULGE, ">=", 0, _CONVEX)
-    return proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
+    proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
 
 _CONVEX = (
     "and so is the sum, for each past instant and hence for all: what is between is in contact too"
-)
-_INTERVAL = (
-    _NOTATION
-    + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
-    r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
-    "these differences, $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by "
-    "$e^{s}$), so that the elements between two in contact satisfy the same conditions: the contact "
-    r"has no gap. So two edges describe the contact, for any drive $\lambda(s)$ and depth $d(s)$. "
-    "That the differences are concave needs the parabola, whose curvature is the same everywhere; that the "
-    "contact is one interval does not."
 )
 
 
@@ -245,22 +256,18 @@ def _between(proof: Proof) -> None:
     )
 
 
-def _landing() -> Derivation:
-    proof = _theorem("F9-landing", title="Landing is at one point", text=_LANDING,
-                     uses=("F8", "F9"), notation={"D": _MARGIN})  # fmt: skip
+@result("F9-landing", uses=("F8", "F9"), notation={"D": _MARGIN})
+def _landing(proof: Proof) -> None:
+    r"""Landing is at one point.
+
+    While the indenter flies since $s_0$, an element is touched when $D(X) = e^{s} g(X, s) - e^{s_1} g(X,
+    s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If two elements
+    were touched at the same instant, those between them would exceed this condition by at least $\theta (1 -
+    \theta) (e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been compressed before.
+    """
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements")
     proof.where(sp.Gt(_one, _other), "that are not the same")
     _between(proof)
     proof.holds(_BULGE, ">", 0,
                 "if both landed at the same instant, the elements between would have before")  # fmt: skip
-    return proof.done(_BULGE, 0)
-
-
-_LANDING = (
-    r"While the indenter flies since $s_0$, an element is touched when $D(X) = e^{s} g(X, s) - e^{s_1} g(X, "
-    r"s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If "
-    r"two elements were touched at the same instant, those between them would exceed this condition "
-    r"by at least $\theta (1 - \theta) "
-    r"(e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been compressed before."
-)

@@ -1,32 +1,25 @@
 """The forces between two edges in closed form, and how they depend on the motion (F11)."""
 
-from functools import partial
-
 import sympy as sp
 
 from .book import established
-from .record import Derivation
+from .chapter import Chapter
+from .contact_interval import E
+from .nomenclature import symbol
 from .step import Proof, tex
-from .symbols import (
-    E,
-    P,
-    a,
-    b,
-    d,
-    d_s,
-    eta,
-    f_friction,
-    f_normal,
-    lam,
-    left,
-    rho,
-    right,
-    time,
-    xi,
-)  # fmt: skip
-from .transient_edges import RADICAND, TOUCHING_PRESSURE, edge_path
-from .transient_memory import SECTION
-from .transient_scaling import PRESSURE
+from .theorems import lam
+from .transient_edges import RADICAND, b, edge_path, left, rho, right
+from .transient_memory import SECTION, eta, time
+from .transient_scaling import PRESSURE, P, d, d_s, f_normal, xi
+
+a = symbol("a")
+f_friction = symbol(
+    "f_friction",
+    r"scaled friction force, $F_x a_0/(W_0 \delta_0)$",
+    latex="f_x",
+    source="eq15",
+    real=True,
+)
 
 CONTACT = (xi, left, right)
 _LOAD_SHARE, _FRICTION_SHARE = sp.Rational(3, 4), -sp.Rational(3, 2)
@@ -55,18 +48,17 @@ START = {right: sp.sqrt(RADICAND) - lam, left: -sp.sqrt(d)}
 
 _touching = sp.Function("xi", real=True)(d, d_s)
 """The dependence of a touching edge on the motion."""
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F11."""
-    return _forces(), _peeling_forces(), _edges(), _derivatives(), _start_from_rest()
+@result("F11", uses=("F9", "F10-peel"))
+def _forces(proof: Proof) -> None:
+    r"""Forces between two edges.
 
-
-def _forces() -> Derivation:
-    proof = _theorem("F11", title="Forces between two edges", text=_FORCES, uses=("F9", "F10-peel"))
+    In units of $W_0$ and $W_0 \delta_0/a_0$, with the edges $\ell < r$ of F10: there is no pressure outside.
+    """
     friction = sp.expand(xi * PRESSURE)
-    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.recall("scaled-pressure")
     proof.integral(
         *(f_normal, _LOAD_SHARE * P, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
         "all pressure is between the edges", value=NORMAL_FORCE, right=_NORMAL,
@@ -75,7 +67,7 @@ def _forces() -> Derivation:
         *(f_friction, _FRICTION_SHARE * friction, CONTACT, _FRICTION_SHARE * sp.integrate(friction, xi)),
         r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE, right=_FRICTION,
     )  # fmt: skip
-    return proof.done(f_normal, NORMAL_FORCE)
+    proof.done(f_normal, NORMAL_FORCE)
 
 
 _NORMAL = (
@@ -86,34 +78,36 @@ _FRICTION = (
     r"-\frac{3}{2} \left[(d + d') \frac{r^2 - "
     r"\ell^2}{2} - \frac{r^4 - \ell^4}{4} - 2 \lambda \frac{r^3 - \ell^3}{3}\right]"
 )
-_FORCES = (
-    r"In units of $W_0$ and $W_0 \delta_0/a_0$, with the edges $\ell < r$ of F10: there is no "
-    r"pressure outside."
-)
 
 
-def _peeling_forces() -> Derivation:
-    proof = _theorem("F11-peel", title="Forces while the right edge peels", text=_PEELS)
+@result("F11-peel")
+def _peeling_forces(proof: Proof) -> None:
+    r"""Forces while the right edge peels.
+
+    The pressure at the left edge is $b (2 \rho - b)$, so that $b \le 2 \rho$.
+    """
     proof.define(d_s, (right + lam) ** 2 - lam**2 - d, r"no pressure at $r$")
     proof.define(lam, rho - right)
     proof.define(left, right - b, "$b$ is the width of the contact")
     proof.notation |= {r"\hat p": PRESSURE, "f_z": sp.Lambda(b, PEELING_NORMAL_FORCE)}
     proof.equal(PRESSURE, (right - xi) * (xi - right + 2 * rho), "one difference", left=r"\hat p")
-    proof.recall("F11", f_normal, NORMAL_FORCE)
+    proof.recall("F11")
     proof.equal(f_normal, PEELING_NORMAL_FORCE, "without differences of powers")
-    proof.recall("F11", f_friction, FRICTION_FORCE)
+    proof.recall("F11", f_friction)
     proof.equal(f_friction, PEELING_FRICTION_FORCE, "without differences of powers")
     both = PEELING_NORMAL_FORCE.subs(b, 2 * rho)
     proof.equal(both, rho**3, "both edges peel: $b = 2 \\rho$", left=r"f_z(2 \rho)")
-    return proof.done(f_normal, PEELING_NORMAL_FORCE)
+    proof.done(f_normal, PEELING_NORMAL_FORCE)
 
 
-_PEELS = r"The pressure at the left edge is $b (2 \rho - b)$, so that $b \le 2 \rho$."
+@result("F11-edges", uses=("F10-peel", "F10-instant", "F10-gradual"))
+def _edges(proof: Proof) -> None:
+    r"""How edges depend on the motion.
 
-
-def _edges() -> Derivation:
-    proof = _theorem("F11-edges", title="How edges depend on the motion", text=_EDGES,
-                     uses=("F10-peel", "F10-instant", "F10-gradual"))  # fmt: skip
+    An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left at
+    $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; if each
+    element was left at a different instant, this instant has no effect to first order (F10-gradual).
+    """
     then, moved = sp.symbols("d_0 m", real=True)
     meets = d - _touching**2 - E * (then - (_touching - moved) ** 2)
     proof.define(
@@ -133,20 +127,17 @@ def _edges() -> Derivation:
         proof.equal(
             slope, 1 / (2 * sp.sqrt(RADICAND)), "an edge that peels", left=_partial(right, variable)
         )
-    return proof.done(sp.Derivative(_touching, d), per_depth)
+    proof.done(sp.Derivative(_touching, d), per_depth)
 
 
-_EDGES = (
-    r"An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left "
-    r"at $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; "
-    "if each element was left at a different instant, this instant has no effect to first order "
-    "(F10-gradual)."
-)
+@result("F11-derivatives", uses=("F10-peel", "F11"))
+def _derivatives(proof: Proof) -> None:
+    r"""How forces depend on the motion.
 
-
-def _derivatives() -> Derivation:
-    proof = _theorem("F11-derivatives", title="How forces depend on the motion", text=_DEPEND,
-                     uses=("F10-peel", "F11"))  # fmt: skip
+    At an edge that peels $\hat p$ vanishes, and with it the term of that edge. An edge that touches does not
+    depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to $\partial
+    f_z/\partial d$.
+    """
     ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
     named = {"f_z": f_normal, "f_x": f_friction}
     proof.notation |= {name: established("F11", each).subs(ends) for name, each in named.items()}
@@ -163,23 +154,17 @@ def _derivatives() -> Derivation:
                 *(slope, share * (inside.subs(ends) + ahead - behind), "the pressure at moving ends"),
                 left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
             )  # fmt: skip
-    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
+    proof.recall("F10-touch")
     per_depth = sp.Derivative(_touching, d)
-    proof.recall("F11-edges", per_depth, established("F11-edges", per_depth))
+    proof.recall("F11-edges")
     proof.define(xi, _touching)
     proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
     proof.equal(P * per_depth, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
                 right=r"X_{\mathrm{e}}'")  # fmt: skip
-    return proof.done(P * per_depth, sp.Derivative(edge_path, time))
 
 
 _AT_TOUCH = r"\hat p \frac{\partial \xi}{\partial d}"
 _TOUCHES = "an edge that touches: its velocity through the foundation"
-_DEPEND = (
-    r"At an edge that peels $\hat p$ vanishes, and with it the term of that edge. An edge that "
-    r"touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the "
-    r"foundation to $\partial f_z/\partial d$."
-)
 
 
 def _partial(force: sp.Expr, variable: sp.Expr) -> str:
@@ -195,9 +180,13 @@ def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.E
     return rf"{tex(share)} \left[{tex(inside)} + {ends[0]} - {ends[1]}\right]"
 
 
-def _start_from_rest() -> Derivation:
-    proof = _theorem("F11-start", title="How forces depend on the motion after a start from rest",
-                     text=_START, uses=("F11-derivatives",))  # fmt: skip
+@result("F11-start", uses=("F11-derivatives",))
+def _start_from_rest(proof: Proof) -> None:
+    """How forces depend on the motion after a start from rest.
+
+    While the drive does not slow down, the right edge peels and the left one touches undisturbed ground: the
+    motion is an ordinary differential equation of two variables, without memory, with this Jacobian.
+    """
     proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
     proof.define(right, START[right], "peels")
     proof.define(left, START[left], "touches undisturbed ground")
@@ -209,11 +198,4 @@ def _start_from_rest() -> Derivation:
         slope = sp.Derivative(established("F11", force).subs(START), variable)
         proof.equal(slope, value, "F11", left=_partial(force, variable))
     first = sp.Derivative(established("F11", f_normal).subs(START), d)
-    return proof.done(first, JACOBIAN[0])
-
-
-_START = (
-    "While the drive does not slow down, the right edge peels and the left one touches undisturbed "
-    "ground: the motion is an ordinary differential equation of two variables, without memory, with "
-    "this Jacobian."
-)
+    proof.done(first, JACOBIAN[0])

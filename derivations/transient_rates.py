@@ -1,50 +1,52 @@
 """Rates of the transient: near the steady state (F12), and without inertia (F13)."""
 
-from functools import partial
-
 import sympy as sp
 
 from . import tables
 from .book import established
+from .chapter import Chapter
 from .master_curve import state_at
-from .record import Derivation, Table
+from .model import K, M, R, V, g, tau
+from .nomenclature import letter, symbol
+from .record import Table
+from .steady import l, q
 from .step import Proof
-from .symbols import (
-    K,
-    M,
-    P,
-    R,
-    V,
-    a,
-    b,
-    beta,
-    change,
-    d,
-    d_s,
-    drive_excess,
-    eps,
-    eps_critical,
-    f,
-    f_normal,
-    g,
-    kappa,
-    l,
-    lam,
-    per_depth,
-    per_rate,
-    q,
-    rho,
-    right,
-    sigma,
-    tau,
-    time,
-    w,
-    xi,
+from .theorems import LOAD, NUMBER, UNIT, A, kappa, lam, w
+from .transient_edges import b, rho, right
+from .transient_memory import SECTION, time
+from .transient_motion import PEELING_NORMAL_FORCE, START, a
+from .transient_scaling import P, d, d_s, eps, f_normal, xi
+
+eps_critical = symbol(
+    "epsilon_c",
+    "inertia number between monotone and oscillating motion",
+    latex=r"\varepsilon_{\mathrm{c}}",
 )
-from .theorems import LOAD, NUMBER, UNIT, A
-from .transient_memory import SECTION
-from .transient_motion import PEELING_NORMAL_FORCE, START
-from .transient_scaling import PRESSURE
+f = symbol(
+    "f",
+    r"scaled force that balances weight and spring, $1 - \kappa (d - 1)$",
+    printed=r"f_{\mathrm{b}}",
+)
+letter(r"\tilde d", "scaled depth near that of steady sliding")
+change = symbol("d_hat", "amplitude of its change", latex=r"\hat d", real=True)
+per_depth = symbol("A", "stiffness of the contact, scaled")
+per_rate = symbol("B", "damping of the contact, scaled")
+sigma = symbol("sigma", "scaled rate of a small motion about steady sliding", real=True)
+letter(r"\sigma_1", "faster of two rates")
+letter(r"\sigma_2", "slower of two rates")
+letter("T_1", "shorter time constant", "s")
+letter("T_2", "longer time constant", "s")
+drive_excess = symbol(
+    "n",
+    r"parameter of the slow manifold, $(\lambda - \hat a)/(2 f_{\mathrm{b}})^{1/3}$",
+    printed=r"\bar n",
+    real=True,
+)
+beta = symbol(
+    "beta",
+    r"scaled length of the contact on the slow manifold, $b/(2 f_{\mathrm{b}})^{1/3}$",
+    printed=r"\bar b",
+)
 
 DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
 """The dependence of the force on the indenter on the depth rate, and on the depth."""
@@ -63,26 +65,16 @@ SLOW_RATE = right**2 + 2 * lam * right - d
 EXCESS = 2 * (1 - beta**3) / (3 * beta**2)
 """n of the slow manifold, for its width beta."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F12 and F13."""
-    return (
-        _linearised(),
-        _contact(),
-        _rates(),
-        _critical_inertia(),
-        _time_constants(),
-        _standard(),
-        _manifold(),
-        _one_root(),
-    )
+@result("F12-linear", uses=("scaled-form", "F11-start"))
+def _linearised(proof: Proof) -> None:
+    r"""Small motions about steady sliding.
 
-
-def _linearised() -> Derivation:
-    proof = _theorem("F12-linear", title="Small motions about steady sliding", text=_SMALL,
-                     uses=("scaled-form", "F11-start"))  # fmt: skip
+    The scaled motion with the force of F11-start, for the depth $D = a^2 + \hat d e^{\sigma s}$ near that of
+    steady sliding, $a^2$. To first order in $\hat d$ it is obeyed if $\sigma$ is a root of the quadratic.
+    """
     force = established("F11", f_normal).subs(START)
     near = a**2 + change * sp.exp(sigma * time)
     rate = sp.diff(near, time)
@@ -101,55 +93,53 @@ def _linearised() -> Derivation:
         right=r"\left(\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa\right) "
         r"e^{\sigma s}",
     )
-    return proof.done(first, QUADRATIC * sp.exp(sigma * time))
 
 
-_SMALL = (
-    r"The scaled motion with the force of F11-start, for the depth $D = a^2 + \hat d e^{\sigma s}$ near "
-    r"that of steady sliding, $a^2$. To first order in $\hat d$ it is obeyed if $\sigma$ is a root of the "
-    "quadratic."
-)
+@result("F12-steady")
+def _contact(proof: Proof) -> None:
+    """Stiffness and damping of the contact.
 
-
-def _contact() -> Derivation:
-    proof = _theorem("F12-steady", title="Stiffness and damping of the contact", text=_SPRING)
+    In steady sliding, with the half length $a$ in units of $a_0$, and the trailing edge at $a q$.
+    """
     proof.define(lam, a * l)
     proof.define(l, NUMBER)
     for name, form in _IN_Q.items():
-        proof.recall("F12-linear", name, established("F12-linear", name))
+        proof.recall("F12-linear", name)
         proof.equal(name, form, r"$\sqrt{1 + l^2} = l + q$")
-    return proof.done(per_depth, _IN_Q[per_depth])
+    proof.done(per_depth, _IN_Q[per_depth])
 
 
-_SPRING = r"In steady sliding, with the half length $a$ in units of $a_0$, and the trailing edge at $a q$."
 _IN_Q = {per_depth: a * (1 + q) ** 2 / (2 * q), per_rate: a * (1 + q)}
 
 
-def _rates() -> Derivation:
-    proof = _theorem("F12", title="Rates at the steady state", text=_RATES, uses=("F12-linear",))
+@result("F12", uses=("F12-linear",))
+def _rates(proof: Proof) -> None:
+    r"""Rates at the steady state.
+
+    The roots of the quadratic of F12-linear: near the steady state the change of depth is a sum of
+    $e^{\sigma_1 s}$ and $e^{\sigma_2 s}$.
+    """
     proof.where(sp.Gt(DAMPING**2, 4 * eps * STIFFNESS), "no oscillation")
     middle = -DAMPING / (2 * eps)
     proof.root(QUADRATIC, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
     proof.root(QUADRATIC, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
-    return proof.done(_second, SLOW)
-
-
-_RATES = (
-    r"The roots of the quadratic of F12-linear: near the steady state the change of depth is a sum of "
-    r"$e^{\sigma_1 s}$ and $e^{\sigma_2 s}$."
-)
 
 
 def steady_sliding(proof: Proof) -> None:
     """Let A, B and lambda be those of steady sliding, by the half length and q."""
     proof.define(l, NUMBER)
-    proof.recall("F12-steady", lam, a * l)
-    for name, form in _IN_Q.items():
-        proof.recall("F12-steady", name, form)
+    proof.recall("F12-steady", lam)
+    proof.recall("F12-steady", *_IN_Q)
 
 
-def _critical_inertia() -> Derivation:
-    proof = _theorem("F12-boundary", title="Where oscillation begins", text=_BOUNDARY, uses=("F1",))
+@result("F12-boundary", uses=("F1",))
+def _critical_inertia(proof: Proof) -> None:
+    r"""Where oscillation begins.
+
+    The transient is monotone near the steady state for $\varepsilon \le \varepsilon_{\mathrm{c}}$ and
+    oscillates for $\varepsilon > \varepsilon_{\mathrm{c}}$. For a dead weight the boundary in the plane of
+    $\lambda$ and $\varepsilon$ is rational in $q$, up to cube roots.
+    """
     cubed = 27 * q**4 / (64 * (1 + q) ** 2 * A)
     proof.define(eps_critical, DAMPING**2 / (4 * STIFFNESS))
     proof.equal(DAMPING**2 - 4 * eps_critical * STIFFNESS, sp.S.Zero, "both rates are equal")
@@ -157,27 +147,23 @@ def _critical_inertia() -> Derivation:
     proof.define(kappa, sp.S.Zero, "dead weight")
     proof.equal(eps_critical, 3 * a * q / 8, "three eighths of the trailing edge $r = a q$")
     proof.define(a, sp.cbrt(4 / (3 * w)), r"the load $W_0 \frac{3}{4} a^3 w$ is the weight")
-    proof.recall("F1", w, LOAD)
+    proof.recall("F1", w)
     proof.equal(eps_critical**3, cubed, "the boundary, in terms of $q$")
     proof.equal(lam**3, (1 - q) ** 3 * (1 + q) / (q**2 * A), "and the drive number")
     proof.sign(sp.Derivative(cubed, q), ">", 0, UNIT, r"it falls with growing $\lambda$")
     rest, fast = sp.Rational(3, 8), 1 / (4 * lam**2)
     proof.equal(sp.Subs(cubed, q, 1), rest**3, "at rest")
     proof.leading_order(eps_critical**3, fast**3, q, 0, "fast", eps=lam ** -sp.Rational(3, 2))
-    return proof.done(eps_critical, 3 * a * q / 8)
+    proof.done(eps_critical, 3 * a * q / 8)
 
 
-_BOUNDARY = (
-    r"The transient is monotone near the steady state for $\varepsilon \le \varepsilon_{\mathrm{c}}$ "
-    r"and oscillates for $\varepsilon > \varepsilon_{\mathrm{c}}$. For a dead weight the boundary in the "
-    r"plane of $\lambda$ and $\varepsilon$ is rational in $q$, up to cube roots."
-)
+@result("F12-time-constants", uses=("F12",))
+def _time_constants(proof: Proof) -> None:
+    r"""The two time constants.
 
-
-def _time_constants() -> Derivation:
-    proof = _theorem(
-        "F12-time-constants", title="The two time constants", text=_TIMES, uses=("F12",)
-    )
+    $T_1 = -\tau/\sigma_1$ and $T_2 = -\tau/\sigma_2$ for small $\varepsilon$: the fast one is due to the
+    mass; the slow one is a fraction of the retardation time, which depends on the drive alone.
+    """
     steady_sliding(proof)
     proof.define(kappa, sp.S.Zero, "dead weight")
     fast, slow = 4 * eps / (3 * a * (1 + q)), 2 * q / (1 + q)
@@ -185,18 +171,16 @@ def _time_constants() -> Derivation:
         proof.define(name, -tau / rate, "F12")
     proof.leading_order(_times[0] / tau, fast, eps, 0, "inertia against damping", eps=eps)
     proof.leading_order(_times[1] / tau, slow, eps, 0, "damping against stiffness", eps=eps)
-    return proof.done(_times[1] / tau, slow)
 
 
-_TIMES = (
-    r"$T_1 = -\tau/\sigma_1$ and $T_2 = -\tau/\sigma_2$ for small $\varepsilon$: the fast one is "
-    r"due to the mass; the slow one is a fraction of the retardation time, which depends on the drive alone."
-)
+@result("F12-table1", uses=("F12", "F12-boundary", "table1"))
+def _standard(proof: Proof) -> None:
+    """Time constants under standard conditions.
 
-
-def _standard() -> Derivation:
-    proof = _theorem("F12-table1", title="Time constants under standard conditions", text=_STANDARD,
-                     uses=("F12", "F12-boundary", "table1"))  # fmt: skip
+    The paper reads "1 ms" and "10 ms" from its Fig. 3 for the dead weight. They are the two time constants of
+    the steady state, computed here exactly and then rounded to four digits: the fast one is inertia against
+    the damping of the foundation, the slow one damping against stiffness.
+    """
     cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(tables.STANDARD)
     quartic, state = state_at(cubed)
     proof.unique_root(quartic, UNIT, "F2 with the numbers of Table 1")
@@ -216,7 +200,7 @@ def _standard() -> Derivation:
         ("Fast time constant", "$T_1$", -milliseconds / FAST, "ms"),
         ("Slow time constant", "$T_2$", -milliseconds / SLOW, "ms"),
     )
-    return proof.done(quartic, 0, table=Table(
+    proof.done(quartic, 0, table=Table(
         ("Quantity", "Symbol", "Value", "Unit"),
         tuple((name, symbol, _four_digits(value.subs(known).subs(q, state)), unit)
               for name, symbol, value, unit in rows),
@@ -227,19 +211,16 @@ def _four_digits(value: sp.Expr) -> str:
     return f"{float(sp.N(value, 30)):.4g}"
 
 
-_STANDARD = (
-    'The paper reads "1 ms" and "10 ms" from its Fig. 3 for the dead weight. They are the two time '
-    "constants of the steady state, computed here exactly and then rounded to four digits: the fast "
-    r"one is inertia against the damping of the foundation, the slow one damping against stiffness."
-)
+@result("F13", uses=("scaled-form", "F10-touch"))
+def _manifold(proof: Proof) -> None:
+    r"""Slow manifold.
 
-
-def _manifold() -> Derivation:
-    proof = _theorem(
-        "F13", title="Slow manifold", text=_MANIFOLD, uses=("scaled-form", "F10-touch")
-    )
+    Without inertia the indenter is in balance, $f_z = f$ with $f = 1 - \kappa (d - 1)$: given $d$, this
+    determines the right edge $r$, and $r$ determines $d'$. One differential equation of first order remains.
+    It holds where the left edge touches undisturbed ground, $b \le 2 \rho$.
+    """
     cubic = 2 * right**3 / 3 + (a + lam) * right**2 + 2 * lam * a * right + lam * a**2 - a**3 / 3
-    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.recall("scaled-pressure")
     proof.define(xi, right, "the right edge peels")
     proof.root(P, d_s, SLOW_RATE, "no pressure there")
     proof.define(rho, right + lam)
@@ -247,19 +228,16 @@ def _manifold() -> Derivation:
     proof.define(f, PEELING_NORMAL_FORCE, "F11: the force equals the weight less the spring force")
     proof.equal(f, (right + a) ** 2 * (2 * right + 3 * lam - a) / 4, "which is a cubic in $r$")
     proof.equal(4 * f / 3, cubic, "expanded")
-    return proof.done(d_s, SLOW_RATE)
+    proof.done(d_s, SLOW_RATE)
 
 
-_MANIFOLD = (
-    r"Without inertia the indenter is in balance, $f_z = f$ with $f = 1 - \kappa (d - 1)$: given "
-    r"$d$, this determines the right edge $r$, and $r$ determines $d'$. One differential equation "
-    r"of first order remains. "
-    r"It holds where the left edge touches undisturbed ground, $b \le 2 \rho$."
-)
+@result("F13-root", uses=("F13",))
+def _one_root(proof: Proof) -> None:
+    r"""Slow manifold: one root.
 
-
-def _one_root() -> Derivation:
-    proof = _theorem("F13-root", title="Slow manifold: one root", text=_ROOT, uses=("F13",))
+    With $b = (2 f)^{1/3} \beta$ and $\lambda - a = (2 f)^{1/3} n$ the cubic has no parameter but $n$: $2
+    \beta^3 + 3 n \beta^2 = 2$ has exactly one positive root for each $n$.
+    """
     unit = sp.cbrt(2 * f)
     positive = (beta, 0, sp.oo)
     relation = beta**2 * (2 * beta + 3 * drive_excess) / 2
@@ -277,10 +255,4 @@ def _one_root() -> Derivation:
     proof.notation["f_z"] = PEELING_NORMAL_FORCE
     proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
                 left=r"\frac{f_z}{f}")  # fmt: skip
-    return proof.done(drive_excess, EXCESS)
-
-
-_ROOT = (
-    r"With $b = (2 f)^{1/3} \beta$ and $\lambda - a = (2 f)^{1/3} n$ the cubic has no parameter but $n$: "
-    r"$2 \beta^3 + 3 n \beta^2 = 2$ has exactly one positive root for each $n$."
-)
+    proof.done(drive_excess, EXCESS)

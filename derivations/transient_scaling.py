@@ -1,104 +1,65 @@
 """Transient sliding: the scaled equations with their three numbers, and the edges that peel (Eq. 33)."""
 
-from functools import partial
-
 import sympy as sp
 
 from .book import Shown
+from .chapter import Chapter
 from .groups import k_s
-from .model import compression_rate, depth_rate, slope
-from .record import Derivation
-from .step import Proof
-from .symbols import (
-    W_0,
+from .model import (
     C,
     F_z,
     K,
     M,
-    P,
     R,
     V,
-    a,
-    a_0,
-    d,
-    d_s,
-    d_ss,
-    delta_0,
+    compression_rate,
     delta_t,
-    eps,
-    f_normal,
+    depth_rate,
     g,
     h,
-    kappa,
-    l_r,
-    lam,
-    p,
+    slope,
     t,
     tau,
     u_i,
     x,
     x_i,
-    xi,
-    z_a,
-)  # fmt: skip
+)
+from .nomenclature import function, letter, symbol
+from .power_law_weight import a_0
+from .steady import a, l_r, p
+from .step import Proof
+from .tables import delta_0
+from .theorems import kappa, lam
 
-SECTION = "Transient sliding"
+z_a = function(
+    "z_A", "height of the lowest point of the indenter", "m", printed=r"z_{\mathrm{A}}", real=True
+)(t)
+letter("x_{-}", "smaller zero of the pressure", "m")
+W_0 = symbol("W_0", "static load per unit width", "N/m")
+d = symbol("d", r"scaled depth, $\delta/\delta_0$")
+d_s = symbol("d_s", latex="d'", real=True)
+d_ss = symbol("d_ss", latex="d''", real=True)
+eps = symbol("epsilon", r"inertia number, $M \delta_0/(W_0 \tau^{2})$", latex=r"\varepsilon")
+f_normal = symbol(
+    "f_normal", "scaled normal force, $F_z/W_0$", latex="f_z", source="eq14", real=True
+)
+xi = symbol("xi", "scaled coordinate, $x/a_0$", latex=r"\xi", real=True)
+P = symbol("P", r"scaled pressure, $p/(K \delta_0)$", latex=r"\hat p", printed=r"\bar p", real=True)
+
 
 PRESSURE = d + d_s - xi**2 - 2 * lam * xi
 """p/(K delta_0) in the contact."""
 
 _half = sp.sqrt(2 * R * delta_t)
-_x_minus, _x_plus = sp.symbols("x_- x_TE", real=True)
+_x_minus = symbol("x_-", latex="x_{-}", real=True)
+_x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
 """Zeros of the pressure; x_TE may be negative under an indenter that moves."""
 TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
 """Eq. 33: the zeros of the pressure."""
 LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
 
 _RADICAND = r"a^2 \left(1 + \tau \frac{\dot\delta}{\delta}\right) + l_{\mathrm{r}}^2"
-_equation = partial(Proof, section=SECTION)
-
-
-def derive() -> tuple[Derivation, ...]:
-    """Derive the scaled form and Eq. 33."""
-    return *_scaled_form(), _peeling_edges()
-
-
-def _scaled_form() -> tuple[Derivation, ...]:
-    pressure = _equation("scaled-pressure", None, title="Scaled pressure", text=_SCALES)
-    _scale(pressure)
-    pressure.recall("eq22", tau, C / K)
-    pressure.define(slope, x_i / R, "Eq. (3)", left="h'(x_i)", right="x_i/R")
-    pressure.define(h(x_i), x_i**2 / (2 * R), "Eq. (3)", left="h(x_i)", right="x_i^2/(2 R)")
-    pressure.recall("eq6", u_i, -h(x_i) + delta_t)
-    pressure.equal(u_i / delta_0, d - xi**2, "compression under the indenter")
-    pressure.recall("eq7", compression_rate, -slope * V + depth_rate)
-    pressure.define(lam, V * tau / a_0, "drive number")
-    shown = r"\frac{\tau \dot u_i}{\delta_0}"
-    pressure.equal(tau * compression_rate / delta_0, d_s - 2 * lam * xi, "its rate", left=shown)
-    pressure.define(p, K * u_i + C * compression_rate, right=r"K u_i + C \dot u_i")
-    pressure.define(P, p / (K * delta_0))
-    pressure.equal(P, PRESSURE, "scaled pressure")
-    pressure.equal(
-        *(
-            p * a_0 / W_0,
-            sp.Rational(3, 4) * P,
-            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
-        ),
-    )
-    pressure.equal(
-        -slope * p * a_0 / (W_0 * delta_0 / a_0),
-        -sp.Rational(3, 2) * xi * P,
-        r"share of the friction force, in units of $W_0 \delta_0/a_0$",
-    )
-    return pressure.done(P, PRESSURE), _scaled_motion()
-
-
-_SCALES = (
-    r"The unit of lengths along $x$ is $a_0 = \sqrt{2 R \delta_0}$, the half length of the contact "
-    r"at rest, that of "
-    r"depths the static depth $\delta_0$, that of forces the static load $W_0 = \frac{4}{3} K a_0 "
-    r"\delta_0$ and that of time $\tau$; a prime is the derivative with respect to $s = t/\tau$."
-)
+result = Chapter("Transient sliding")
 
 
 def _scale(proof: Proof) -> None:
@@ -110,11 +71,52 @@ def _scale(proof: Proof) -> None:
     proof.define(d_s, tau * depth_rate / delta_0, left="d'", right=r"\tau \dot\delta/\delta_0")
 
 
-def _scaled_motion() -> Derivation:
-    proof = _equation("scaled-form", None, title="Scaled motion of the indenter", text=_SUPPORTS,
-                      uses=("eq14", "eq17", "scaled-pressure"))  # fmt: skip
+@result("scaled-pressure")
+def _scaled_pressure(proof: Proof) -> None:
+    r"""Scaled pressure.
+
+    The unit of lengths along $x$ is $a_0 = \sqrt{2 R \delta_0}$, the half length of the contact at rest, that
+    of depths the static depth $\delta_0$, that of forces the static load $W_0 = \frac{4}{3} K a_0 \delta_0$
+    and that of time $\tau$; a prime is the derivative with respect to $s = t/\tau$.
+    """
+    _scale(proof)
+    proof.recall("eq22")
+    proof.define(slope, x_i / R, "Eq. (3)", left="h'(x_i)", right="x_i/R")
+    proof.define(h(x_i), x_i**2 / (2 * R), "Eq. (3)", left="h(x_i)", right="x_i^2/(2 R)")
+    proof.recall("eq6")
+    proof.equal(u_i / delta_0, d - xi**2, "compression under the indenter")
+    proof.recall("eq7")
+    proof.define(lam, V * tau / a_0, "drive number")
+    shown = r"\frac{\tau \dot u_i}{\delta_0}"
+    proof.equal(tau * compression_rate / delta_0, d_s - 2 * lam * xi, "its rate", left=shown)
+    proof.define(p, K * u_i + C * compression_rate, right=r"K u_i + C \dot u_i")
+    proof.define(P, p / (K * delta_0))
+    proof.equal(P, PRESSURE, "scaled pressure")
+    proof.equal(
+        *(
+            p * a_0 / W_0,
+            sp.Rational(3, 4) * P,
+            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
+        ),
+    )
+    proof.equal(
+        -slope * p * a_0 / (W_0 * delta_0 / a_0),
+        -sp.Rational(3, 2) * xi * P,
+        r"share of the friction force, in units of $W_0 \delta_0/a_0$",
+    )
+    proof.done(P, PRESSURE)
+
+
+@result("scaled-form", uses=("eq14", "eq17", "scaled-pressure"))
+def _scaled_motion(proof: Proof) -> None:
+    r"""Scaled motion of the indenter.
+
+    Three dimensionless numbers remain: $\lambda = V \tau/a_0$, $\varepsilon = M \delta_0/(W_0 \tau^2)$ and
+    $\kappa = k_s \delta_0/W_0$. A dead weight has $\kappa = 0$; a spring of stiffness $k_s$, relaxed at the
+    static depth, makes the indenter suspended, and $\kappa \to \infty$ holds it at $d = 1$.
+    """
     force = F_z - M * g - k_s * (z_a + delta_0)
-    proof.recall("eq18", delta_t, -z_a)
+    proof.recall("eq18")
     proof.define(d, delta_t / delta_0, right=r"\delta/\delta_0")
     proof.define(d_ss, tau**2 * delta_t.diff(t, 2) / delta_0, right=r"\tau^2 \ddot\delta/\delta_0")
     proof.define(f_normal, F_z / W_0)
@@ -128,25 +130,22 @@ def _scaled_motion() -> Derivation:
     result = 1 - f_normal - kappa * (d - 1)
     shown: Shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
     proof.equal(eps * d_ss, result, "scaled motion", **shown)
-    return proof.done(eps * d_ss, result)
 
 
-_SUPPORTS = (
-    r"Three dimensionless numbers remain: $\lambda = V \tau/a_0$, $\varepsilon = M \delta_0/(W_0 "
-    r"\tau^2)$ and "
-    r"$\kappa = k_s \delta_0/W_0$. A dead weight has $\kappa = 0$; a spring of stiffness $k_s$, relaxed "
-    r"at the static depth, makes the indenter suspended, and $\kappa \to \infty$ holds it at $d = 1$."
-)
+@result("eq33", uses=("eq6", "eq7"))
+def _peeling_edges(proof: Proof) -> None:
+    """Trailing edge of the movable indenter.
 
-
-def _peeling_edges() -> Derivation:
-    proof = _equation("eq33", 33, title="Trailing edge of the movable indenter", text=_PEEL,
-                      uses=("eq6", "eq7"))  # fmt: skip
+    It holds while the edge peels, that is, while elements leave the contact there because their pressure
+    vanishes. The paper gives one zero of the pressure; the other is a leading edge that peels, as occurs when
+    the indenter is lifted faster than the edge advances onto undisturbed ground. If there is no zero, no
+    element can be pressed and the indenter has left the foundation.
+    """
     half = K / (2 * R)
     square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
-    proof.recall("eq3", h(x), x**2 / (2 * R))
-    proof.recall("eq22", tau, C / K)
-    proof.recall("eq29", l_r, V * tau)
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
     proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
     proof.define(
         *(p, K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)), _KINEMATICS),
@@ -170,13 +169,6 @@ def _peeling_edges() -> Derivation:
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
         name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
-    return proof.done(_x_plus, TRAILING)
 
 
 _KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"
-_PEEL = (
-    "It holds while the edge peels, that is, while elements leave the contact there because their "
-    "pressure vanishes. The paper gives one zero of the pressure; the other is a leading edge that "
-    "peels, as occurs when the indenter is lifted faster than the edge advances onto undisturbed ground. If "
-    "there is no zero, no element can be pressed and the indenter has left the foundation."
-)

@@ -6,45 +6,84 @@ relaxation function that is completely monotone, is an integral over arms (Berns
 the length of the contact.
 """
 
-from functools import partial
-
 import sympy as sp
 
 from .algebra import antiderivative
-from .record import Derivation
+from .chapter import Chapter
+from .model import R
+from .nomenclature import function, letter, symbol
+from .steady import W, a, l, q
 from .step import Proof
-from .symbols import (
-    R,
-    W,
-    a,
-    arm_load,
-    arm_lost,
-    arm_number,
-    arm_pressure,
-    arm_work,
-    contact_length,
-    excess_share,
-    from_trailing,
-    half_share,
-    l,
-    moment_ahead,
-    moment_behind,
-    moment_bulge,
-    moment_mean,
-    moment_slant,
-    moment_twist,
-    passed,
-    place,
-    primitive_1,
-    primitive_2,
-    primitive_3,
-    q,
-    ratio_first,
-    ratio_second,
-    relaxation,
-    spring_share,
-    springpot,
-)  # fmt: skip
+
+contact_length = symbol("c_v", "length of the contact", "m", latex=r"\breve c")
+arm_number = symbol(
+    "z_v", r"length of the contact over that of an arm, $\breve c/l_i$", latex=r"\breve z"
+)
+place = symbol(
+    "x_v", "distance from the leading edge over the length of the contact", latex=r"\breve x"
+)
+passed = symbol("s_v", r"as $\breve x$, of an earlier position", latex=r"\breve s", real=True)
+half_share = symbol("a_v", "half length at rest over the length of the contact", latex=r"\breve a")
+arm_pressure = symbol(
+    "p_v", r"pressure of an arm, in units of $K_i \breve c^2/R$", latex=r"\breve p"
+)
+from_trailing = symbol(
+    "w_v", "distance from the trailing edge over the length of the contact", latex=r"\breve w"
+)
+moment_ahead = symbol(
+    "P_v", r"moment of the relaxation function, of weight $1 - \breve w$", latex=r"\breve P"
+)
+moment_behind = symbol("Q_v", r"moment of weight $\breve w$", latex=r"\breve Q")
+moment_bulge = symbol("D_v", r"moment of weight $\breve w (1 - \breve w)/2$", latex=r"\breve D")
+moment_twist = symbol(
+    "E_v", r"moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$", latex=r"\breve E"
+)
+moment_mean = symbol(
+    "A_v", r"mean of the relaxation function, $\breve P + \breve Q$", latex=r"\breve A"
+)
+moment_slant = symbol("B_v", r"$(\breve P - \breve Q)/2$", latex=r"\breve B")
+excess_share = symbol("eta_v", r"$\breve a - \frac{1}{2}$", latex=r"\breve \eta")
+arm_load = symbol("W_v", r"load of an arm, in units of $K_i \breve c^3/R$", latex=r"\breve W")
+arm_work = symbol(
+    "F_v", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", latex=r"\breve F"
+)
+arm_lost = symbol("L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L")
+relaxation = function(
+    "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
+)(contact_length)
+primitive_1 = function(
+    "G_v1",
+    r"integral of $\breve G$ over the contact",
+    "N/m²",
+    printed=r"\breve G_1",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+primitive_2 = function(
+    "G_v2",
+    r"integral of $\breve G_1$ over the contact",
+    "N/m",
+    printed=r"\breve G_2",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+primitive_3 = function(
+    "G_v3",
+    r"integral of $\breve G_2$ over the contact",
+    "N",
+    printed=r"\breve G_3",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+ratio_first = symbol(
+    "t_v0", "ratio of two modified spherical Bessel functions", latex=r"\breve t_0"
+)
+ratio_second = symbol("t_v1", "ratio of the next two", latex=r"\breve t_1")
+spring_share = symbol("nu_v", "1 less the order of a springpot", latex=r"\breve \nu")
+springpot = symbol(
+    "zeta_v", "stiffness of springpot or arm over the spring's", latex=r"\breve \zeta"
+)
+letter(r"\Gamma", "Gamma function", source="constant")
 
 SECTION = "Any linear viscoelastic foundation"
 
@@ -77,19 +116,19 @@ WORK = E + e**2 * P
 LOST = E - B**2 / 2 + e * (A * B + e * (B + A * z * P / 2))
 UNIT = (w, 0, 1)
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F17 for an arm, and its consequences for sums of arms."""
-    return (
-        *(_pressure(), _moments(), _edge(), _load(), _work(), _energy()),
-        *(_growth(), _forms(), _springpot(), _kelvin_voigt(), _slow(), _fast()),
-    )
+@result("F17-pressure")
+def _pressure(proof: Proof) -> None:
+    r"""Any relaxation function: pressure of an arm.
 
-
-def _pressure() -> Derivation:
-    proof = _theorem("F17-pressure", title="Any relaxation function: pressure of an arm", text=_ARM)
+    An element at the distance $X$ behind the leading edge is compressed by $u$, $R u' = a - X$; a foundation
+    with the relaxation function $G(t)$ exerts the pressure $p = \int G((X - X')/V)\, u'\, dX'$. This is
+    linear in $G$. One arm is $G = K_i e^{-X/l_i}$, $l_i = V \tau_i$; its pressure is $\breve p$ in units of
+    $K_i \breve c^2/R$, where $\breve c$ is the length of the contact, $\breve z = \breve c/l_i$, $\breve x =
+    X/\breve c$ and $\breve a = a/\breve c$.
+    """
     integrand = sp.exp(-z * (y - s)) * (b - s)
     primitive = sp.exp(-z * (y - s)) * (b - s + 1 / z) / z
     reason = r"$\int G\,\dot u\,dt$ of one arm, with $R u' = a - X$ in the contact"
@@ -97,21 +136,17 @@ def _pressure() -> Derivation:
     slope = sp.Derivative(PRESSURE, y)
     proof.equal(slope, b - y - z * arm_pressure, "the arm is strained by $a - X$, and relaxes",
                 left=r"\frac{d \breve p}{d \breve x}")  # fmt: skip
-    return proof.done(arm_pressure, PRESSURE)
+    proof.done(arm_pressure, PRESSURE)
 
 
-_ARM = (
-    "An element at the distance $X$ behind the leading edge is compressed by $u$, $R u' = a - X$; a "
-    r"foundation with the relaxation function $G(t)$ exerts the pressure "
-    r"$p = \int G((X - X')/V)\, u'\, dX'$. "
-    r"This is linear in $G$. One arm is $G = K_i e^{-X/l_i}$, $l_i = V \tau_i$; its pressure is $\breve "
-    r"p$ in units of $K_i \breve c^2/R$, where $\breve c$ is the length of the contact, $\breve z = "
-    r"\breve c/l_i$, $\breve x = X/\breve c$ and $\breve a = a/\breve c$."
-)
+@result("F17-moments")
+def _moments(proof: Proof) -> None:
+    r"""Any relaxation function: four moments.
 
-
-def _moments() -> Derivation:
-    proof = _theorem("F17-moments", title="Any relaxation function: four moments", text=_MOMENTS)
+    The moments weight the memory of an arm at the trailing edge, at the distance $\breve w \breve c$ ahead of
+    it. The weights of the first three are positive; that of the last has no mean, and falls from the trailing
+    edge, so that none of the moments is negative where $G$ falls and is convex.
+    """
     for name, (weight, form) in MOMENTS.items():
         integrand = weight * sp.exp(-z * w)
         proof.integral(name, integrand, UNIT, antiderivative(integrand, w),
@@ -121,23 +156,14 @@ def _moments() -> Derivation:
     proof.equal(A, (1 - FALL) / z, "mean")
     proof.equal(B, z * D, "one moment gives another")
     proof.equal(1 - A, z * P, "which replaces the difference")
-    return proof.done(A, P + Q)
-
-
-_MOMENTS = (
-    r"The moments weight the memory of an arm at the trailing edge, at the distance $\breve w "
-    r"\breve c$ ahead of it. The weights of the first three are positive; that of the last has no "
-    r"mean, and falls from the "
-    "trailing edge, so that none of the moments is negative where $G$ falls and is convex."
-)
+    proof.done(A, P + Q)
 
 
 def _from_moments(proof: Proof) -> None:
     """Let the moments stand for their values, and a/c for 1/2 + e."""
-    for name, (_, form) in MOMENTS.items():
-        proof.recall("F17-moments", name, form)
-    proof.recall("F17-moments", A, P + Q)
-    proof.recall("F17-moments", B, (P - Q) / 2)
+    proof.recall("F17-moments", *MOMENTS)
+    proof.recall("F17-moments")
+    proof.recall("F17-moments", (B, (P - Q) / 2))
     proof.define(
         b, sp.Rational(1, 2) + e, "the half length, by its excess over half of the contact"
     )
@@ -146,61 +172,59 @@ def _from_moments(proof: Proof) -> None:
 def _under_pressure(proof: Proof) -> None:
     """Let the pressure of an arm stand for its value too."""
     _from_moments(proof)
-    proof.recall("F17-pressure", arm_pressure, PRESSURE)
+    proof.recall("F17-pressure")
 
 
-def _edge() -> Derivation:
-    proof = _theorem("F17-edge", title="Any relaxation function: trailing edge", text=_EDGE)
+@result("F17-edge")
+def _edge(proof: Proof) -> None:
+    r"""Any relaxation function: trailing edge.
+
+    All arms and the spring together have no pressure there: $a = \breve c \sum K_i \breve P/\sum K_i \breve
+    A$ and $x_{\mathrm{TE}} = \breve c \sum K_i \breve Q/\sum K_i \breve A$, with the moments of each arm. The
+    length of the contact therefore determines the half length at rest. The slope of the pressure, $R p' = a G
+    - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once.
+    """
     _from_moments(proof)
     proof.notation[r"\breve p"] = sp.Lambda(y, PRESSURE)
     at_edge = PRESSURE.subs(y, 1)
     proof.equal(at_edge, b * A - P, "pressure of the arm at the trailing edge", left=r"\breve p(1)")
     proof.equal(at_edge, e * A - B, "the same", left=r"\breve p(1)")
-    return proof.done(at_edge, e * A - B)
 
 
-_EDGE = (
-    r"All arms and the spring together have no pressure there: $a = \breve c \sum K_i \breve P/\sum "
-    r"K_i \breve A$ and $x_{\mathrm{TE}} = \breve c \sum K_i \breve Q/\sum K_i \breve A$, with the moments "
-    "of each arm. The length of the contact therefore determines the half length at rest. The slope "
-    "of the pressure, "
-    r"$R p' = a G - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once."
-)
+@result("F17-load")
+def _load(proof: Proof) -> None:
+    r"""Any relaxation function: load.
 
-
-def _load() -> Derivation:
-    proof = _theorem("F17-load", title="Any relaxation function: load", text=_LOAD)
+    Of one arm, in units of $K_i \breve c^3/R$. So $W = (\breve c^3/R) \sum K_i (\breve D + \breve \eta \breve
+    P)$, a sum of positive terms.
+    """
     _under_pressure(proof)
     primitive = (b * z * y - z * y**2 / 2 + y + (b * z + 1) * sp.exp(-z * y) / z) / z**2
     proof.integral(arm_load, arm_pressure, (y, 0, 1), sp.expand(primitive),
                    "the integral of the pressure", value=LOAD)  # fmt: skip
-    return proof.done(arm_load, LOAD)
 
 
-_LOAD = (
-    r"Of one arm, in units of $K_i \breve c^3/R$. So $W = (\breve c^3/R) \sum K_i (\breve D + \breve \eta"
-    r" \breve P)$, a sum of positive terms."
-)
+@result("F17")
+def _work(proof: Proof) -> None:
+    r"""Any relaxation function: friction force.
 
-
-def _work() -> Derivation:
-    proof = _theorem("F17", title="Any relaxation function: friction force", text=_WORK)
+    Of one arm, in units of $K_i \breve c^4/R^2$. So $F = (\breve c^4/R^2) \sum K_i (\breve E + \breve \eta^2
+    \breve P)$: friction is positive where $G$ falls and is convex, and no sum cancels.
+    """
     _under_pressure(proof)
     primitive = antiderivative(PRESSURE * (b - y), y)
     proof.integral(
         arm_work, arm_pressure * (b - y), (y, 0, 1), primitive, "the integral of $u' p$", value=WORK
     )
-    return proof.done(arm_work, WORK)
 
 
-_WORK = (
-    r"Of one arm, in units of $K_i \breve c^4/R^2$. So $F = (\breve c^4/R^2) \sum K_i (\breve E + \breve "
-    r"\eta^2 \breve P)$: friction is positive where $G$ falls and is convex, and no sum cancels."
-)
+@result("F17-energy")
+def _energy(proof: Proof) -> None:
+    r"""Any relaxation function: energy.
 
-
-def _energy() -> Derivation:
-    proof = _theorem("F17-energy", title="Any relaxation function: energy", text=_ENERGY)
+    What is stored in the springs at the trailing edge, $\breve p(1)^2/2$, is lost while the surface relaxes
+    behind the contact.
+    """
     _under_pressure(proof)
     stored = sp.Derivative(arm_pressure**2, y) / 2
     work = arm_pressure * (b - y)
@@ -210,13 +234,7 @@ def _energy() -> Derivation:
         arm_lost, z * arm_pressure**2, (y, 0, 1), primitive, "lost in the contact", value=LOST
     )
     proof.equal(arm_lost + (e * A - B) ** 2 / 2, WORK, "and what is stored where it ends")
-    return proof.done(arm_lost, LOST)
-
-
-_ENERGY = (
-    r"What is stored in the springs at the trailing edge, $\breve p(1)^2/2$, is lost while the surface "
-    "relaxes behind the contact."
-)
+    proof.done(arm_lost, LOST)
 
 
 def _primitives(proof: Proof) -> None:
@@ -227,9 +245,13 @@ def _primitives(proof: Proof) -> None:
     proof.define(a, second / first, "F17-edge")
 
 
-def _growth() -> Derivation:
-    proof = _theorem("F17-growth", title="Any relaxation function: growth of the contact",
-                     text=_GROWTH, uses=("F17-edge",))  # fmt: skip
+@result("F17-growth", uses=("F17-edge",))
+def _growth(proof: Proof) -> None:
+    r"""Any relaxation function: growth of the contact.
+
+    With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each
+    load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact.
+    """
     _primitives(proof)
     slope = 1 - primitive_2 * relaxation / primitive_1**2
     proof.equal(sp.Derivative(a, c), slope, "by the quotient rule: less than 1")
@@ -240,19 +262,15 @@ def _growth() -> Derivation:
     proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ inserted")
     rise = primitive_2 * slope / R
     proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
-    return proof.done(sp.Derivative(W, c), rise)
 
 
-_GROWTH = (
-    r"With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each "
-    r"load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact."
-)
+@result("F17-arm")
+def _forms(proof: Proof) -> None:
+    r"""Any relaxation function: an arm without cancellation.
 
-
-def _forms() -> Derivation:
-    proof = _theorem(
-        "F17-arm", title="Any relaxation function: an arm without cancellation", text=_FORMS
-    )
+    $\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of $\coth$, which
+    continues with 5, 7 and so on, all positive; ten terms give full double precision for $\breve z \le 4$.
+    """
     _from_moments(proof)
     x = z / 2
     hyperbolic = (1 + FALL) / (1 - FALL)
@@ -266,25 +284,22 @@ def _forms() -> Derivation:
     proof.equal(1 - x * t_0, 1 / x - 2 * FALL / (1 - FALL), r"for $\breve z > 4$")
     proof.equal(D, A * t_0 / 4, "all terms positive")
     proof.equal(E, A * t_0 * x * (1 + t_1 * (1 + x)) / 24, "all terms positive")
-    return proof.done(E, A * t_0 * x * (1 + t_1 * (1 + x)) / 24)
 
 
-_FORMS = (
-    r"$\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of "
-    r"$\coth$, which continues with 5, 7 and so on, all positive; ten terms give full double "
-    r"precision for $\breve z \le 4$."
-)
+@result("F17-springpot")
+def _springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: moments.
 
-
-def _springpot() -> Derivation:
-    proof = _theorem("F17-springpot", title="Fractional Kelvin-Voigt: moments", text=_SPRINGPOT)
+    For $G = K (1 + \breve \zeta \breve w^{\breve \nu - 1}/\Gamma(\breve \nu))$, $\breve \zeta = (V
+    \tau/\breve c)^{1 - \breve \nu}$, of the order $1 - \breve \nu$ between 0 and 1. The moments are divided
+    by $\Gamma(\breve \nu)$; for $\breve \nu \to 0$ they are then those of a dashpot, 1, 0, 0 and 1/12.
+    """
     fade = w ** (nu - 1)
     for name, (weight, _) in MOMENTS.items():
         integrand = sp.powsimp(sp.expand(fade * weight))
         powers = (term.as_coeff_exponent(w) for term in sp.Add.make_args(integrand))
         primitive = sum(share * w ** (power + 1) / (power + 1) for share, power in powers)
         proof.integral(name, integrand, UNIT, primitive, "a moment", value=SPRINGPOT[name])
-    return proof.done(E, SPRINGPOT[E])
 
 
 SPRINGPOT = {
@@ -293,16 +308,15 @@ SPRINGPOT = {
     D: 1 / (2 * (1 + nu) * (2 + nu)),
     E: (1 - nu) / (4 * nu * (1 + nu) * (3 + nu)),
 }
-_SPRINGPOT = (
-    r"For $G = K (1 + \breve \zeta \breve w^{\breve \nu - 1}/\Gamma(\breve \nu))$, $\breve \zeta = (V \tau/"
-    r"\breve c)^{1 - \breve \nu}$, of the order $1 - \breve \nu$ between 0 and 1. The moments are divided by "
-    r"$\Gamma(\breve \nu)$; for $\breve \nu \to 0$ they are then those of a dashpot, 1, 0, 0 and 1/12."
-)
 
 
-def _kelvin_voigt() -> Derivation:
-    proof = _theorem("F17-kelvin-voigt", title="Any relaxation function: Kelvin-Voigt", text=_VOIGT,
-                     uses=("F17-edge", "F17-load", "F17", "F17-springpot"))  # fmt: skip
+@result("F17-kelvin-voigt", uses=("F17-edge", "F17-load", "F17", "F17-springpot"))
+def _kelvin_voigt(proof: Proof) -> None:
+    r"""Any relaxation function: Kelvin-Voigt.
+
+    A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the steady state
+    of F1.
+    """
     lam, half = springpot, sp.Rational(1, 2)
     proof.define(A, 1 + lam, "spring and dashpot")
     proof.define(P, half + lam, "their moments")
@@ -319,36 +333,32 @@ def _kelvin_voigt() -> Derivation:
     work = (lam / 12 + e**2 * P) * contact_length**4 / (a**4 / 2)
     friction = (1 - q) * (1 + q) ** 2 * (q**2 - q + 4) / (12 * q)
     proof.equal(work, friction, r"$F R/(K \delta a^2)$ is that of F1")
-    return proof.done(work, friction)
 
 
-_VOIGT = (
-    r"A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the "
-    r"steady state of F1."
-)
+@result("F18-low", uses=("F17", "F17-load"))
+def _slow(proof: Proof) -> None:
+    r"""Any relaxation function: low velocity.
 
-
-def _slow() -> Derivation:
-    proof = _theorem("F18-low", title="Any relaxation function: low velocity", text=_SLOW,
-                     uses=("F17", "F17-load"))  # fmt: skip
+    With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$. To this order arms add up: $\mu \to C
+    V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i \tau_i$, which is Eq. (42). At low velocity every
+    foundation with a finite $C$ is Kelvin-Voigt.
+    """
     _from_moments(proof)
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
     proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order, "
                         r"and $e^{-\breve z}$ of none", **far)  # fmt: skip
     proof.leading_order(E, 1 / (12 * z), reason="friction force of the arm", **far)
-    return proof.done(E, 1 / (12 * z))
 
 
-_SLOW = (
-    r"With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$. To this order arms add up: $\mu "
-    r"\to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i \tau_i$, which is Eq. (42). At low velocity "
-    "every foundation with a finite $C$ is Kelvin-Voigt."
-)
+@result("F18-high", uses=("F17", "F17-load"))
+def _fast(proof: Proof) -> None:
+    r"""Any relaxation function: high velocity.
 
-
-def _fast() -> Derivation:
-    proof = _theorem("F18-high", title="Any relaxation function: high velocity", text=_FAST,
-                     uses=("F17", "F17-load"))  # fmt: skip
+    With $\breve c \to 2 a$ this is $\mu \to \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$, as $G(0) = K (1
+    + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; to this order arms add up. The half length is that
+    of the stiffness $G(0)$. So friction has a maximum even at a fixed depth, and Eqs. (45) and (46) hold only
+    in a window, in which most of the arms have relaxed and the fastest have not.
+    """
     _from_moments(proof)
     near = {"variable": z, "point": 0, "eps": z}
     proof.leading_order(B, z / 12, reason=r"so $\breve \eta^2$ is of second order", **near)
@@ -357,12 +367,4 @@ def _fast() -> Derivation:
     stiff = springpot
     limit = stiff * z / (10 * (1 + stiff))
     proof.equal(stiff * z / 120 / ((1 + stiff) / 12), limit, r"$\mu R/\breve c$ with the spring")
-    return proof.done(E, z / 120)
-
-
-_FAST = (
-    r"With $\breve c \to 2 a$ this is $\mu \to \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$, as $G(0) = "
-    r"K (1 + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; to this order arms add up. The half length "
-    r"is that of the stiffness $G(0)$. So friction has a maximum even at a fixed depth, and Eqs. (45) and "
-    "(46) hold only in a window, in which most of the arms have relaxed and the fastest have not."
-)
+    proof.done(E, z / 120)

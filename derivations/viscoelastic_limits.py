@@ -4,45 +4,74 @@ A bound uses two numbers of the relaxation function: for low velocity its integr
 the mean time int t (G - K) dt/C; for high velocity -G'(0)/G(0) and G''(0)/G'(0).
 """
 
-from functools import partial
-
 import sympy as sp
 
 from .algebra import antiderivative
-from .record import Derivation
+from .chapter import Chapter
+from .model import K
+from .nomenclature import function, letter, symbol
+from .relaxation import fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
+from .steady import l, q
 from .step import Proof
-from .symbols import (
-    K,
-    delay,
-    excess_share,
-    fading,
-    friction_number,
-    half_share,
-    haste,
-    l,
-    lack_ahead,
-    lack_mean,
-    lack_twist,
-    load_number,
-    memory,
-    other_trailing,
-    q,
-    rates,
-    slowing,
-    spare_1,
-    spare_2,
-    spare_3,
-    spring_1,
-    spring_2,
-    spring_number,
-    spring_share,
-    springpot,
-    steepness,
-    weight_at,
-)  # fmt: skip
 from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
 from .theorems import UNIT as RATIOS
-from .viscoelastic import MOMENTS, SECTION, SPRINGPOT, UNIT, A, D, E, P, Q, w
+from .viscoelastic import (
+    MOMENTS,
+    SECTION,
+    SPRINGPOT,
+    UNIT,
+    A,
+    D,
+    E,
+    P,
+    Q,
+    excess_share,
+    half_share,
+    spring_share,
+    springpot,
+    w,
+)
+
+spare_3 = symbol("omega_v3", "the same of a third", latex=r"\breve \omega_3", nonnegative=True)
+delay = symbol(
+    "epsilon_v",
+    "mean relaxation length over the length of the contact",
+    latex=r"\breve \varepsilon",
+)
+rates = [
+    symbol("r_1", "rate of an arm", "1/s", source=""),
+    symbol("r_2", "rate of another arm", "1/s", source=""),
+]
+letter(r"\bar t", r"mean relaxation time, $\int t (G - K)\,dt/C$", "s")
+letter(r"\mu_0", "friction coefficient on the Kelvin-Voigt foundation with the same $C$")
+spring_number = symbol("kappa_v", r"$K \breve c/(C V)$", latex=r"\breve \kappa")
+lack_mean = symbol(
+    "alpha_vA",
+    r"difference of a dashpot's $\breve A$ and this one",
+    latex=r"\breve \alpha_A",
+    nonnegative=True,
+)
+lack_ahead = symbol(
+    "alpha_vP", r"the same for $\breve P$", latex=r"\breve \alpha_P", nonnegative=True
+)
+letter(r"\breve \alpha_D", r"difference of $\breve D$ and that of a dashpot")
+lack_twist = symbol(
+    "alpha_vE",
+    r"difference of a dashpot's $\breve E$ and this one",
+    latex=r"\breve \alpha_E",
+    nonnegative=True,
+)
+steepness = symbol("chi_v", r"$C/(K \bar t)$, or $1/\breve \nu - 1$", latex=r"\breve \chi")
+letter(r"\breve \gamma", r"$-\breve c\, G'(0)/(V G(0))$")
+haste = symbol("omega_v", r"$-\breve c\, G''(0)/(V G'(0))$", latex=r"\breve \omega")
+load_number = symbol(
+    "Lambda_v",
+    r"load on spring and springpot, in units of $K \breve c^3/R$",
+    latex=r"\breve \Lambda",
+)
+friction_number = symbol("m_v", r"$\mu R/\breve c$", latex=r"\breve m")
+slowing = function("C_v", "how fast the fall slows", "N/m³", printed=r"\breve C", nonnegative=True)
+weight_at = function("k_v", "any weight", printed=r"\breve k", nonnegative=True)
 
 kap, eps, nu = spring_number, delay, spring_share
 half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
@@ -54,20 +83,21 @@ HASTE = sp.Rational(1, 5)
 GLASSY = 2
 """The same for the glassy limit, over the length of the contact by that of the fastest arms."""
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove the bounds, and the limits of the springpot."""
-    return (
-        *(_lacks(), _voigt(), _window(), _window_weight(), _glass(), _glassy()),
-        _springpot(),
-    )
+@result("F18-lacks", uses=("F17-parts",))
+def _lacks(proof: Proof) -> None:
+    r"""Low velocity: moments near those of a dashpot.
 
-
-def _lacks() -> Derivation:
-    proof = _theorem("F18-lacks", title="Low velocity: moments near those of a dashpot", text=_LACKS,
-                     uses=("F17-parts",))  # fmt: skip
+    Let $\breve \zeta = C V/(K \breve c)$, and $\breve \varepsilon = V \bar t/\breve c$ with the mean
+    relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. Without
+    the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and $\breve E$ are $1
+    - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - \breve \alpha_E$; for a
+    dashpot all four differences are 0. They are integrals of $\breve k = (G - K)/(K \breve \zeta) \ge 0$ over
+    all $\breve w > 0$, with weights that are 1, 1, 0 and $\frac{1}{12}$ beyond the contact, $\breve w = 1$;
+    here to any distance $\breve \omega_1$ beyond it.
+    """
     ahead, bulge, twist = (MOMENTS[name][0] for name in (P, D, E))
     felt, beyond = weight_at(w), (w, 1, 1 + spare_1)
     for near, far, what in (
@@ -80,23 +110,24 @@ def _lacks() -> Derivation:
         whole = sp.Integral(near * felt, UNIT) if near != 0 else 0
         whole += sp.Integral(far * felt, beyond) if far != 0 else 0
         proof.holds(whole, ">=", 0, what)
-    return proof.done(whole, 0)
 
 
-_LACKS = (
-    r"Let $\breve \zeta = C V/(K \breve c)$, and $\breve \varepsilon = V \bar t/\breve c$ with the mean "
-    r"relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. "
-    r"Without the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and "
-    r"$\breve E$ are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - "
-    r"\breve \alpha_E$; for a dashpot all four differences are 0. They are integrals of $\breve k = (G - "
-    r"K)/(K \breve \zeta) \ge 0$ over all $\breve w > 0$, with weights that are 1, 1, 0 and "
-    r"$\frac{1}{12}$ beyond the contact, $\breve w = 1$; here to any distance $\breve \omega_1$ beyond it."
-)
+@result("F18-voigt", uses=("F18-lacks", "F17-load", "F17", "F1"))
+def _voigt(proof: Proof) -> None:
+    r"""Low velocity: distance from Kelvin-Voigt.
 
-
-def _voigt() -> Derivation:
-    proof = _theorem("F18-voigt", title="Low velocity: distance from Kelvin-Voigt",
-                     text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F1"))  # fmt: skip
+    Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, on the
+    same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve \varepsilon
+    = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The steps, in units
+    of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at one $\breve c$.
+    There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times that of Kelvin-Voigt, the load between
+    $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$ times, and $\mu$
+    between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 -
+    2 \breve \varepsilon))$ times. Then the contact on Kelvin-Voigt changes to the one on its own support. At
+    a given velocity $W + k_s \delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so
+    that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on
+    Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation.
+    """
     for small, bound, spare in (
         (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
     ):  # fmt: skip
@@ -148,30 +179,20 @@ def _voigt() -> Derivation:
     upper = (1 - eps) ** 5 * (1 - 2 * eps) ** 3 * (1 + VOIGT * eps) ** 2
     proof.sign(upper, ">", 1, unit,
                r"and at most $1/\sqrt{(1 - \breve \varepsilon)^5 (1 - 2 \breve \varepsilon)^3}$")  # fmt: skip
-    return proof.done(upper, 1)
 
 
-_VOIGT = (
-    r"Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, "
-    r"on the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for "
-    r"$\breve \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ "
-    r"are. The steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both "
-    r"foundations at one $\breve c$. There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times "
-    r"that of Kelvin-Voigt, the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 "
-    r"+ 9 \breve \varepsilon/8$ times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve "
-    r"\varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times. Then "
-    r"the contact on Kelvin-Voigt changes to the one on its own support. At "
-    r"a given velocity $W + k_s "
-    r"\delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so "
-    r"that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on "
-    "Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation."
-)
+@result("F18-window", uses=("F18-voigt", "F1"))
+def _window(proof: Proof) -> None:
+    r"""The window of the asymptotes for high velocity.
 
-
-def _window() -> Derivation:
-    proof = _theorem("F18-window", title="The window of the asymptotes for high velocity", text=_WINDOW,
-                     uses=("F18-voigt", "F1"))  # fmt: skip
-    proof.recall("scaling", l, NUMBER, RATIO)
+    With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve
+    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So the relative error of Eq. (45) is at
+    most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ upwards, and $7 l/\breve \chi$ downwards: it holds
+    only for $1 \ll l \ll \breve \chi$. The last step is with $q$ for $l$: the window is best at $l = \sqrt{2
+    \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens slowly: for an error of 10 % by
+    this bound an arm must be 1900 times as stiff as the spring.
+    """
+    proof.recall("scaling", reason=RATIO)
     over = sp.Rational(2, 3) / FRICTION_COEFFICIENT
     proof.sign(over, ">", 1, RATIOS, "Eq. (45) over Kelvin-Voigt")
     proof.sign(
@@ -181,26 +202,16 @@ def _window() -> Derivation:
     sum_of = 2 / (3 * q) + VOIGT * q / steepness
     proof.equal(sum_of, VOIGT / steepness * (q - best) ** 2 / q + 2 * VOIGT * best / steepness,
                 "both errors together, to first order")  # fmt: skip
-    return proof.done(
-        sum_of, VOIGT / steepness * (q - best) ** 2 / q + 2 * VOIGT * best / steepness
-    )
 
 
-_WINDOW = (
-    r"With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve "
-    r"\varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So the relative error of Eq. "
-    r"(45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ upwards, and $7 l/\breve "
-    r"\chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$. The last step is with $q$ for "
-    r"$l$: the window is best at $l = "
-    r"\sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens slowly: for "
-    r"an error of 10 % by this bound an arm must be 1900 times as stiff as the spring."
-)
+@result("F18-window-weight", uses=("F18-voigt", "F1"))
+def _window_weight(proof: Proof) -> None:
+    """The window under a dead weight.
 
-
-def _window_weight() -> Derivation:
-    proof = _theorem("F18-window-weight", title="The window under a dead weight", text=_WINDOW_WEIGHT,
-                     uses=("F18-voigt", "F1"))  # fmt: skip
-    proof.recall("scaling", l, NUMBER, RATIO)
+    Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt; $a$ is that of the indenter that is lifted, and
+    $l$ grows faster for it.
+    """
+    proof.recall("scaling", reason=RATIO)
     square = 4 * LOAD / (9 * l * FRICTION_COEFFICIENT**2)
     proof.sign(square, ">", 1, RATIOS, r"$(L_2/\mu)^2$, as $\alpha^2 = 8/9$ and $a^2 = 2 R \delta$")
     proof.sign(
@@ -210,18 +221,18 @@ def _window_weight() -> Derivation:
         (q, 0, sp.Rational(2, 5)),
         r"$l > \frac{21}{20}$: its error is below $1/l$",
     )
-    return proof.done((1 + 1 / l) ** 2 - square, 0)
 
 
-_WINDOW_WEIGHT = (
-    "Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt; $a$ is that of the indenter that is "
-    "lifted, and $l$ grows faster for it."
-)
+@result("F18-glass", uses=("F17-sign",))
+def _glass(proof: Proof) -> None:
+    r"""High velocity: moments near those of a spring.
 
-
-def _glass() -> Derivation:
-    proof = _theorem("F18-glass", title="High velocity: moments near those of a spring", text=_GLASS,
-                     uses=("F17-sign",))  # fmt: skip
+    In units of $G(0)$, with $\breve \gamma = -\breve c\, G'(0)/(V G(0))$ and $\breve \omega = -\breve c\,
+    G''(0)/(V G'(0))$, that is $\breve c/V$ times $\sum K_i \tau_i^{-2}/\sum K_i \tau_i^{-1}$. As $G$ falls
+    and is convex, and so is $-G'$ (a Prony series), $1 - \breve \gamma \breve w \le \breve G \le 1$ and
+    $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$. The weights are those of
+    F17-sign and F17-moments.
+    """
     part, fall, slow = other_trailing, fading, slowing
     proof.define(memory(part).diff(part), -fall(part), r"$G$ falls, at the rate $\breve H$")
     proof.define(fall(part).diff(part), -slow(part), r"which slows, at the rate $\breve C$")
@@ -246,21 +257,19 @@ def _glass() -> Derivation:
     ):  # fmt: skip
         whole = sp.Integral(integrand, UNIT)
         proof.integral(whole, integrand, UNIT, antiderivative(integrand, w), what, value=value)
-    return proof.done(whole, sp.Rational(1, 24))
 
 
-_GLASS = (
-    r"In units of $G(0)$, with $\breve \gamma = -\breve c\, G'(0)/(V G(0))$ and $\breve \omega = -\breve "
-    r"c\, G''(0)/(V G'(0))$, that is $\breve c/V$ times $\sum K_i \tau_i^{-2}/\sum K_i \tau_i^{-1}$. As "
-    r"$G$ falls and is convex, and so is $-G'$ (a Prony series), $1 - \breve \gamma \breve w \le \breve G "
-    r"\le 1$ and $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$. The "
-    "weights are those of F17-sign and F17-moments."
-)
+@result("F18-glassy", uses=("F18-glass", "F18-high"))
+def _glassy(proof: Proof) -> None:
+    r"""High velocity: distance from the glassy limit.
 
-
-def _glassy() -> Derivation:
-    proof = _theorem("F18-glassy", title="High velocity: distance from the glassy limit", text=_GLASSY,
-                     uses=("F18-glass", "F18-high"))  # fmt: skip
+    The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length $a$ on a
+    spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| \le 2 \breve
+    \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are. At one $\breve c$ the load
+    is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve \omega}{2})$ times that of the spring of
+    half length $\breve c/2$, and so is, on any support, $(2 a/\breve c)^2$ of the spring that carries what is
+    asked for, as $W + k_s \delta$ grows at least as $a^2$.
+    """
     unit, o = (haste, 0, HASTE), haste
     part = 1 - o / 2
     share = sp.Rational(5, 12)
@@ -276,17 +285,6 @@ def _glassy() -> Derivation:
     proof.sign(lower, ">", 1 - GLASSY * o, unit, r"$\mu$ over its limit is at least this")
     proof.sign((1 + GLASSY * o) * part**2 - upper, ">", 0, unit,
                r"and at most the last terms of this over $(1 - \breve \omega/2)^2$")  # fmt: skip
-    return proof.done((1 + GLASSY * o) * part**2 - upper, 0)
-
-
-_GLASSY = (
-    r"The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length "
-    r"$a$ on a spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| "
-    r"\le 2 \breve \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are. At one "
-    r"$\breve c$ the load is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve \omega}{2})$ "
-    r"times that of the spring of half length $\breve c/2$, and so is, on any support, $(2 a/\breve c)^2$ "
-    r"of the spring that carries what is asked for, as $W + k_s \delta$ grows at least as $a^2$."
-)
 
 
 def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
@@ -312,9 +310,23 @@ def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     return names
 
 
-def _springpot() -> Derivation:
-    proof = _theorem("F18-springpot", title="Fractional Kelvin-Voigt: both limits", text=_BOTH,
-                     uses=("F17-springpot", "F17-load", "F17", "F17-growth"))  # fmt: skip
+@result("F18-springpot", uses=("F17-springpot", "F17-load", "F17", "F17-growth"))
+def _springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: both limits.
+
+    With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for the
+    order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3 -
+    \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha (3 -
+    \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)} (V
+    \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$ falls
+    as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the velocity
+    (F17-growth). At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
+    $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The limit
+    for low velocity over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$
+    over that for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$.
+    Both are positive at both ends of that mean, by these inequalities, so on every support: each limit is
+    within a tolerance on a half-line of velocities.
+    """
     proof.define(nu, 1 / (1 + steepness), "between 0 and 1")
     load, friction, share = _state(proof)
     ratio, t = friction / share, springpot
@@ -339,21 +351,3 @@ def _springpot() -> Derivation:
     proof.leading_order(ratio, low, reason=r"$\mu R/a$ at low velocity", **slow)
     proof.leading_order(load, heavy, reason="load at high velocity, of the springpot", **fast)
     proof.leading_order(ratio, high, reason=r"$\mu R/a$ at high velocity", **fast)
-    return proof.done(ratio, high)
-
-
-_BOTH = (
-    r"With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for "
-    r"the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) "
-    r"\Gamma(3 - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} "
-    r"\frac{\alpha (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - "
-    r"\alpha}}{\Gamma(4 - \alpha)} (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha "
-    r"= 1$. Under a dead weight $\mu$ falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve "
-    r"\zeta$, and $\breve \zeta$ grows with the velocity (F17-growth). At a fixed depth $\ln \breve c$ "
-    r"falls as $\ln \breve a$ grows, under a dead weight as $\frac{1}{3} \ln \breve \Lambda$ does, and on "
-    r"a spring by a mean of both with positive weights. The limit for low velocity over $\mu$ has the "
-    r"slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$ over that for high velocity, on "
-    r"a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$. Both are positive at both "
-    "ends of that mean, by these inequalities, so on every support: each limit is within a tolerance on "
-    "a half-line of velocities."
-)

@@ -4,47 +4,40 @@ While l = l_r/a < 1 the trailing edge is at a - l_r behind the tip; from l = 1 o
 and the friction coefficient is the slope c of the wedge.
 """
 
-from functools import partial
-
 import sympy as sp
 
+from .chapter import Chapter
+from .friction_identity import r
+from .model import C, K, V, delta
+from .nomenclature import symbol
 from .power_law import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
     LOAD,
     SECTION,
-    n,
-)
-from .power_law_weight import SCALED_LOAD
-from .record import Derivation
-from .step import Proof
-from .symbols import (
-    C,
-    K,
-    P,
     Q,
-    V,
-    a,
-    delta,
     eta_n,
-    held,
-    inclination,
-    kappa,
-    l,
-    l_r,
-    lam,
     m_n,
+    n,
     phi_n,
-    q,
-    r,
-    s,
-    s_peeled,
-    s_peeling,
     w_ahead,
     w_behind,
     w_n,
     y,
-)  # fmt: skip
+)
+from .power_law_weight import SCALED_LOAD
+from .steady import a, l, l_r, q
+from .step import Proof
+from .theorems import P, kappa, lam, s
+
+inclination = symbol("c_1", "slope of a wedge", latex="c", printed=r"\hat c")
+held = symbol("held", "scaled load beyond the support of a wedge", latex=r"\bar w")
+s_peeling = symbol(
+    "s_1", "half length of a wedge whose trailing edge is behind its tip", printed=r"\hat a_1"
+)
+s_peeled = symbol(
+    "s_2", "half length of a wedge whose contact ends at its tip", printed=r"\hat a_2"
+)
 
 c = inclination
 PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}
@@ -52,20 +45,20 @@ PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}
 SCALED_PEELING = 2 * held / (kappa + sp.sqrt(kappa**2 + 4 * held))
 SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 * (1 + kappa)))
 
-_theorem = partial(Proof, equation=None, section=SECTION)
+result = Chapter(SECTION)
 
 
-def derive() -> tuple[Derivation, ...]:
-    """Prove F19 for the wedge."""
-    return _edge(), *(_forces(*case) for case in _CASES), _slow(), _fast(), *_weight()
+@result("wedge-edge", uses=("eq22", "eq29", "pressure"))
+def _edge(proof: Proof) -> None:
+    r"""Wedge: pressure and trailing edge.
 
-
-def _edge() -> Derivation:
-    proof = _theorem("wedge-edge", title="Wedge: pressure and trailing edge", text=_EDGE,
-                     uses=("eq22", "eq29", "pressure"))  # fmt: skip
+    The indenter is $h = c\,|x|$, and $l = l_{\mathrm{r}}/a$ with $a = \delta/c$. The pressure jumps by $2 l K
+    \delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the equation $Q (q + n l) = 1$ of a power
+    law says the same for $n = 1$, with $Q = \min(1, 1/l)$, the limit of $q^{n - 1}$.
+    """
     ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
-    proof.recall("eq29", C, K * l_r / V)
+    proof.recall("eq29", C)
     proof.define(l_r, l * a, "the retardation length over the half length")
     proof.notation |= {r"\hat p(-y a)": ahead, r"\hat p(y a)": behind}
     proof.equal(
@@ -75,26 +68,11 @@ def _edge() -> Derivation:
     proof.define(P, 1 - y - l, "behind the tip")
     proof.where(l < 1, "otherwise there is no contact behind the tip")
     proof.root(P, y, 1 - l, "the trailing edge")
-    return proof.done(y, 1 - l)
 
 
-_EDGE = (
-    r"The indenter is $h = c\,|x|$, and $l = l_{\mathrm{r}}/a$ with $a = \delta/c$. The pressure "
-    r"jumps by $2 l K \delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the "
-    r"equation $Q (q + n l) = 1$ of a power law says the same for $n = 1$, with $Q = \min(1, "
-    "1/l)$, the limit of $q^{n - 1}$."
-)
-_CASES = (
-    ("wedge-peeling", "Wedge: slow sliding", r"For $l < 1$, with $q = 1 - l$.", PEELING, q,
-     1 + l**2 / 2, 2 * l - l**2 / 2),
-    ("wedge-peeled", "Wedge: fast sliding", r"For $l \ge 1$: the contact ends at the tip.", PEELED,
-     sp.S.Zero, l + sp.Rational(1, 2), l + sp.Rational(1, 2)),
-)  # fmt: skip
-
-
-def _forces(label: str, title: str, text: str, state: dict[sp.Symbol, sp.Expr], edge: sp.Expr,
-            load: sp.Expr, friction: sp.Expr) -> Derivation:  # fmt: skip
-    proof = _theorem(label, title=title, text=text, uses=("wedge-edge", "F19"))
+def _forces(
+    proof: Proof, state: dict[sp.Symbol, sp.Expr], edge: sp.Expr, load: sp.Expr, friction: sp.Expr
+) -> None:
     if edge != 0:
         proof.define(q, 1 - l, "wedge-edge")
     ahead, behind = (y - y**2 / 2 + side * l * y for side in (1, -1))
@@ -115,11 +93,23 @@ def _forces(label: str, title: str, text: str, state: dict[sp.Symbol, sp.Expr], 
     proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
     general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
     proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")
-    return proof.done(m_n, friction / load)
+    proof.done(m_n, friction / load)
 
 
-def _slow() -> Derivation:
-    proof = _theorem("wedge-low", title="Wedge: low velocity", text=_LOW, uses=("wedge-peeling",))
+result("wedge-peeling", title="Wedge: slow sliding", text=r"For $l < 1$, with $q = 1 - l$.",
+       uses=("wedge-edge", "F19"), state=PEELING, edge=q, load=1 + l**2 / 2,
+       friction=2 * l - l**2 / 2)(_forces)  # fmt: skip
+result("wedge-peeled", title="Wedge: fast sliding", uses=("wedge-edge", "F19"),
+       text=r"For $l \ge 1$: the contact ends at the tip.", state=PEELED, edge=sp.S.Zero,
+       load=l + sp.Rational(1, 2), friction=l + sp.Rational(1, 2))(_forces)  # fmt: skip
+
+
+@result("wedge-low", uses=("wedge-peeling",))
+def _slow(proof: Proof) -> None:
+    r"""Wedge: low velocity.
+
+    For $l \to 0$, in units of $c$; the error of the asymptote is $l/4$ at first order.
+    """
     coefficient = (2 * l - l**2 / 2) / (1 + l**2 / 2)
     proof.leading_order(coefficient, 2 * l, l, 0, "the asymptote", eps=l)
     proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
@@ -128,43 +118,26 @@ def _slow() -> Derivation:
     proof.equal(sp.diff(coefficient, l), slope, r"$\mu$ grows until $l = 1$",
                 left="m_n'")  # fmt: skip
     proof.sign(slope, ">", 0, (l, 0, 1), "strictly")
-    return proof.done(coefficient, 2 * l)
+    proof.done(coefficient, 2 * l)
 
 
-_LOW = r"For $l \to 0$, in units of $c$; the error of the asymptote is $l/4$ at first order."
+@result("wedge")
+def _fast(proof: Proof) -> None:
+    r"""Wedge: friction equals the slope.
 
-
-def _fast() -> Derivation:
-    proof = _theorem("wedge", title="Wedge: friction equals the slope", text=_FAST)
-    proof.recall("wedge-peeled", w_n, l + sp.Rational(1, 2))
-    proof.recall("wedge-peeled", phi_n, l + sp.Rational(1, 2))
+    From $l_{\mathrm{r}} = a$ on the contact is on one flank only, so that $\mu = c$ exactly, at any depth and
+    under any load: vertical lift does not reduce the friction coefficient of a sharp tip, and Eq. (50)
+    requires a rounded one.
+    """
+    proof.recall("wedge-peeled", w_n)
+    proof.recall("wedge-peeled", phi_n)
     proof.define(m_n, phi_n / w_n, r"$\mu/c$")
     proof.equal(m_n, sp.S.One, r"$\mu = c$")
-    return proof.done(m_n, sp.S.One)
-
-
-_FAST = (
-    r"From $l_{\mathrm{r}} = a$ on the contact is on one flank only, so that $\mu = c$ exactly, at "
-    r"any depth and under any load: vertical lift does not reduce the friction coefficient of a "
-    r"sharp tip, and Eq. (50) requires a rounded one."
-)
-
-
-def _weight() -> tuple[Derivation, ...]:
-    return tuple(_depth(*case) for case in (
-        ("wedge-weight-peeling", "slow sliding", {r: s - lam}, s_peeling, SCALED_PEELING,
-         s**2 + kappa * s - held),
-        ("wedge-weight-peeled", "fast sliding", {r: 0}, s_peeled, SCALED_PEELED,
-         s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
-    ))  # fmt: skip
 
 
 def _depth(
-    label: str, regime: str, edge: dict[sp.Symbol, sp.Expr], name: sp.Symbol, root: sp.Expr,
-    balance: sp.Expr,
-) -> Derivation:  # fmt: skip
-    proof = _theorem(label, title=f"Wedge: depth at a load, {regime}", text=_WEIGHT,
-                     uses=("F19-balance", "wedge-edge"))  # fmt: skip
+    proof: Proof, edge: dict[sp.Symbol, sp.Expr], name: sp.Symbol, root: sp.Expr, balance: sp.Expr
+) -> None:
     proof.root(balance, s, root, "its one positive root, without a difference", name=name)
     if name == s_peeling:
         proof.define(held, 1 + kappa - lam**2 / 2, r"positive, because $\lambda < 1$")
@@ -174,7 +147,7 @@ def _depth(
     switch = 3 * lam**2 / 2 + kappa * lam - (1 + kappa)
     proof.equal(balance.subs(s, lam), switch, r"which is negative if $s > \lambda$",
                 left=r"G(\lambda)")  # fmt: skip
-    return proof.done(name, root)
+    proof.done(name, root)
 
 
 _WEIGHT = (
@@ -182,3 +155,10 @@ _WEIGHT = (
     r"is slow, $\lambda < s$, if $\frac{3}{2} \lambda^2 + \kappa \lambda < 1 + \kappa$, which is "
     r"the balance at $s = \lambda$; then $\lambda < 1$. No difference cancels."
 )
+for _regime, _sliding, _edge_at, _name, _root, _balance in (
+    ("peeling", "slow", {r: s - lam}, s_peeling, SCALED_PEELING, s**2 + kappa * s - held),
+    ("peeled", "fast", {r: 0}, s_peeled, SCALED_PEELED, s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
+):
+    result(f"wedge-weight-{_regime}", title=f"Wedge: depth at a load, {_sliding} sliding", text=_WEIGHT,
+           uses=("F19-balance", "wedge-edge"), edge=_edge_at, name=_name, root=_root,
+           balance=_balance)(_depth)  # fmt: skip

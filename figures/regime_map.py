@@ -50,7 +50,7 @@ class Data:
 def compute() -> Data:
     """Solve and classify the points of the map, and every one near the borders of the classes."""
     classes = np.zeros((INERTIAS.size, NUMBERS.size), dtype=int)
-    solved = cache(lambda i, k: _class(NUMBERS[k], INERTIAS[i]))
+    solved = cache(lambda i, k: _class(float(NUMBERS[k]), float(INERTIAS[i])))
     for i, k in product(range(0, INERTIAS.size - 1, BLOCK), range(0, NUMBERS.size - 1, BLOCK)):
         corners = product((i, i + BLOCK), (k, k + BLOCK))
         found = {solved(*at) for at in (*corners, (i + BLOCK // 2, k + BLOCK // 2))}

@@ -4,6 +4,8 @@ Each is a function that takes a fresh proof. They are written as a referee would
 statement past the engine, and as an author would who has a right one.
 """
 
+from dataclasses import replace
+
 import sympy as sp
 from kvtheory.derivations.step import Proof
 
@@ -38,19 +40,19 @@ def fixed_at_one():
 def _two_values(p):
     for label, name, value in (("one-way", a, 1), ("other-way", b, 2)):
         finished(label, (y, sp.Integer(value)), (name, 3 * y, sp.Integer(3 * value)))
-        p.recall(label, name, sp.Integer(3 * value))
+        p.recall(label, (name, sp.Integer(3 * value)))
     p.equal(a / b, half, "from premises that exclude each other")
 
 
 def _sweep_what_is_fixed(p):
     fixed_at_one()
-    p.recall("at-one", b, sp.Rational(4, 3))
+    p.recall("at-one", (b, sp.Rational(4, 3)))
     p.sign(b - y, ">", 0, (y, 0, 1), "for every y, though the load was that of y = 1")
 
 
 def _hidden_in_recalled(p):
     finished("radius", (r, sp.sqrt(s**2 + lam**2)), (a, r * s, s * r))
-    p.recall("radius", a, s * r)
+    p.recall("radius", (a, s * r))
     p.equal(sp.Derivative(a, s), r, "r depends on s")
 
 
@@ -104,7 +106,7 @@ def _placed_root(p):
     source = Proof("two", None, section="Trial", title="A root")
     source.root(x**2 - 4, x, sp.Integer(2), "the positive one", over=(x, 0, sp.oo))
     source.done(x, sp.Integer(2))
-    p.recall("two", x, sp.Integer(2), at={x: u})
+    p.recall("two", (x, sp.Integer(2)), at={x: u})
 
 
 FALSE = {
@@ -366,3 +368,9 @@ TRUE = {
         z, 3 * x**2, (x, 0, y), x**3, "power rule", right=r"\int_{0}^{y} 3 x^2 \, dx"
     ),
 }  # fmt: skip
+
+
+def derive(module, prove, **given):
+    """Derive the record that a function of a chapter proves, with other arguments if some are given."""
+    entry = next(each for each in module.result.entries if each.prove.__name__ == prove)
+    return replace(entry, given=given or entry.given).derive(module.result.section)

@@ -106,7 +106,7 @@ def recalled(lhs, rhs, given=(), by=None, at=None):
         source = _proof()
         steps(*given, by or equal(lhs, rhs))(source)
         source.done(sp.sympify(lhs), sp.sympify(rhs))
-        p.recall(source.label, sp.sympify(lhs), sp.sympify(rhs), at=at)
+        p.recall(source.label, (sp.sympify(lhs), sp.sympify(rhs)), at=at)
 
     return run
 
@@ -394,7 +394,7 @@ FALSE = {
         "one label, two theorems": (_one_label_two_theorems, "the second replaces the first"),
         "one label, two values": (_one_label_two_values, "a = 1 and a = 2"),
         "finished twice": (_done_twice, "two results of one label"),
-        "recalls from itself": (lambda p: p.recall(p.label, y, y), "a circle"),
+        "recalls from itself": (lambda p: p.recall(p.label, (y, y)), "a circle"),
         "another symbol of the same name":
             (recalled(SHIFTED.subs(y, other_x), other_x + 1), equal(sqrt(x**2 + 2 * x + 1), x + 1), "x = -3"),
         "premise two back": (_through_two(define(y, 1), b * y, b, define(y, 2)), "y = 1 and y = 2"),

@@ -9,7 +9,7 @@ import sympy as sp
 from kvtheory.derivations import book, catalogue, store
 from kvtheory.derivations.step import Proof
 
-CHAPTERS = [catalogue._name(chapter) for chapter in catalogue._CHAPTERS]
+CHAPTERS = [catalogue._name(chapter) for chapter in catalogue.CHAPTERS]
 
 
 @pytest.fixture(autouse=True)
@@ -38,11 +38,11 @@ def proofs():
 
 def _prove_first(monkeypatch):
     """Return the records of the first chapter, and how often they were proved."""
-    chapter, proved = catalogue._CHAPTERS[0], []
+    chapter, proved = catalogue.CHAPTERS[0], []
     monkeypatch.setattr(catalogue, "_digests", lambda: store.digests(CHAPTERS))
-    derive = chapter.derive
+    derive = chapter.result.derive
     with monkeypatch.context() as patch:
-        patch.setattr(chapter, "derive", lambda: proved.append(1) or derive())
+        patch.setattr(chapter.result, "derive", lambda: proved.append(1) or derive())
         return catalogue._chapter.__wrapped__(chapter), len(proved)
 
 

@@ -191,7 +191,7 @@ def test_groups_do_not_change_with_the_units(products):
     """Rescale the units of force, of both lengths and of time by unrelated factors."""
     factors = dict(zip(groups.BASE, (3, 7, 11, 5), strict=True))
     scaled = {q: q * dimension.subs(factors) for q, dimension in groups.DIMENSIONS.items()}
-    for product in products:
+    for product in products.values():
         ratio = product.subs(scaled, simultaneous=True) / product
         assert sp.N(ratio, 30) == pytest.approx(1, rel=1e-25)
 

@@ -6,8 +6,7 @@ import shlex
 import pytest
 from click.testing import CliRunner
 from kvtheory.derivations import catalogue as chapters
-from kvtheory.derivations.catalogue import catalogue
-from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.catalogue import CONTENTS, catalogue
 from kvtheory.derivations.labels import find
 
 import kvtheory as kv

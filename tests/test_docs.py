@@ -10,7 +10,7 @@ import matplotlib as mpl
 import pytest
 from click.testing import CliRunner
 from generators import api, commands, equations, gallery, keys, labels
-from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.catalogue import CONTENTS
 
 import kvtheory as kv
 from figures.__main__ import TOPICS

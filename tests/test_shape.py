@@ -8,8 +8,8 @@ import sympy as sp
 from kvtheory.derivations import steady
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.book import established
-from kvtheory.derivations.shape import derive_shape
-from kvtheory.derivations.shape_text import read_shape
+from kvtheory.derivations.shape import derive_shape, q_root
+from kvtheory.derivations.shape_text import distance, read_shape
 
 DIGITS = 30
 
@@ -37,8 +37,8 @@ def numbers(rise, forms, point):
 
     l_r = closed("trailing")
     values[s.l_r] = sp.Float(str(l_r), DIGITS)
-    curves = rise, sp.diff(rise, s.distance)
-    h, slope = (sp.lambdify(s.distance, each.subs(values), "mpmath") for each in curves)
+    curves = rise, sp.diff(rise, distance)
+    h, slope = (sp.lambdify(distance, each.subs(values), "mpmath") for each in curves)
     K, a, b = (mp.mpf(sp.N(values[x], DIGITS)) for x in (s.K, s.a, s.q))
 
     def pressure(x, side):
@@ -55,7 +55,7 @@ def numbers(rise, forms, point):
     return load, friction, [closed(name) for name in ("load", "friction")]
 
 
-POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", s.q_root: "0.6", s.C: "1", s.V: "1"}
+POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", q_root: "0.6", s.C: "1", s.V: "1"}
 
 
 @pytest.mark.parametrize(

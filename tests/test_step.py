@@ -96,13 +96,13 @@ def test_only_what_was_established_can_be_recalled(proof):
     proof.define(z, y**2)
     assert proof.done(z, y**2).status == "definition"
     later = Proof("later", None, section="Trial", title="Later")
-    later.recall("trial", z, y**2)
+    later.recall("trial", (z, y**2))
     later.equal(sp.sqrt(z), y, "recalled")
     assert later.done(sp.sqrt(z), y).uses == ("trial",)
     with pytest.raises(StepError, match="does not establish"):
-        later.recall("trial", x, y**2)
+        later.recall("trial", (x, y**2))
     with pytest.raises(StepError, match="not been derived"):
-        later.recall("never", z, y**2)
+        later.recall("never", (z, y**2))
 
 
 def test_only_exact_equalities_can_be_recalled(proof):
@@ -113,7 +113,7 @@ def test_only_exact_equalities_can_be_recalled(proof):
     later = Proof("later", None, section="Trial", title="Later")
     for left, right in ((y + y**2, y), (x**2 - 2, 0), (x, 0)):
         with pytest.raises(StepError, match="does not establish"):
-            later.recall("trial", left, right)
+            later.recall("trial", (left, right))
         with pytest.raises(StepError, match="does not establish"):
             established("trial", left)
 
@@ -178,12 +178,12 @@ def test_sampled_finds_a_small_error(proof):
 def test_a_result_carries_premises_and_domain_through_two_recalls():
     planted.fixed_at_one()
     middle = Proof("middle", None, section="Trial", title="Middle")
-    middle.recall("at-one", planted.b, sp.Rational(4, 3))
+    middle.recall("at-one", (planted.b, sp.Rational(4, 3)))
     middle.where(planted.x > 1)
     middle.equal(planted.b * planted.x, 4 * planted.x / 3, "scaled")
     middle.done(planted.b * planted.x, 4 * planted.x / 3)
     last = Proof("last", None, section="Trial", title="Last")
-    last.recall("middle", planted.b * planted.x, 4 * planted.x / 3)
+    last.recall("middle", (planted.b * planted.x, 4 * planted.x / 3))
     last.equal(planted.b * planted.x + 1, 1 + 4 * planted.x / 3, "and on")
     result = last.done(planted.b * planted.x + 1, 1 + 4 * planted.x / 3)
     assert "y = 1" in result.premises
@@ -196,10 +196,10 @@ def test_a_sampled_step_stays_sampled_when_it_is_recalled_twice():
     first.define(z, sp.exp(sp.log(y) / 3))
     first.sampled(z, y ** sp.Rational(1, 3), [(y, 1, 2)], "numbers")
     first.done(z, y ** sp.Rational(1, 3))
-    second.recall("first", z, y ** sp.Rational(1, 3))
+    second.recall("first", (z, y ** sp.Rational(1, 3)))
     second.equal(z**3, y, "cubed")
     assert second.done(z**3, y).status == "sampled"
-    third.recall("second", z**3, y)
+    third.recall("second", (z**3, y))
     third.equal(2 * z**3, 2 * y, "doubled")
     assert third.done(2 * z**3, 2 * y).status == "sampled"
     by_words = Proof("by-words", None, section="Trial", title="By words", uses=("second",))
@@ -235,7 +235,7 @@ def test_the_interval_of_a_named_root_restricts_nothing_else():
     source.root(x**2 - y, x, sp.sqrt(y), "the edge", over=(x, 0, sp.oo), name=a)
     assert source.done(a, sp.sqrt(y)).domain == ()
     later = Proof("later", None, section="Trial", title="Later")
-    later.recall("edge", a, sp.sqrt(y))
+    later.recall("edge", (a, sp.sqrt(y)))
     with pytest.raises(StepError):
         later.holds(x, ">", 0, "x is any place here")
 
@@ -249,7 +249,7 @@ def test_what_words_say_is_argued_and_nothing_better():
     second.equal(3 * y, y + y + y, "thrice")
     assert second.done(3 * y, y + y + y).status == "argued"
     with pytest.raises(StepError, match="does not establish"):
-        second.recall("words", sp.sqrt(y), sp.log(y))
+        second.recall("words", (sp.sqrt(y), sp.log(y)))
     for relation, wrong in (("=", sp.sqrt(y) + 1), (">", sp.sqrt(y) + 1)):
         with pytest.raises(StepError, match=r"fails|is wrong"):
             second.argued(sp.sqrt(y), relation, wrong, "a planted error")

@@ -16,6 +16,8 @@ from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
+from tests.planted import derive
+
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 ERRORS = {
@@ -106,7 +108,7 @@ def true_circle(l_r, depth):
 def test_a_slightly_wrong_formula_is_refused(monkeypatch, module, name, prove):
     monkeypatch.setattr(module, name, getattr(module, name) * (1 + sp.Rational(1, 10**9)))
     with pytest.raises(StepError):
-        getattr(module, prove)()
+        derive(module, prove)
 
 
 @pytest.mark.parametrize("error", asymptote_errors.ASYMPTOTES, ids=lambda error: error.label)
@@ -118,7 +120,7 @@ def test_a_tighter_bound_and_a_wrong_direction_are_refused(error):
         replace(error, growth="<" if error.growth == ">" else ">"),
     ):
         with pytest.raises(StepError):
-            asymptote_errors._error(wrong)
+            derive(asymptote_errors, "_error", asymptote=wrong)
 
 
 @pytest.mark.parametrize("number", NUMBERS)

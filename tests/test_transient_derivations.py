@@ -16,6 +16,8 @@ from kvtheory.derivations.book import established
 from kvtheory.derivations.step import Proof, StepError
 from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, TRAILING
 
+from tests.planted import derive
+
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 DIGITS = 50
@@ -310,4 +312,4 @@ def test_a_slightly_wrong_balance_is_refused(monkeypatch, by_label, name, prove)
     wrong = getattr(transient_balance, name) * (1 + sp.Rational(1, 10**9))
     monkeypatch.setattr(transient_balance, name, wrong)
     with pytest.raises(StepError):
-        getattr(transient_balance, prove)()
+        derive(transient_balance, prove)

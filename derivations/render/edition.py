@@ -1,16 +1,20 @@
 """One edition of the derivations: their selection, notation and source."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ..atoms import atoms, replaced
+from ..atoms import Atom, atoms, replaced
+from ..catalogue import SYMBOLS
 from ..labels import closure, find
-from ..nomenclature import HEADS, SYMBOLS, Symbol
+from ..nomenclature import HEADS, Symbol
 from ..record import Derivation, Step, Table
 from .domain import domain
 from .frame import TITLE
 from .notation import check_letters
 from .text import conclusion, reference
+
+_ARGUMENT = re.compile(r"(?:(?:\{?\\left)?\(.{1,12}\)\}?)?")
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,12 @@ def edition(
     shown = {symbol for each in chosen for symbol in symbols_of(each)}
     own = {symbol.latex for symbol in symbols}
     rows = (*(row for row in SYMBOLS if row.latex not in own), *symbols)
-    listed = tuple(symbol for symbol in rows if symbol.latex in shown)
+    origins = introductions(derivations)
+    listed = tuple(
+        row if row.source is not None else replace(row, source=origins[row.latex])
+        for row in rows
+        if row.latex in shown
+    )
     values = dict(values or {})
     if notation:
         check_letters(notation, shown)
@@ -95,6 +104,25 @@ def edition(
         chosen = tuple(_in_letters(each, notation.get) for each in chosen)
         listed = tuple(_row_in_letters(each, notation.get) for each in listed)
     return Edition(chosen, listed, command, version, title, values, scene, notation or {})
+
+
+def introductions(derivations: Iterable[Derivation]) -> dict[str, str]:
+    """Return for each symbol the first derivation that has it alone on a left side, or else prints it."""
+    named: dict[str, str] = {}
+    printed: dict[str, str] = {}
+    for each in derivations:
+        printed = dict.fromkeys(symbols_of(each), each.label) | printed
+        for step in each.steps:
+            atom = next(atoms(step.left), None)
+            if not step.source and step.relation == "=" and atom and _is_alone(step.left, atom):
+                named.setdefault(atom.symbol, each.label)
+    return printed | named
+
+
+def _is_alone(latex: str, atom: Atom) -> bool:
+    """Tell whether LaTeX is one symbol, perhaps with its argument, and no derivative."""
+    bare = atom.start == 0 and not (atom.dots or atom.primes)
+    return bare and bool(_ARGUMENT.fullmatch(latex[atom.end :].strip()))
 
 
 def symbols_of(derivation: Derivation, *, words: bool = True) -> dict[str, None]:

@@ -5,7 +5,7 @@ A fragment has no number: the document numbers it, and refers to it by its label
 
 from collections.abc import Collection
 
-from ..contents import CONTENTS
+from ..catalogue import CONTENTS
 from ..record import Derivation, Table
 from . import frame
 from .breaking import lines, width

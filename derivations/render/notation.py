@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ..atoms import atoms
+from ..catalogue import SYMBOLS
 from ..labels import unknown
-from ..nomenclature import SYMBOLS
 
 
 def plain(latex: str) -> str:

@@ -5,7 +5,7 @@ import inspect
 import re
 import textwrap
 
-from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.catalogue import CONTENTS
 
 import kvtheory as kv
 from generators.labels import linked

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.catalogue import CONTENTS
 from kvtheory.derivations.emit import FORMS
 
 import kvtheory as kv

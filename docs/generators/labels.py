@@ -2,7 +2,7 @@
 
 import re
 
-from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.catalogue import CONTENTS
 
 _MENTION = re.compile(r"(?<![\w-])(?:Eqs?\. (\d+)|(F\d+(?:-[A-Za-z0-9]+)*))(?![\w-])")
 _QUOTED = re.compile(r'["“]([\w-]+)(?=["”])')

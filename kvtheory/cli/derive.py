@@ -79,18 +79,18 @@ def derive(
     """Derive the equations, check every step, and print them.
 
     LaTeX, HTML, PDF, Markdown, a notebook, JSON and BibTeX. Each derivation uses earlier ones, so all up to
-    the last of --only are derived. Without --only all are, which takes a minute the first time.
+    the last of --only are derived. Without --only all are, which takes half a minute the first time.
 
     With --recheck a second program, which shares nothing with the first, checks the claims of
     derivations.json again, and a table tells how. Exit status 1 if a claim is refuted.
     """
-    from kvtheory.derivations.contents import CONTENTS
+    from kvtheory.derivations.catalogue import CONTENTS
     from kvtheory.derivations.labels import find
     from kvtheory.derivations.render import check_directory, write_edition
     from kvtheory.derivations.render.notation import NAMES, check_letters, plain, read_notation
 
     if symbols:
-        from kvtheory.derivations.nomenclature import SYMBOLS
+        from kvtheory.derivations.catalogue import SYMBOLS
 
         rows = [(plain(each.latex), each.latex, each.meaning, each.unit) for each in SYMBOLS]
         _print_rows(("name", "latex", "meaning", "unit"), rows, as_json)
