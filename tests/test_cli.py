@@ -90,6 +90,7 @@ def test_help_ends_with_an_example_that_runs(name, place, monkeypatch):
     assert run(*name.split()[1:], "--help").stdout.endswith(f"Example:\n  {example}\n")
     (place / "my-scene.toml").write_text(kv.to_toml(kv.Scene()))
     (place / "mine.csv").write_bytes((place.parent / "data.csv").read_bytes())
+    (place / "run.csv").write_bytes((place.parent / "data.csv").read_bytes())
     (place / "dma.csv").write_bytes((DMA / "time_user_raw.csv").read_bytes())
     (place / "mu.csv").write_text(
         "V [m/s],mu\n1e-3,0.0010\n1e-2,0.0099\n0.1,0.0857\n1,0.0662\n3,0.0390\n"

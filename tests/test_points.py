@@ -82,10 +82,10 @@ def test_a_recalled_integral_is_not_evaluated_at_its_place():
     source.equal(2 * z, z + z, "twice")
     source.done(2 * z, z + z)
     later = Proof("its-place", None, section="Trial", title="Trial")
-    later.recall("an-integral", z, whole, at={y: sp.Integer(2)})
+    later.recall("an-integral", (z, whole), at={y: sp.Integer(2)})
     assert later._rules[z] == sp.Integral(sp.exp(-2 * x), over)
     with pytest.raises(StepError):
-        later.recall("an-integral", z, whole, at={y: sp.Integer(-2)})
+        later.recall("an-integral", (z, whole), at={y: sp.Integer(-2)})
 
 
 def test_a_form_that_only_the_display_shows_is_in_the_claim():

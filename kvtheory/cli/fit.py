@@ -79,7 +79,7 @@ def _number(text: str) -> Any:
 
 @main.command(
     example="kvtheory fit --data mu.csv --free foundation.stiffness,foundation.retardation_time && "
-    "kvtheory fit --data mu.csv --data run.csv --free foundation.arms"
+    "kvtheory fit --data run.csv --free foundation.retardation_time"
 )
 @console.scene_options
 @click.option(
@@ -95,10 +95,11 @@ def fit(
     scene: str | None, overrides: Sequence[str], data: Sequence[Path], free: str | None,
     output: Path | None, plot: Path | None, *, models: bool, as_json: bool,
 ) -> None:  # fmt: skip
-    """Fit quantities of SCENE to measured friction over velocity, or to a time series of its transient.
+    """Fit quantities of SCENE to measured friction.
 
-    Over velocity, other columns of the data vary quantities from row to row: F_z [N] the load, T [degC] the
-    temperature, or any key of the scene. Several --data are fitted together.
+    DATA is friction over velocity, or a time series of the transient. Over velocity, other columns vary
+    quantities from row to row: F_z [N] the load, T [degC] the temperature, or any key of the scene. Several
+    --data are fitted together.
     """
     from kvtheory.api import fit as find
     from kvtheory.scene import load_scene
