@@ -259,6 +259,20 @@ def test_rows_before_the_start_and_more_than_enough_are_left_out():
     assert found.size == found.time.size == 1501
 
 
+def test_a_long_record_is_thinned_at_random_so_that_no_condition_drops_out():
+    """Loads that take turns: every second row would be of one load."""
+    velocity, loads = np.geomspace(1e-3, 1.0, 8000), np.tile([1e3, 2e4], 4000)
+    mu = measured(TABLE1, 0.02, 0, {"support.load": loads}, velocity=velocity)
+    data = {"V [m/s]": velocity, "F_z [N/m]": loads, "mu": mu}
+    found = kv.fit(TABLE1, data, free=VOIGT)
+    (rows,) = found.data["sets"]
+    assert rows.size == 2000
+    assert 800 < np.count_nonzero(rows.conditions["support.load"] == 1e3) < 1200
+    assert found.notes == ("One row in 4 is used.",)
+    for key, true in zip(VOIGT, (1e10, 0.1), strict=True):
+        assert abs(found.parameters[key].value - true) < 4.0 * found.parameters[key].standard_error
+
+
 def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
     """Where errors are not elliptic; brute force: the others are fitted with the unknown held."""
     problem = friction.Problem(
