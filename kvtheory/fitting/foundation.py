@@ -89,7 +89,7 @@ def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> fl
     """
     if rtol is not None:
         if least > rtol:
-            told = f"no series with arms above 0 is as close: the least misfit is {least:.3g}, see `notes`"
+            told = f"no Prony series is as close: the least misfit of any is {least:.3g}"
             raise ValueError(f"`rtol` = {rtol:g}: {told}")
         return rtol
     count = data.target.size
