@@ -37,7 +37,11 @@ def compute() -> Data:
     found = [kv.fewer_arms(scene, velocities=SPEEDS, rtol=rtol, proved=False) for rtol in CHANGES]
     rows = sorted({(len(each.arms), each.difference, each.bound) for each in found})
     arms, change, bound = np.array([row for row in rows if row[0] < len(ARMS)]).T
-    columns = {"arms [1]": arms, "change of mu [1]": change, "bound [1]": bound}
+    columns = {
+        "arms [1]": arms,
+        "change of mu [1]": change,
+        "bound [1]": np.where(bound < np.inf, bound, np.nan),
+    }
     return Data(arms, change, bound, columns)
 
 
