@@ -3,8 +3,8 @@
 Unknowns are logarithms. The first guess needs no help: the maximum of the measured friction gives the
 stiffness of the foundation, and the velocities its times (fact F26); many points around them are tried at
 once, as theory takes arrays, and the best ones are refined. The covariance is that of the linear theory at
-the minimum. A direction of the unknowns that the data leave open by more than a factor of two is reported
-by its keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
+the minimum. A combination of unknowns that is uncertain by more than a factor of two is reported by its
+keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
 much above its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t).
 """
 
