@@ -381,3 +381,16 @@ def test_five_fast_arms_need_no_more_elements():
     arms = [(1e11, 1e-5), (5e10, 3e-5), (5e10, 1e-4), (3e10, 3e-4), (2e10, 1e-3)]
     scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms), run=kv.Run("20 ms"))
     assert failed(kv.compare(scene)) == []
+
+
+@pytest.mark.parametrize("support", ["dead-weight", "fixed"])
+def test_digits_that_were_cut_off_prove_no_other_fault(support):
+    scene, data = kv.Scene.table1(support), series(kv.Scene.table1(support), {})
+    cut = {"time": data["time"]}
+    for name in ("depth", "normal_force", "friction_force"):
+        last = 10.0 ** (np.floor(np.log10(np.abs(data[name]).max())) - 1.0)
+        cut[name] = np.trunc(data[name] / last) * last
+    found = kv.compare(scene, cut)
+    assert first_of(found, "digits cut off").enough
+    heavier = {**cut, "normal_force": 1.2 * cut["normal_force"]}
+    first_of(kv.compare(scene, heavier), "scale of normal_force")

@@ -57,8 +57,8 @@ INITIAL = 1e-3
 """Error of the initial depth, relative to the static depth: it may have been typed in with three digits."""
 INPUT = 1e-6
 """Relative error of given, not computed, quantities: they agree to the digits of a file."""
-EXACT = {"velocity": 3, "sliding_velocity": 3}
-"""Fewest significant digits of a column that count as rounded; a velocity of 0.1 m/s is exact."""
+GIVEN_DIGITS = 3
+"""Fewest significant digits that count as rounded where the velocity is given; 0.1 m/s is exact."""
 QUARTER = 0.5 * math.pi
 """Quarter period, in radians: the difference of two oscillations is largest so long after they cross."""
 
@@ -135,12 +135,12 @@ def allowance(
         step = fine.time_step if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
-    bands = {}
+    bands, given = {}, ("velocity", "sliding_velocity")[: 1 + theory.scene.drive.rigid]
     for name in CURVES:
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            rounding = rounded(values, EXACT.get(name, 0))
+            rounding = rounded(values, GIVEN_DIGITS if name in given else 0)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
             if name in EDGES and not fine.spacing_known:

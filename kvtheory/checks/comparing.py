@@ -226,6 +226,9 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
     """Return the explanations, the best first; a fitted one that changes nothing explains nothing."""
 
     def unlikely(trial: Trial) -> float:
+        cut_off = trial.enough and trial.hypothesis.name == faults.CUT_OFF
+        if cut_off and np.abs(rows.ratios(trial.hypothesis.pair(0.0))).max() <= 1.0:
+            return 0.0  # a difference within the resolution proves no other fault
         far = abs(trial.value) if trial.hypothesis.powers else 0.0
         return trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
 
@@ -238,7 +241,7 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
         )
         alike = rows.indistinguishable(best, ordered) if trial is best and enough else ()
         found.setdefault(fault.name, Explanation(
-            fault.name, fault.words(x), rank, enough and explained >= NAMED, fault.number(x),
+            fault.name, fault.words(x), rank, enough and max(rank, explained) >= NAMED, fault.number(x),
             explained, alike,
         ))  # fmt: skip
     return [each for each in found.values() if each.rank > 0.0]

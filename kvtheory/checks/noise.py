@@ -25,9 +25,9 @@ SURE = 4.5
 """Standard deviations that a single normal error almost never exceeds (once in 150,000)."""
 FEW_DIGITS = (2, 3, 4, 5)
 """Significant digits to which a column may be rounded; more do not matter."""
-SEVERAL, ON_GRID = 10, 1e-3
-"""Fewest distinct values whose smallest step shows the rounding, and how close to its multiples, relative to
-the step, all values must be."""
+SEVERAL, ON_GRID, DISTINCT = 4, 1e-3, 1e-9
+"""Fewest distinct values whose smallest step shows the rounding; how close to its multiples, relative to the
+step, all values must be; and how far apart, relative to the largest, distinct values are."""
 SAME = 1e-6
 """Fraction of the last digit within which a value counts as rounded to it."""
 REPEATED = 0.1
@@ -86,9 +86,11 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     Values with fewer digits than `fewest` count as exact.
     """
     distinct = np.unique(values[np.isfinite(values)])
-    step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
-    on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
-    half = 0.5 * step if on_grid else 0.0
+    steps = np.diff(distinct)
+    steps = steps[steps > DISTINCT * np.abs(distinct).max(initial=0.0)]
+    step = float(steps.min()) if steps.size >= SEVERAL - 1 else math.inf
+    on_grid = np.abs(distinct / step - np.round(distinct / step)).max(initial=0.0) <= ON_GRID
+    half = 0.5 * step if on_grid and math.isfinite(step) else 0.0
     size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), SMALLEST)))
     for digits in (d for d in FEW_DIGITS if d >= fewest):
         last = size * 10.0 ** (1 - digits)
