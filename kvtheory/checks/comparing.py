@@ -29,8 +29,8 @@ FAMILIES: Families = (
     ("units of the time", faults.time_units),
 )  # fmt: skip
 """The faults that are tried, in their order."""
-STEADY = {"signs and units", "scales and offsets", "other foundations and drives", "parameters"}
-"""The families that are tried for steady sliding."""
+OF_TIME = {"delays and filters", "units of the time"}
+"""The families that show in a series alone."""
 EXACT, BUDGET = 0.999, 8.0
 """Part of the difference that a wrong sign or unit must explain to end the search at once, and the processor
 time in s after which no other family is begun."""

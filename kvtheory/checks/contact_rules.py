@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from kvtheory.checks.hypotheses import Bench, Hypothesis, Pair, fixed
-from kvtheory.checks.theory import CURVES, Array, Curves
+from kvtheory.checks.theory import Array, Curves
 from kvtheory.checks.trial_elements import Rule, changes
 from kvtheory.scene import Scene
 
@@ -125,13 +125,16 @@ MISTAKES = (
 """Every mistake that is tried."""
 
 
-def mistakes(bench: Bench) -> Iterator[Hypothesis]:
+def mistakes(
+    bench: Bench, changes: Callable[..., Sequence[Curves]] = changes
+) -> Iterator[Hypothesis]:
     """Yield each mistake that can show in the scene: what it changes in a simulation is added to theory."""
     tried = [mistake for mistake in MISTAKES if SHOWS[mistake.shows](bench.theory.scene)]
     made = iter(changes(bench.theory, [rule for each in tried for rule in each.rules], bench.time))
 
     def changed(change: Curves) -> Pair:
-        return bench.columns, {name: bench.now[name] + change[name] for name in CURVES}
+        there = {name: bench.now[name] + change[name] for name in change if name in bench.now}
+        return bench.columns, {**bench.now, **there}
 
     for mistake in tried:
         found = [next(made) for _ in mistake.rules]
@@ -149,13 +152,13 @@ def _fitted(
     known = dict(zip(mistake.strengths, found, strict=True))
     if right is not None:
         known[right] = {name: np.zeros_like(values) for name, values in found[0].items()}
-    strengths = np.array(sorted(known))
-    table: Array = np.array([[known[s][name] for name in CURVES] for s in strengths])
+    strengths, names = np.array(sorted(known)), list(found[0])
+    table: Array = np.array([[known[s][name] for name in names] for s in strengths])
     between = PchipInterpolator(strengths, np.clip(table, -HUGE, HUGE), axis=0)
 
     def make(x: float) -> Pair | None:
         if not strengths[0] - BEYOND <= x <= strengths[-1] + BEYOND:
             return None
-        return changed(dict(zip(CURVES, between(x), strict=True)))
+        return changed(dict(zip(names, between(x), strict=True)))
 
     return Hypothesis(mistake.name, mistake.text, make, strengths.tolist())

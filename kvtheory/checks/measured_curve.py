@@ -4,7 +4,7 @@ It is a case whose "time" is the velocity, so that the same faults are tried as 
 """
 
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,10 @@ from kvtheory.checks import comparing
 from kvtheory.checks.allowances import Band, Resolution
 from kvtheory.checks.checklist import RELATIVE, largest, root_mean_square
 from kvtheory.checks.comparison_case import Case, rms
+from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.noise import SURE, noise, rounded
 from kvtheory.checks.theory import CURVES, Array, Theory
+from kvtheory.checks.trial_elements import steady_changes
 from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Comparison
 
@@ -25,6 +27,11 @@ SMOOTH = 1e-3
 """Error allowed beside the scatter, relative to a value: no experiment and few simulations are better."""
 LARGEST_SCATTER = 0.2
 """Scatter, relative to the curve, beyond which the points cannot test it."""
+FAMILIES = [
+    (words, partial(mistakes, changes=steady_changes) if family is mistakes else family)
+    for words, family in comparing.FAMILIES if words not in comparing.OF_TIME
+]  # fmt: skip
+"""The faults that are tried for steady sliding."""
 STEADY_ONLY = (
     " Steady sliding tests neither the inertia nor the memory of the free surface: the problems heavy-mass "
     "and "
@@ -62,15 +69,14 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
         digits = sigma = zero
         if name in names:
             values = series.columns[name]
-            digits, sigma = rounded(values), noise(order, values - now[name], now[name])
+            digits, sigma = rounded(values), _scatter(order, values, now[name])
         smooth = SMOOTH * np.abs(now[name]) + digits
         bands[name] = Band(now[name], now[name], smooth, sigma, digits)
     case = Case(
         steady, series, names, Resolution(1.0, 1.0, True, True), now, bands, zero, tolerance
     )
     checks = tuple(_checks(case))
-    families = [f for f in comparing.FAMILIES if f[0] in comparing.STEADY]
-    text, explanations = comparing.diagnose(case, checks, families)
+    text, explanations = comparing.diagnose(case, checks, FAMILIES)
     if comparing.verdict(checks) == "agrees":
         text += STEADY_ONLY
     columns = {"velocity": series.time, **{name: series.columns[name] for name in names}}
@@ -79,6 +85,17 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
         tolerance, columns, now, {name: case.allowed(name) for name in names},
         {**steady.units, "friction_coefficient": "1"},
     )  # fmt: skip
+
+
+def _scatter(order: Array, values: Array, curve: Array) -> Array:
+    """Return sigma of the values: what is smooth must not count, although the points may be far apart.
+
+    A wrong curve resembles theory times a factor, or no curve at all.
+    """
+    square = float(curve @ curve)
+    factors = 1.0, float(values @ curve) / square if square else 0.0, 0.0
+    found = [noise(order, values - factor * curve, curve) for factor in factors]
+    return min(found, key=rms)
 
 
 def _checks(case: Case) -> Iterator[Check]:

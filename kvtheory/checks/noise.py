@@ -83,7 +83,8 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
 def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     """Return the rounding error: half the smallest step between values, or half their last digit.
 
-    Values with fewer digits than `fewest` count as exact.
+    Digits are counted after the point or as significant ones, whichever leaves the larger error.
+    Values with fewer of them than `fewest` count as exact.
     """
     distinct = np.unique(values[np.isfinite(values)])
     steps = np.diff(distinct)
@@ -92,8 +93,8 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     on_grid = np.abs(distinct / step - np.round(distinct / step)).max(initial=0.0) <= ON_GRID
     half = 0.5 * step if on_grid and math.isfinite(step) else 0.0
     size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), SMALLEST)))
-    for digits in (d for d in FEW_DIGITS if d >= fewest):
-        last = size * 10.0 ** (1 - digits)
+    sizes = (np.full_like(size, size.max()), size) if steps.size else (size,)
+    for last in (each * 10.0 ** (1 - d) for d in FEW_DIGITS if d >= fewest for each in sizes):
         off = np.abs(values / last - np.round(values / last))
         if np.nanmax(off, initial=0.0) <= SAME:
             return np.asarray(np.maximum(half, 0.5 * last))

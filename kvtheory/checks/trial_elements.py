@@ -2,7 +2,8 @@
 
 Its arrays run over rules, rows and columns of elements: a line contact is one row, a ball has several. The
 right rule is the first, and the difference of the others to it is what a mistake changes, so that most errors
-of the discretization cancel. It is NumPy alone, and shares no code with the models.
+of the discretization cancel. It is NumPy alone, and shares no code with the models. Steady sliding
+is the same elements in the order in which they pass.
 """
 
 import math
@@ -72,6 +73,15 @@ SWING = 4.0
 SIMULATED = ("velocity", "depth", "depth_rate", "normal_force", "friction_force", "leading_edge",
              "trailing_edge", "peak_pressure", "sliding_velocity", "spring_force")  # fmt: skip
 """The curves that a simulation returns, in their order."""
+POINTS, HALVINGS = 24, 24
+"""Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
+SHALLOWEST, DEEPEST = 1e-3, 4.0
+"""Ends of that interval, in static depths."""
+STEADY = "slide_rate", "pulls", "hunt", "friction", "central", "front", "back", "lost", "flat"
+EVEN = "depth", "normal_force", "peak_pressure"
+"""What of a rule shows in steady sliding; and the curves that do not change sign with the velocity."""
+SLOWEST, TINY = 1e-9, 1e-300
+"""Lowest speed on arms, in a_0/tau; and a force in N that divides where there is none."""
 LATE, NEWTON = 0.52, 1
 """Weight of the end of a step, a little above that of the trapezoidal rule; and Newton steps."""
 
@@ -351,3 +361,53 @@ def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[st
         }
         for each in off
     ]
+
+
+def steady_changes(theory: Theory, rules: Sequence[Rule], speeds: Array) -> list[dict[str, Array]]:
+    """Return by rule what it changes in each curve of steady sliding at speeds (m/s, increasing)."""
+    kinds, V = (
+        [Rule(**{key: getattr(rule, key) for key in STEADY}) for rule in rules],
+        np.abs(speeds),
+    )
+    some = np.unique(np.quantile(V, np.linspace(0.0, 1.0, POINTS), method="nearest"))
+    found = {rule: steady(theory, rule, some) for rule in {Rule(), *kinds}}
+    sign = np.where(speeds < 0.0, -1.0, 1.0)
+    return [{name: np.interp(V, some, np.nan_to_num(values - found[Rule()][name]))
+             * (1.0 if name in EVEN else sign) for name, values in found[rule].items()}
+            for rule in kinds]  # fmt: skip
+
+
+def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
+    """Return the curves of steady sliding by a rule at speeds (m/s)."""
+    scene, static, count = theory.scene, theory.static, speeds.size
+    reach, zero = WINDOW * static.half_length, np.zeros(count)
+    elements = Elements.at_rest(scene, [rule] * count, -reach, reach)
+    x = elements.places
+    elements.surface = np.zeros((count, elements.heights.shape[1], x.size))
+    if scene.foundation.arms:
+        moduli, times = _moduli_and_times(scene)
+        speed = np.maximum(speeds, SLOWEST * static.velocity)[:, None, None]
+        ages = (x - x[:, None]) / speed
+        age = elements.length / (speed * times)
+        passed = np.where(ages < 0.0, 0.0, np.exp(-np.maximum(ages, 0.0) / times))
+        passed = rule.slide_rate * moduli * -np.expm1(-age) / age * passed
+
+    def pressed(depth: Array) -> Pressed:
+        if scene.foundation.arms:  # the stress of each strain that has passed
+            overlap = depth[:, None, None] - elements.heights - 0.5 * x * (x / theory.radius)
+            elements.surface = np.maximum(overlap, 0.0)
+            elements.stress = np.diff(elements.surface, axis=-1, prepend=0.0) @ passed
+        return elements.pressed(0.0, slice(None), depth, zero, zero, speeds)
+
+    low, high = static.depth * np.array([[SHALLOWEST], [DEEPEST]]) * np.ones(count)
+    for _ in range(0 if scene.held else HALVINGS):
+        middle = 0.5 * (low + high)
+        pushed = scene.support.weight - scene.support.spring * (middle - static.depth)
+        light = pressed(middle).normal < pushed
+        low, high = np.where(light, middle, low), np.where(light, high, middle)
+    depth = np.full(count, static.depth) if scene.held else 0.5 * (low + high)
+    found = pressed(depth)
+    mu = found.friction / np.maximum(found.normal, TINY)
+    return {"depth": depth, "normal_force": found.normal, "friction_force": found.friction,
+            "friction_coefficient": mu, "leading_edge": found.left, "trailing_edge": found.right,
+            "peak_pressure": found.peak}  # fmt: skip
