@@ -62,7 +62,7 @@ QUARTER = 0.5 * math.pi
 
 
 class Resolution(NamedTuple):
-    """Spacing of elements (m) and time step (s), known or assumed, and what the spacing was estimated from."""
+    """Spacing of elements (m) and time step (s), known or assumed; what the spacing was estimated from."""
 
     spacing: float
     time_step: float
@@ -164,9 +164,7 @@ def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curve
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
     found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)
     parts = {name: [*found[name][: 3 * time.size].reshape(3, -1)] for name in CURVES}
-    near = (
-        np.abs(time[:, None] - sides) <= smear[:, None]
-    )  # both sides of a jump belong to the range
+    near = np.abs(time[:, None] - sides) <= smear[:, None]  # a range holds both sides of a jump
     low, high = {}, {}
     for name in CURVES:
         over = [*np.where(near, found[name][3 * time.size :], np.nan).T]
@@ -177,8 +175,8 @@ def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curve
 def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     """Return the lag of the rate that a first-order scheme keeps after a fast change.
 
-    The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T): an eighth of the width of the band times
-    t/T, and it lasts after the band has narrowed. T = M/(C L) is that of the current contact, and
+    The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T): an eighth of the width of the band
+    times t/T, and it lasts after the band has narrowed. T = M/(C L) is that of the current contact, and
     (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
     damping, mass = theory.scene.foundation.damping, theory.scene.support.mass
@@ -224,8 +222,8 @@ def _systematic(
     """Return the smooth error of each curve.
 
     `forces` are b and the error of the force by a lag, `late` is the lag of the rate. The errors of the edges
-    follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32 and 33); that of friction
-    is b at x = a, with F_x in proportion to delta^(3/2).
+    follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32 and 33); that of
+    friction is b at x = a, with F_x in proportion to delta^(3/2).
     """
     K, tau = theory.scene.foundation.stiffness, theory.scene.foundation.retardation_time
     R, dx, (force, lagging) = theory.radius, fine.spacing, forces
@@ -296,8 +294,8 @@ def _spring_response(
     """Return the error of each curve on a spring due to b (N/m) and to the step (s).
 
     Motion along x decays slowly, or grows to a cycle whose phase shifts more and more (F22). Linear response
-    does not cover that, so theory of a disturbed scene does (`_disturbed`). Besides, the friction b a/R acts on
-    the spring at once. `step` is 0 for a scheme of higher order, whose error is negligible.
+    does not cover that, so theory of a disturbed scene does (`_disturbed`). Besides, the friction b a/R acts
+    on the spring at once. `step` is 0 for a scheme of higher order, whose error is negligible.
     """
     inertia, stiffness = theory.scene.drive_mass, float(theory.scene.drive.stiffness or 0.0)
     swing = math.sqrt(inertia / stiffness)  # period over 2 pi, in s
@@ -321,8 +319,8 @@ def _spring_response(
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
     """Yield the scene with a load larger by a share, and with the damping of first-order steps.
 
-    A fixed indenter gets a stiffer foundation instead. A first-order step h acts like a damper c_x = h k_x, or
-    excites as much.
+    A fixed indenter gets a stiffer foundation instead. A first-order step h acts like a damper c_x = h k_x,
+    or excites as much.
     """
     support = scene.support
     if isinstance(support, Fixed):
