@@ -44,7 +44,7 @@ value."""
 NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
-"""Largest number of explanations that are kept."""
+"""Most explanations that are kept, and most parameters that are named as indistinguishable."""
 MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
 SCATTER = "scatter"
@@ -270,7 +270,8 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
         text = f"Closest, but not all{part}: {first.text}"
     if first.alike:
-        together = f"{symbol} and {' or '.join(first.alike)}"
+        more = " or others" if len(first.alike) > SHOWN else ""
+        together = f"{symbol} and {' or '.join(first.alike[:SHOWN])}{more}"
         also = f" {together} cannot be told apart by these data.{also}"
     return f"{text}.{also} Failed: {which}."
 
