@@ -3,10 +3,10 @@
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import asymptotics, groups, steady, tables
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.catalogue import SECTIONS, catalogue
-from kvtheory.derivations.record import STATUSES
+from kvtheory.derivations.chapters import asymptotics, groups, steady, tables
+from kvtheory.derivations.engine.record import STATUSES
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 

@@ -10,10 +10,10 @@ import generators
 import pytest
 from generators import derivations as site_derivations
 from generators.labels import anchor_of
-from kvtheory.derivations.atoms import atoms
 from kvtheory.derivations.catalogue import SYMBOLS, catalogue
-from kvtheory.derivations.letters import letters
-from kvtheory.derivations.record import STATUSES, Derivation, Step, Table
+from kvtheory.derivations.engine.atoms import atoms
+from kvtheory.derivations.engine.letters import letters
+from kvtheory.derivations.engine.record import STATUSES, Derivation, Step, Table
 from kvtheory.derivations.render import (
     RenderError,
     edition,

@@ -2,9 +2,9 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations import book
-from kvtheory.derivations.book import StepError, established
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations.engine import book
+from kvtheory.derivations.engine.book import StepError, established
+from kvtheory.derivations.engine.step import Proof
 
 from tests import planted
 from tests.planted import x, y, z

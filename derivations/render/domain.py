@@ -2,9 +2,9 @@
 
 import sympy as sp
 
-from ..book import tex
-from ..letters import letters, printed
-from ..record import Claim, Derivation
+from ..engine.book import tex
+from ..engine.letters import letters, printed
+from ..engine.record import Claim, Derivation
 
 _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", "< 0"))
 
