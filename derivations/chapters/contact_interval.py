@@ -71,14 +71,16 @@ def _condition(proof: Proof) -> None:
 def _interval(proof: Proof) -> None:
     r"""The contact is one interval, for many shapes.
 
-    Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion in the other
-    direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with $y$:
-    going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$. So $f$ rises to one place
-    and falls beyond it, $D_1 \ge 0$ on one interval for each past instant, and intervals intersect in an
-    interval, or not at all: the contact is described by two edges. Not checked by machine: that a function
-    which first rises and then falls is at or above a given value on an interval; that the integral of a
-    non-positive function is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself,
-    $\rho(y_2) \le \rho(y_1)$ for $y_2 > y_1$, takes the place of the integral.
+    Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion in the
+    other direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with
+    $y$: going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$.
+
+    Argued: So $f$ rises to one place and falls beyond it, $D_1 \ge 0$ on one interval for each past
+    instant, and intervals intersect in an interval, or not at all: the contact is described by two edges.
+    Argued is also that a function which first rises and then falls is at or above a given value on an
+    interval; that the integral of a non-positive function is not positive; and that where $h'$ or $\chi$
+    has a kink, concavity itself, $\rho(y_2) \le \rho(y_1)$ for $y_2 > y_1$, takes the place of the
+    integral.
     """
     ahead = -_height(y) + E * _height(y + m)
     between = -_height(y) + E * _height(m - y)
@@ -169,11 +171,13 @@ def _circle(proof: Proof) -> None:
 def _converse(proof: Proof) -> None:
     r"""Necessary condition for a single contact.
 
-    If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than $\rho(y_1)$ with $y_1 <
-    y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by $m$ while $e^{s}$ grows to $1/E$, and
-    be set down instantly to $d = E d_1 - k$. Elements are in contact where $f \ge k$ and $d \ge h$. With $k$
-    between the bottom of the valley and its lower rim, and $d_1$ so large that all of these elements were
-    compressed, the contact consists of two parts, one on each side of the valley.
+    If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than $\rho(y_1)$ with
+    $y_1 < y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by $m$ while $e^{s}$ grows to
+    $1/E$, and be set down instantly to $d = E d_1 - k$. Elements are in contact where $f \ge k$ and $d
+    \ge h$.
+
+    Argued: With $k$ between the bottom of the valley and its lower rim, and $d_1$ so large that all of
+    these elements were compressed, the contact consists of two parts, one on each side of the valley.
     """
     middle = 2 / (ratio_near + ratio_now)
     proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}

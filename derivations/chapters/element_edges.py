@@ -153,6 +153,10 @@ def _bent(proof: Proof) -> None:
     proof.notation["w"] = sp.Lambda(x, overlap)
     proof.integral(area, overlap, over, sp.integrate(overlap, x), "its area inside",
                    left=r"\int_{\vartheta \Delta}^{\Delta} w(x) \, dx")  # fmt: skip
+    proof.where(_share < 1, "the contact ends between two elements")
+    proof.where(
+        2 * _slope + _spacing * (1 - _share) * _bend > 0, "the first element inside overlaps"
+    )
     proof.define(_inside, overlap.subs(x, _spacing), "at the first element inside")
     proof.define(_outside, overlap.subs(x, 0), "at the last one outside")
     end = sp.Subs(sp.Derivative(overlap, x), x, _spacing)

@@ -41,10 +41,11 @@ def _rim(proof: Proof) -> None:
 
     By F21-load the strip at the distance $\psi^2$ from the rim, in units of the half width, carries this
     load, in units of $K \delta a$. It begins in proportion to the distance, at rest with its power
-    $\frac{3}{2}$, and goes on in powers of $\psi$. Its contact is as long as an element where $\psi$ is of
-    the order of $\Delta$ over the half length: strips nearer to the rim carry the order of $\Delta^4$, and by
-    element-bent all others are wrong by the order of $\Delta^2$. So is a ball, whatever the spacing of its
-    strips.
+    $\frac{3}{2}$, and goes on in powers of $\psi$.
+
+    Argued: Its contact is as long as an element where $\psi$ is of the order of $\Delta$ over the half
+    length: strips nearer to the rim carry the order of $\Delta^4$, and by element-bent all others are
+    wrong by the order of $\Delta^2$. So is a ball, whatever the spacing of its strips.
     """
     width = _root**2 * (2 - _root**2)
     proof.where(2 - _root**2 > 0, "on this side of the opposite rim")
@@ -62,16 +63,17 @@ def _rim(proof: Proof) -> None:
 def _rule(proof: Proof) -> None:
     r"""Order of the rule over the strips of a ball.
 
-    Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and the
-    load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for the load
-    is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, $\frac{1}{2}
-    \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge 0} Q(\vartheta +
-    j)$, where $Q$ makes the sum converge. This solves the last equation, as Hurwitz's
-    $\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for
-    great $\vartheta$, so that they are the same. With the correction the rule over strips has $p_2
-    \Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta +
-    \frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and terms of the order of $\Delta^3$: its order is
-    $\frac{5}{2}$.
+    Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and
+    the load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for
+    the load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, $\frac{1}{2}
+    \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge 0}
+    Q(\vartheta + j)$, where $Q$ makes the sum converge.
+
+    Argued: This solves the last equation, as Hurwitz's $\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$
+    does; their difference has the period 1 and vanishes for great $\vartheta$, so that they are the same.
+    With the correction the rule over strips has $p_2 \Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2},
+    \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + \frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and
+    terms of the order of $\Delta^3$: its order is $\frac{5}{2}$.
     """
     over = (_y, 0, _share * _spacing)
     line = sp.Integral(_y, over)

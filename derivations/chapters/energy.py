@@ -11,10 +11,10 @@ from .theorems import NUMBER, RATIO, UNIT, B, phi
 
 letter(r"u_{\mathrm{TE}}", "compression at the trailing edge", "m")
 F_elastic = symbol(
-    "F_elastic", "elastic part of the friction force", "N/m", latex=r"F_{\mathrm{e}}"
+    "F_elastic", "elastic part of the friction force", "N/m", latex=r"F_{\mathrm{e}}", real=True
 )
 F_viscous = symbol(
-    "F_viscous", "viscous part of the friction force", "N/m", latex=r"F_{\mathrm{v}}"
+    "F_viscous", "viscous part of the friction force", "N/m", latex=r"F_{\mathrm{v}}", real=True
 )
 eta = symbol("eta", "part of the power $F V$ that is dissipated inside the contact")
 

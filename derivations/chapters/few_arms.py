@@ -87,11 +87,13 @@ def _steepest(proof: Proof) -> None:
 def _close(proof: Proof) -> None:
     r"""Any relaxation function: two series that are close.
 
-    The other series has the same $K$ and a fall $\breve H_1$ between $1 - \breve \rho$ and $1 + \breve \rho$
-    times that of the first, $\breve n$ saying where; and it has come as close to $K$ where the contact ends.
-    All moments are sums of end values and falls with positive weights (F17-sign), and therefore as close;
-    $\breve \omega_1$ to $\breve \omega_3$ say how much closer. Compared are the load $\breve D + \breve \eta
-    \breve P$ and the friction force $\breve E + \breve \eta^2 \breve P$, $\breve \eta = \breve B/\breve A$.
+    The other series has the same $K$ and a fall $\breve H_1$ between $1 - \breve \rho$ and $1 + \breve
+    \rho$ times that of the first, $\breve n$ saying where; and it has come as close to $K$ where the
+    contact ends. Compared are the load $\breve D + \breve \eta \breve P$ and the friction force $\breve E
+    + \breve \eta^2 \breve P$, $\breve \eta = \breve B/\breve A$.
+
+    Argued: All moments are sums of end values and falls with positive weights (F17-sign), and therefore
+    as close; $\breve \omega_1$ to $\breve \omega_3$ say how much closer.
     """
     share = (1 - part_at(w)) / (1 + part_at(w))
     proof.define(eps, arm_ratio / (1 + arm_ratio), "any number between 0 and 1")
@@ -117,10 +119,11 @@ def _close(proof: Proof) -> None:
 def _enough(proof: Proof) -> None:
     r"""How many arms are enough.
 
-    Friction forces at a load are compared at the length of the contact on the first series (F27-close); what
-    the loads differ by there counts at most to the power $\frac{5}{2}$ (F27-steepest, integrated). So $\mu$
-    under a dead weight differs by less than $14 \breve \rho$ of it, for $\breve \rho < \frac{1}{100}$, at
-    every velocity: a series may be replaced by one with fewer arms.
+    Friction forces at a load are compared at the length of the contact on the first series (F27-close);
+    what the loads differ by there counts at most to the power $\frac{5}{2}$ (F27-steepest, integrated).
+
+    Argued: So $\mu$ under a dead weight differs by less than $14 \breve \rho$ of it, for $\breve \rho <
+    \frac{1}{100}$, at every velocity: a series may be replaced by one with fewer arms.
     """
     most, least = (
         (a**3 / b**2) ** 2 * (a / b**2) ** (2 * STEEPEST) for a, b in ((up, low), (low, up))

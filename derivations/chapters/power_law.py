@@ -45,7 +45,9 @@ lost_ahead = symbol("e_ahead", "dissipation ahead of the lowest line", latex=r"\
 lost_behind = symbol(
     "e_behind", "dissipation behind it", latex=r"\eta_{\mathrm{b}}", nonnegative=True
 )
-P_n = symbol("P_n", "maximum of the scaled pressure of a power law", latex=r"\hat p_{\max,n}")
+P_n = symbol(
+    "P_n", "maximum of the scaled pressure of a power law", latex=r"\hat p_{\max,n}", real=True
+)
 
 SECTION = "Power law and wedge"
 

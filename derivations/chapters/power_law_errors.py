@@ -30,7 +30,7 @@ from .steady import l, q
 
 gap_edge = symbol("gap_q", latex=r"\bar q")
 gap_slope = symbol("gap_Q", "$1 - Q$", latex=r"\bar Q")
-bend = symbol("bend", "$l - (1 - q)$, the difference of $l$ and $1 - q$", latex="b_n")
+bend = symbol("bend", "$l - (1 - q)$, the difference of $l$ and $1 - q$", latex="b_n", real=True)
 letter(r"\phi_2", r"$\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators")
 phi_rise = symbol("phi_rise", r"$\phi_2$ at a positive argument", latex=r"\phi_{2,+}")
 phi_fall = symbol("phi_fall", r"$\phi_2$ at a negative argument", latex=r"\phi_{2,-}")
@@ -245,10 +245,12 @@ def _monotonic(proof: Proof) -> None:
 
     At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, $\varphi_n/l$ and
     $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ (F19-balance), under a spring
-    between that and 0: the error of the asymptote for low velocity grows with the velocity (for $n > 2$ the
-    spring only reduces a positive term). The asymptote for high velocity over the exact value is
-    $(W_\infty/W)^{1 - 1/n} (w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a
-    tolerance on a half-line of velocities.
+    between that and 0: the error of the asymptote for low velocity grows with the velocity (for $n > 2$
+    the spring only reduces a positive term).
+
+    Argued: The asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} (w_n/l)^{1 -
+    1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance on a half-line of
+    velocities.
     """
     rest = sp.Symbol("varrho", positive=True)
     proof.define(psi, 1 - rest, r"$d \ln \varphi_n/d \ln l < 1$, because $\varphi_n/l$ falls")

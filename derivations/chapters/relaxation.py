@@ -120,9 +120,10 @@ def _pressure(proof: Proof) -> None:
 def _concave(proof: Proof) -> None:
     r"""Any relaxation function: one trailing edge.
 
-    The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is concave: it
-    vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$. (Where $G$ falls by
-    steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$, which was not checked by machine.)
+    The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is concave:
+    it vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$.
+
+    Argued: Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$.
     """
     name_integrals(proof, 2)
     first = (a * G(y) - G_1(y)) / R
@@ -204,12 +205,14 @@ def _positive(proof: Proof) -> None:
 def _stored(proof: Proof) -> None:
     r"""Any relaxation function: energy behind the contact.
 
-    Half of the square of this is the energy stored in the spring of an arm (F17-energy), $\frac{1}{2} \int
-    \int e^{-\breve z (\breve w + \breve w')} u' u'$. Added up over arms it is $\frac{1}{2} \int \int G(\breve
-    w + \breve w')\, u'(\breve w)\, u'(\breve w')$ for every $G$ that is a sum or an integral of arms
-    (Bernstein: that is completely monotone), the springpot among them. It is lost while the surface relaxes
-    behind the contact; the rest of $F$ is lost inside it. For other relaxation functions $G$ alone does not
-    determine the stored energy.
+    Half of the square of this is the energy stored in the spring of an arm (F17-energy), $\frac{1}{2}
+    \int \int e^{-\breve z (\breve w + \breve w')} u' u'$.
+
+    Argued: Added up over arms it is $\frac{1}{2} \int \int G(\breve w + \breve w')\, u'(\breve w)\,
+    u'(\breve w')$ for every $G$ that is a sum or an integral of arms (Bernstein: that is completely
+    monotone), the springpot among them. It is lost while the surface relaxes behind the contact; the rest
+    of $F$ is lost inside it. For other relaxation functions $G$ alone does not determine the stored
+    energy.
     """
     from .viscoelastic import PRESSURE as ARM
     from .viscoelastic import b, z
@@ -293,16 +296,17 @@ def _interval(proof: Proof) -> None:
     r"""Prony series: the contact is one interval.
 
     The dashpot of an arm follows $\tau_i\, \mathrm{d}\breve u_1/\mathrm{d}t = \breve u - \breve u_1$; the
-    surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + \breve \gamma_2
-    \breve u_2$. Shown with two arms; nothing depends on their number. Not checked by machine: the larger of
-    two is the upper bound of all mixtures with weights $\breve \theta$ and $1 - \breve \theta$, so that by
-    the comparison theorem of cooperative systems (Kamke) each extension is the upper bound, over all
-    histories $\breve \theta(t)$, of the solution of a linear system: an integral of the past of $\breve g$
-    with weights that are not negative and add up to $1 - \breve \omega_1$, at most 1. Along the foundation
-    $\breve g$ is one parabola, displaced from instant to instant, so that the height of the indenter over the
-    free surface is a lower bound of concave functions, and concave. An element is in contact where it is not
-    negative, which is one interval, for any drive and any motion: two edges describe the contact on every
-    Prony series, as F9 says for Kelvin-Voigt.
+    surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + \breve
+    \gamma_2 \breve u_2$. Shown with two arms; nothing depends on their number.
+
+    Argued: The larger of two is the upper bound of all mixtures with weights $\breve \theta$ and $1 -
+    \breve \theta$, so that by the comparison theorem of cooperative systems (Kamke) each extension is the
+    upper bound, over all histories $\breve \theta(t)$, of the solution of a linear system: an integral of
+    the past of $\breve g$ with weights that are not negative and add up to $1 - \breve \omega_1$, at most
+    1. Along the foundation $\breve g$ is one parabola, displaced from instant to instant, so that the
+    height of the indenter over the free surface is a lower bound of concave functions, and concave. An
+    element is in contact where it is not negative, which is one interval, for any drive and any motion:
+    two edges describe the contact on every Prony series, as F9 says for Kelvin-Voigt.
     """
     u, stiff = left_behind, K + spring_1 + spring_2
     pressure = K * u + spring_1 * (u - damper_1) + spring_2 * (u - damper_2)

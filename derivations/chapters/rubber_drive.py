@@ -121,10 +121,13 @@ BETA = (
 def _compression(proof: Proof) -> None:
     r"""Rubber: compression in small motions.
 
-    The depth is $\delta + \check \theta \tilde \delta e^{\tilde s t}$, and the indenter is at $\check \theta
-    \tilde X e^{\tilde s t}$. The element that is now at $x$ was $\tilde t$ ago where the foundation and the
-    indenter had then taken it, and was compressed by $\delta - x^2/2R$ of that place and that depth. All that
-    follows is analytic in $\tilde s$: what is proved where it is positive holds in the complex plane.
+    The depth is $\delta + \check \theta \tilde \delta e^{\tilde s t}$, and the indenter is at $\check
+    \theta \tilde X e^{\tilde s t}$. The element that is now at $x$ was $\tilde t$ ago where the
+    foundation and the indenter had then taken it, and was compressed by $\delta - x^2/2R$ of that place
+    and that depth.
+
+    Argued: All that follows is analytic in $\tilde s$: what is proved where it is positive holds in the
+    complex plane.
     """
     place_then = x - V * time_back + small * x_swing * (sp.exp(s * t) - sp.exp(s * (t - time_back)))
     then = delta + small * delta_swing * sp.exp(s * (t - time_back)) - place_then**2 / (2 * R)
@@ -291,11 +294,12 @@ def _temperature(proof: Proof) -> None:
 
     The pressure at the distance $\breve X$ behind the leading edge is $\int G_T\, \mathrm{d}u$, for every
     shape and every relaxation function; $x_u(\breve y)$ is the slope of the compression, that of the
-    indenter, or behind the contact of the free surface, where it makes the pressure 0. If temperature
-    multiplies all times by $a_T$ and leaves the moduli, $b_T = 1$, then the steady state at the velocity $V$
-    is that at the reference temperature and the velocity $V a_T$, for every shape and support. Moduli that
-    change by the factor $b_T$ change the forces by it at the same contact: that is the steady state of the
-    load $W/b_T$.
+    indenter, or behind the contact of the free surface, where it makes the pressure 0.
+
+    Argued: If temperature multiplies all times by $a_T$ and leaves the moduli, $b_T = 1$, then the steady
+    state at the velocity $V$ is that at the reference temperature and the velocity $V a_T$, for every
+    shape and support. Moduli that change by the factor $b_T$ change the forces by it at the same contact:
+    that is the steady state of the load $W/b_T$.
     """
     y, X = edge_distance, behind
     over, rate = (y, 0, X), strained(y)

@@ -194,10 +194,12 @@ class Determinant(Computed):
 def _surface(proof: Proof) -> None:
     r"""Rubber: the free surface.
 
-    Behind the contact $K u + \sum s_i = 0$ and $\dot s_i = K_i \dot u - s_i/\tau_i$: a linear system, with
-    $\dot u = \sum (s_i/\tau_i)/K_{\mathrm{g}}$. Here it has two arms. Its rates are real and negative: the
-    free surface relaxes with as many times as there are arms, each longer than that of its arm. An element is
-    met again where the indenter reaches its compression, and continues from its stresses.
+    Behind the contact $K u + \sum s_i = 0$ and $\dot s_i = K_i \dot u - s_i/\tau_i$: a linear system,
+    with $\dot u = \sum (s_i/\tau_i)/K_{\mathrm{g}}$. Here it has two arms. An element is met again where
+    the indenter reaches its compression, and continues from its stresses.
+
+    Argued: Its rates are real and negative: the free surface relaxes with as many times as there are
+    arms, each longer than that of its arm.
     """
     rho, (r_1, r_2) = fading_rate, rates
     proof.where(r_2 > r_1, r"rates $1/\tau_i$ of the arms")

@@ -61,8 +61,10 @@ def _flutter(proof: Proof) -> None:
     r"""Flutter where friction rises.
 
     Friction that rises with the velocity is stable for every stiffness up to the inertia
-    $\vartheta_{\mathrm{f}}$. With more, both motions, each damped, drive each other where their frequencies
-    are close: steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and $\Omega_{+}$.
+    $\vartheta_{\mathrm{f}}$.
+
+    Argued: With more, both motions, each damped, drive each other where their frequencies are close:
+    steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and $\Omega_{+}$.
     """
     proof.where(sp.Gt(rise, 0), "friction rises")
     proof.where(sp.Gt(S_z - rise, 0), "in motion")

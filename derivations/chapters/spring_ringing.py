@@ -17,7 +17,9 @@ sinks_faster = symbol("v_z", "change of $d'$", latex=r"\check v_z", real=True)
 letter(r"\check d", "change of $d$ while the spring rings")
 length = symbol("l_c", "length of the contact", latex=r"\check l")
 middle = symbol("c_m", "its middle", latex=r"\check \xi", real=True)
-power = symbol("Pi_c", "power that both changes cost in the dampers", latex=r"\check \Pi")
+power = symbol(
+    "Pi_c", "power that both changes cost in the dampers", latex=r"\check \Pi", real=True
+)
 
 result = Chapter(SECTION)
 

@@ -87,10 +87,12 @@ result = Chapter(SECTION)
 def _quadratics(proof: Proof) -> None:
     r"""Rates of a quartic: the condition of Routh and Hurwitz.
 
-    Every real quartic has two real quadratic factors, whose roots have negative real parts if and only if
-    their coefficients are positive; then those of the quartic and the determinant are positive. Conversely,
-    where these are, $\check b_1 \check b_2$ and $\check b_1 + \check b_2$ are positive, and so both; and by
-    the constant and the linear coefficient $\check c_1$ and $\check c_2$.
+    Where the coefficients of the quartic and the determinant are positive, so are $\check b_1 \check b_2$
+    and $\check b_1 + \check b_2$, hence both factors; and by the constant and the linear coefficient
+    $\check c_1$ and $\check c_2$.
+
+    Argued: Every real quartic has two real quadratic factors, whose roots have negative real parts if and
+    only if their coefficients are positive. The converse is plain: products and sums of positive numbers.
     """
     (b_1, b_2), (c_1, c_2) = linear, constant
     product = (sigma**2 + b_1 * sigma + c_1) * (sigma**2 + b_2 * sigma + c_2)
@@ -209,10 +211,12 @@ def _frequencies(proof: Proof) -> None:
 def _critical(proof: Proof) -> None:
     r"""Critical stiffness.
 
-    $\check H$ vanishes at the stiffnesses of both frequencies. It is positive above the larger one, so the
-    critical stiffness is that of $\Omega_{+}$. Where friction falls, $\check e < 0$, the product of the
-    frequencies is negative: $\Omega_{-}$ does not exist, and every softer spring is unstable. Without a
-    positive root steady sliding is stable for every stiffness.
+    $\check H$ vanishes at the stiffnesses of both frequencies. It is positive above the larger one, so
+    the critical stiffness is that of $\Omega_{+}$.
+
+    Argued: Where friction falls, $\check e < 0$, the product of the frequencies is negative: $\Omega_{-}$
+    does not exist, and every softer spring is unstable. Without a positive root steady sliding is stable
+    for every stiffness.
     """
     _frequencies(proof)
     proof.define(Omega_plus, (spread - onset_sum) / (2 * T_z**2))
@@ -242,12 +246,14 @@ def _forms(proof: Proof) -> None:
     _frequencies(proof)
     proof.where(sp.Lt(rise, 0), "friction falls")
     proof.where(sp.Gt(onset_sum, 0))
-    proof.define(Omega, (spread - onset_sum) / (2 * T_z**2), r"this is $\Omega_{+}$")
-    proof.equal(Omega, -2 * S_z * rise / (spread + onset_sum), "of positive terms")
-    proof.define(lag_plus, S_z - T_z * Omega)
-    proof.equal(
-        lag_plus, 2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread), "likewise"
+    proof.define(Omega, -2 * S_z * rise / (spread + onset_sum), "of positive terms")
+    proof.equal(Omega, (spread - onset_sum) / (2 * T_z**2), r"this is $\Omega_{+}$")
+    proof.define(
+        lag_plus,
+        2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread),
+        "likewise positive",
     )
+    proof.equal(S_z - T_z * Omega, lag_plus, "it is this difference")
     proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega, "positive")
     proof.holds(uncoupled * Omega / lag_plus, ">", 0,
                 r"so $\check p_{+} < \check g \varrho_{\mathrm{c}} < \varrho_{\mathrm{c}}$")  # fmt: skip

@@ -163,7 +163,7 @@ def _signs(proof: Proof) -> None:
                 "F10-peel: an element that detaches on the right loses its pressure",
                 cases=(sp.Lt(speed, 0),))  # fmt: skip
     proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
-    inside, bulge = sp.Symbol("D_2", nonnegative=True), (sp.exp(time) - sp.exp(sigma)) * b**2
+    inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
     proof.define(
         inside, other, r"at the left edge, not negative: it is in contact", right="D(X - b)"
     )
@@ -242,10 +242,12 @@ def _soon_and_late(proof: Proof) -> None:
 def _gradually(proof: Proof) -> None:
     r"""Ground left element by element.
 
-    An edge that peeled at $\xi = \eta$ left the element $X_{\mathrm{e}}(\sigma)$ at $\sigma$. When it comes
-    back at $s$, it is where $e^{s} g(X_{\mathrm{e}}(\sigma), s) = e^{\sigma} g(X_{\mathrm{e}}(\sigma),
-    \sigma)$: one equation for $\sigma$. The difference of both sides is positive at the innermost of these
-    elements and concave across them (F9), so that it vanishes at most once on the way outward.
+    An edge that peeled at $\xi = \eta$ left the element $X_{\mathrm{e}}(\sigma)$ at $\sigma$. When it
+    comes back at $s$, it is where $e^{s} g(X_{\mathrm{e}}(\sigma), s) = e^{\sigma}
+    g(X_{\mathrm{e}}(\sigma), \sigma)$: one equation for $\sigma$.
+
+    Argued: The difference of both sides is positive at the innermost of these elements and concave across
+    them (F9), so that it vanishes at most once on the way outward.
     """
     element, was_depth, moved = (f.subs(time, sigma) for f in (edge_path, depth, travel))
     now, then = depth - (element + travel) ** 2, was_depth - (element + moved) ** 2

@@ -239,7 +239,7 @@ _CONVEX = (
 
 def _between(proof: Proof) -> None:
     """Prove what a difference is between two elements where it is not negative."""
-    first, second = sp.symbols("D_1 D_2", nonnegative=True)
+    first, second = sp.symbols("D_1 D_2", real=True)
     for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
         proof.notation[tex(name)] = name
         proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")

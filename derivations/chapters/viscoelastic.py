@@ -25,7 +25,7 @@ place = symbol(
 passed = symbol("s_v", r"as $\breve x$, of an earlier position", latex=r"\breve s", real=True)
 half_share = symbol("a_v", "half length at rest over the length of the contact", latex=r"\breve a")
 arm_pressure = symbol(
-    "p_v", r"pressure of an arm, in units of $K_i \breve c^2/R$", latex=r"\breve p"
+    "p_v", r"pressure of an arm, in units of $K_i \breve c^2/R$", latex=r"\breve p", real=True
 )
 from_trailing = symbol(
     "w_v", "distance from the trailing edge over the length of the contact", latex=r"\breve w"
@@ -339,9 +339,10 @@ def _kelvin_voigt(proof: Proof) -> None:
 def _slow(proof: Proof) -> None:
     r"""Any relaxation function: low velocity.
 
-    With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$. To this order arms add up: $\mu \to C
-    V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i \tau_i$, which is Eq. (42). At low velocity every
-    foundation with a finite $C$ is Kelvin-Voigt.
+    With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$.
+
+    Argued: To this order arms add up: $\mu \to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i
+    \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
     """
     _from_moments(proof)
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}

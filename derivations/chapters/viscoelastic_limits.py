@@ -116,17 +116,19 @@ def _lacks(proof: Proof) -> None:
 def _voigt(proof: Proof) -> None:
     r"""Low velocity: distance from Kelvin-Voigt.
 
-    Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, on the
-    same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve \varepsilon
-    = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The steps, in units
-    of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at one $\breve c$.
-    There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times that of Kelvin-Voigt, the load between
-    $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$ times, and $\mu$
-    between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 -
-    2 \breve \varepsilon))$ times. Then the contact on Kelvin-Voigt changes to the one on its own support. At
-    a given velocity $W + k_s \delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so
-    that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on
-    Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation.
+    Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, on
+    the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve
+    \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The
+    steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at
+    one $\breve c$. There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times that of Kelvin-Voigt,
+    the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$
+    times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve
+    \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times.
+
+    Argued: Then the contact on Kelvin-Voigt changes to the one on its own support. At a given velocity $W
+    + k_s \delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so that the factor
+    of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on Kelvin-Voigt
+    (error-L1) this bounds that of Eq. (42) on every foundation.
     """
     for small, bound, spare in (
         (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
@@ -186,11 +188,12 @@ def _window(proof: Proof) -> None:
     r"""The window of the asymptotes for high velocity.
 
     With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve
-    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So the relative error of Eq. (45) is at
-    most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ upwards, and $7 l/\breve \chi$ downwards: it holds
-    only for $1 \ll l \ll \breve \chi$. The last step is with $q$ for $l$: the window is best at $l = \sqrt{2
-    \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens slowly: for an error of 10 % by
-    this bound an arm must be 1900 times as stiff as the spring.
+    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. The last step is with $q$ for $l$: the
+    window is best at $l = \sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens
+    slowly: for an error of 10 % by this bound an arm must be 1900 times as stiff as the spring.
+
+    Argued: So the relative error of Eq. (45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$
+    upwards, and $7 l/\breve \chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$.
     """
     proof.recall("scaling", reason=RATIO)
     over = sp.Rational(2, 3) / FRICTION_COEFFICIENT
@@ -263,12 +266,14 @@ def _glass(proof: Proof) -> None:
 def _glassy(proof: Proof) -> None:
     r"""High velocity: distance from the glassy limit.
 
-    The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length $a$ on a
-    spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| \le 2 \breve
-    \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are. At one $\breve c$ the load
-    is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve \omega}{2})$ times that of the spring of
-    half length $\breve c/2$, and so is, on any support, $(2 a/\breve c)^2$ of the spring that carries what is
-    asked for, as $W + k_s \delta$ grows at least as $a^2$.
+    The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length $a$
+    on a spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| \le 2
+    \breve \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are.
+
+    Argued: At one $\breve c$ the load is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve
+    \omega}{2})$ times that of the spring of half length $\breve c/2$, and so is, on any support, $(2
+    a/\breve c)^2$ of the spring that carries what is asked for, as $W + k_s \delta$ grows at least as
+    $a^2$.
     """
     unit, o = (haste, 0, HASTE), haste
     part = 1 - o / 2
@@ -314,18 +319,20 @@ def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
 def _springpot(proof: Proof) -> None:
     r"""Fractional Kelvin-Voigt: both limits.
 
-    With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for the
-    order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3 -
-    \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha (3 -
-    \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)} (V
-    \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$ falls
-    as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the velocity
-    (F17-growth). At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
-    $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The limit
-    for low velocity over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$
-    over that for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$.
-    Both are positive at both ends of that mean, by these inequalities, so on every support: each limit is
-    within a tolerance on a half-line of velocities.
+    With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for
+    the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3
+    - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha
+    (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)}
+    (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$
+    falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the
+    velocity (F17-growth).
+
+    Argued: At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
+    $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The
+    limit for low velocity over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$,
+    and $\mu$ over that for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 +
+    \breve \nu)$. Both are positive at both ends of that mean, by these inequalities, so on every support:
+    each limit is within a tolerance on a half-line of velocities.
     """
     proof.define(nu, 1 / (1 + steepness), "between 0 and 1")
     load, friction, share = _state(proof)

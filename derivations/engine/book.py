@@ -30,7 +30,7 @@ from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
 from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
-from .record import Claim, Derivation, Step, Table
+from .record import ARGUED, Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
 from .witness import has_witness
 
@@ -507,10 +507,14 @@ class Book:
         return self.done(*key)
 
     def _status(self) -> str:
-        """Return the weakest status of the steps; what rests on a proof without proof is no better."""
+        """Return the weakest status of the steps and of what they rest on; argued, if words prove the title.
+
+        Words count here alone: what others use of this proof are its lines.
+        """
         used = (_finished[label].derivation.status for label in self._uses)
-        weak = [status for status in used if status in ("sampled", "argued")]
-        return weakest([*(step.status for step in self._steps), *weak])
+        weak = [status for status in used if status == "sampled"]
+        words = ["argued"] if ARGUED in self._text else []
+        return weakest([*(step.status for step in self._steps), *weak, *words])
 
     def _meant(self, argument: object, *, complex_too: bool = False) -> None:
         """Refuse what is no exact real value, and letters bound to places where they cannot be."""
@@ -630,7 +634,10 @@ class Book:
             self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)
         }
         roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
-        gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
+        gaps = [
+            gap for base in roots if not proves_nonnegative(base, self._conditions)
+            for gap in open_factors(base, self._conditions) or [base]
+        ]  # fmt: skip
         if name.is_nonnegative or name.is_nonpositive:
             forms = [
                 each if name.is_nonnegative else -each

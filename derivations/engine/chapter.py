@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .book import Meaning
-from .record import Derivation
+from .record import ARGUED, Derivation
 from .step import Proof
 
 _NUMBERED = re.compile(r"eq(\d+)")
@@ -64,14 +64,15 @@ class Chapter:
         """Return a decorator for the function that proves the record, called with what else is `given`.
 
         Title and text are those of its docstring, after the `text` that is stated here; with a `title`, as
-        for a function that proves several records, they are those stated here alone. A record ``eq27`` is
+        for a function that proves several records, they are those stated here alone. A paragraph that begins
+        with ``Argued:`` holds what no step states, and the record is "argued". A record ``eq27`` is
         the paper's equation 27. `uses` are labels on which the record rests besides those that it recalls;
         `after` are those of the chapter that are printed later than it, but must be proved before.
         """
 
         def register(prove: Callable[..., None]) -> Callable[..., None]:
             first, _, rest = ("" if title else inspect.getdoc(prove) or "").partition("\n")
-            told = " ".join([*text.split(), *rest.split()])
+            told = " ".join([*text.split(), *rest.split()]).replace(" Argued: ", f" {ARGUED} ")
             entry = Entry(label, title or first.removesuffix("."), told, uses, after,
                           self.notation | dict(notation or {}), prove, given)  # fmt: skip
             self.entries.append(entry)

@@ -1,5 +1,6 @@
 """Guards of a step: no interval for a fixed variable, no value outside its range, no zero divisor."""
 
+from collections.abc import Callable
 from typing import Unpack
 
 import sympy as sp
@@ -150,11 +151,22 @@ class Guarded(Book):
             one, other = ({base for _, base in zip(each, written, strict=False)} for each in sides)
             if kind == 0:
                 one, other = (set().union(*map(_parts, each)) for each in (one, other))
-            for base in one ^ other:
-                if not proves(base, self._conditions):
-                    raise StepError(
-                        f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
-                    )
+            unproved = {base for base in one ^ other if not proves(base, self._conditions)}
+            for base in unproved - self._proved_of_names(kind, proves) if unproved else ():
+                raise StepError(
+                    f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
+                )
+
+    def _proved_of_names(self, kind: int, proves: Callable[..., bool]) -> set[sp.Expr]:
+        """Return what names rest on by their definitions, where it is proved in the letters of these."""
+        used, found = set(self._used), set()
+        for value in self._rules.values():
+            for base in demands(value)[kind]:
+                if proves(base, self._conditions):
+                    written = normalise(self._resolve(base))
+                    found |= {written} if kind else _parts(written)
+        self._used = used
+        return found
 
 
 def _is_smooth_inside(expr: sp.Expr, over: Interval, known: Conditions) -> bool:

@@ -15,6 +15,8 @@ import sympy as sp
 
 STATUSES = ("definition", "proved", "proved-leading-order", "sampled", "argued")
 """The status of an equality, strongest first."""
+ARGUED = "Argued, not checked by machine."
+"""In the text of a record, before the inferences that no line of it states."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ class Derivation:
     latex: str
     """The result, one displayed relation."""
     status: str
-    """The weakest status among the steps on which the result rests."""
+    """The weakest status among the steps on which the result rests; argued, if the text argues more."""
     steps: tuple[Step, ...] = ()
     uses: tuple[str, ...] = ()
     """Labels of the derivations that this one rests on."""

@@ -446,21 +446,6 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
-    @asked
-    def argued(
-        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
-    ) -> None:
-        """Keep a relation for which only words speak; its result is "argued", and no proof can recall it."""
-        left, right = self._resolve(lhs), self._resolve(rhs)
-        if relation == "=" and (found := refutation(left, right, self._conditions.positive)):
-            raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
-        if relation in _RELATIONS and proves_positive(
-            (right - left) * (1 if ">" in relation else -1), self._conditions
-        ):
-            raise StepError(f"{self.label}: {lhs} {relation} {rhs} is wrong")
-        sign = _RELATIONS.get(relation, relation)
-        self._record(lhs, sign, rhs, reason, "argued", shown, exact=False)
-
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
         if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
