@@ -116,7 +116,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
     if sign:
         return sign
-    found = (_known_sign(one) or _product_sign(one, strict=True) for one in _swept(expr, known))
+    found = (_product_sign(one, strict=True) for one in _swept(expr, known))
     sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
     if sign or not expr.free_symbols:
         return sign
@@ -389,9 +389,10 @@ def _factored(expr: sp.Expr) -> sp.Expr:
     if expr.is_Atom:
         return expr
     # Sums of positive terms need no factors: their sign is known as they stand, or multiplied out.
-    for form in (expr, sp.expand(expr)):
-        if form.is_positive:
-            return form
+    if -1 not in signs(expr):
+        for form in (expr, sp.expand(expr)):
+            if form.is_positive:
+                return form
     return sp.factor(expr)
 
 
