@@ -58,7 +58,7 @@ def test_the_first_instant_is_no_matter_of_kelvin_voigt():
 
 def test_the_estimate_covers_what_a_damper_in_the_place_of_arms_neglects():
     """Against elements, on random scenes with arms that are fast, but not very."""
-    rung = rungs(Models(kv.steady, kv.transient, kv.elements))[-2]
+    rung = rungs(Models(kv.steady, kv.transient, kv.elements, kv.fewer_arms))[-2]
     ratios = []
     for seed in range(14):
         rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kvtheory.api._edge import double_precision, one_scene, times_of
+from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
@@ -91,10 +91,11 @@ def transient(
         if not scene.indenter.per_width:
             from kvtheory.models.strips import held
 
-            return held.transient(scene, times_of(scene, at), certify=certify)
+            return noted(scene, held.transient(scene, times_of(scene, at), certify=certify))
         from kvtheory.models.continuum import prony, solved_scene
 
         solver = prony.solved_scene if scene.foundation.arms else solved_scene
-        return solver.transient(
+        found = solver.transient(
             scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )
+        return noted(scene, found)
