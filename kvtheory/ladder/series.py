@@ -19,6 +19,7 @@ from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.capabilities import (
     lacks_arms,
+    lacks_continuum,
     lacks_kelvin_voigt,
     lacks_paper_model,
     lacks_parabola,
@@ -157,7 +158,7 @@ def _strips(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _parabola(models: Models, scene: Scene, request: Request) -> Offer:
-    need(lacks_parabola(scene), lacks_arms(scene))
+    need(lacks_continuum(scene))
     return Offer(math.nan, lambda: _continuum(models, scene, request))
 
 
