@@ -15,7 +15,7 @@ from generators import gallery
 
 import kvtheory as kv
 from figures import __main__ as every
-from figures import drawing, onset_maps
+from figures import drawing, onset_maps, work_precision
 from figures.__main__ import FIGURES
 from kvtheory.charts import collection, stability
 from kvtheory.charts.work_precision import Effort
@@ -30,6 +30,7 @@ BRIEF = (
     (onset_maps, "INERTIAS", onset_maps.INERTIAS[::3]),
     (stability, "QUICK_POINTS", (3, 3)),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
+    (work_precision, "SCENES", ("table-1", "stop-and-go")),  # on rubber kernels would be compiled
     (drawing, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
 )
 """Coarse where it takes minutes. `test_charts_stability` and `test_charts_work_precision` test the charts."""
