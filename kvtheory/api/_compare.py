@@ -29,7 +29,8 @@ SOONEST, SOON = 1e-4, 0.1
 MAXIMUM_STEPS = 1e8
 """Largest number of time steps of our simulation: an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
-"""Elements per static half length where theory is a simulation: on a Prony series, and for a ball."""
+"""Elements per static half length where theory is a simulation: on a Prony series that the continuum refuses
+(in trials, coarser), and for a ball."""
 COARSENING = 4.0
 """Factor by which trials of a diagnosis have fewer elements, as only their differences count."""
 MINIMUM_TIMES = 16
@@ -88,8 +89,8 @@ def compare(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola
-        or a ball. For a ball, and on a Prony series, theory is a simulation with many elements, and `steady`
-        at the end; a diagnosis then takes seconds. With a spring in the drive the data may also hold
+        or a ball. For a ball theory is a simulation with many elements, and `steady` at the end; a diagnosis
+        then takes seconds, and on a Prony series too, where faults are tried with elements. With a spring in the drive the data may also hold
         ``sliding_velocity`` and ``spring_force``.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a result
