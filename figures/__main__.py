@@ -15,7 +15,10 @@ TOPICS = {
         *("energy_split", "asymptote_error", "circle_error"),
         *("phase_portrait", "regime_map", "onset_maps"),
     ),
-    "Other foundations": ("foundations", "rubber", "temperature", "foundation_precision"),
+    "Other foundations": (
+        *("foundations", "rubber", "rubber_start"),
+        *("temperature", "foundation_precision"),
+    ),
     "The ball": ("ball", "ball_start", "ball_pressure"),
     "A spring in the drive": (
         *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),

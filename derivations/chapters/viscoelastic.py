@@ -47,7 +47,9 @@ arm_load = symbol("W_v", r"load of an arm, in units of $K_i \breve c^3/R$", late
 arm_work = symbol(
     "F_v", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", latex=r"\breve F"
 )
-arm_lost = symbol("L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True)
+arm_lost = symbol(
+    "L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True
+)
 relaxation = function(
     "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
 )(contact_length)
