@@ -7,6 +7,7 @@ from kvtheory.models.continuum.prony.contact import (
     ALONG,
     DEPTHS,
     EDGES,
+    FREE,
     NEVER,
     OWN,
     PEELING,
@@ -26,6 +27,18 @@ from kvtheory.models.continuum.prony.contact import (
     value,
 )
 from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
+from kvtheory.models.continuum.prony.hops import (
+    close,
+    closed,
+    closes,
+    flies,
+    fly,
+    land,
+    least_gap,
+    open_contact,
+    time_left,
+    touches_at,
+)
 from kvtheory.models.continuum.prony.segments import cross, split, turn
 from kvtheory.models.continuum.prony.step import (
     DEPTH,
@@ -60,9 +73,14 @@ DEEPEST, LEAST, WATCHED = 100.0, 1e-8, 8
 """Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; the least
 tolerance there, which allows for rounding; segments of free ground that are watched on each side."""
 
-DONE, PAUSED, FULL, STUCK, CLOSES, PARTS = range(6)
+APPROACH = 0.85
+"""Largest share of the time until the contact closes that a step takes."""
+RELIEF = 0.25
+"""How far the ground may slide in a step of the flight above it, in units of a_0."""
+
+DONE, PAUSED, FULL, STUCK, PARTS = range(5)
 """How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
-of zero, or no consistent state of the edges; where the contact closes; where it is no interval any more."""
+of zero, or no consistent state of the edges; where the contact is no interval any more."""
 
 Monitors = tuple[float, float, float, float, float]
 """Event functions, which stay positive until an event: the width, the state and the ground of the left edge,
@@ -87,7 +105,7 @@ def walk(run: Run, attempts: int) -> int:
             if until < end:
                 _next_piece(run)
             continue
-        status = _advance(run, until)
+        status = _next_step(run, until)
         if status != DONE:
             return status
     return PAUSED
@@ -96,7 +114,8 @@ def walk(run: Run, attempts: int) -> int:
 def _has_room(run: Run) -> bool:
     """Whether one more step is certain to fit, with its events."""
     now = run.now
-    fits = now.steps + 1 < len(run.steps) and now.segments + 8 < len(run.segments)
+    copied = now.segments if flies(run) else 0
+    fits = now.steps + 2 < len(run.steps) and now.segments + copied + 8 < len(run.segments)
     return fits and now.chain + 8 * (now.count + 8) < len(run.chain)
 
 
@@ -122,9 +141,10 @@ def _next_piece(run: Run) -> None:
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = min(now.span, _first(run))
-        for k in range(2):
-            split(run, k)
-        _jump(run)
+        if not flies(run):
+            for k in range(2):
+                split(run, k)
+            _jump(run)
 
 
 def _jump(run: Run) -> None:
@@ -150,10 +170,14 @@ def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: f
 
 
 def monitors(run: Run, theta: float) -> Monitors:
-    """Return the event functions at a share of the step."""
+    """Return the event functions at a share of the step; in flight the gap is in the place of the width."""
     now, index = run.now, run.now.steps
     rows = run.rows[index]
-    _, v, Y, number, _ = motion(run, index, now.s + theta * run.steps[index].span)
+    s = now.s + theta * run.steps[index].span
+    d, v, Y, number, _ = motion(run, index, s)
+    if flies(run):
+        gap = least_gap(run, s, d, Y)[0] + closed(run) * closed(run)
+        return gap, math.inf, math.inf, math.inf, math.inf
     l_state, l_ground = _watch(run, 0, theta, v, Y, number)
     r_state, r_ground = _watch(run, 1, theta, v, Y, number)
     width = value(rows[EDGES + 1], theta) - value(rows[EDGES], theta)
@@ -201,20 +225,24 @@ def _event(run: Run) -> tuple[float, Monitors]:
     return math.inf, violated
 
 
-def _advance(run: Run, until: float) -> int:
+def _next_step(run: Run, until: float) -> int:
+    """Try one step, in contact or in flight, or close the contact."""
+    if flies(run):
+        return _fly(run, until)
+    left, shortest = time_left(run), SHORTEST * run.given.end
+    if closes(run, left, shortest):
+        return _close(run, min(max(left, 4.0 * shortest), until - run.now.s), until)
+    return _advance(run, until, APPROACH * left)
+
+
+def _advance(run: Run, until: float, longest: float) -> int:
     """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
-    now, n, shortest = run.now, run.given.stages, SHORTEST * run.given.end
-    span, whole = min(now.span, run.given.longest), until - now.s
-    if span > (1.0 - 0.1 * OVERRUN) * whole:
-        span = whole
+    now, shortest = run.now, SHORTEST * run.given.end
+    span = _length(run, until, longest)
     if not span > shortest:
         return STUCK
-    prepare(run, span)
-    size = size_of(run) if solve(run) else math.inf
+    size = _attempt(run, span)
     if not size <= 1.0:
-        now.rejected += 1
-        factor = max(SHRINK, SAFETY * math.pow(size, -1.0 / n)) if size < math.inf else FAILED
-        now.span = factor * span
         return DONE
     theta, violated = _event(run)
     if theta * span <= shortest:
@@ -224,7 +252,7 @@ def _advance(run: Run, until: float) -> int:
         now.rejected += 1
         now.span = theta * (1.0 + 0.5 * OVERRUN) * span
         return DONE
-    now.span = span * min(run.given.grow, SAFETY * math.pow(max(size, TINY), -1.0 / n))
+    now.span = _longer(run, span, size)
     _commit(run, span, until, min(theta, 1.0))
     interval = _one_interval(run)
     now.steps, now.toggles = now.steps + 1, 0
@@ -233,19 +261,90 @@ def _advance(run: Run, until: float) -> int:
     return DONE if interval else PARTS
 
 
+def _length(run: Run, until: float, longest: float) -> float:
+    """Return the length of the next step, at most `longest`; one that almost ends at `until` does."""
+    now = run.now
+    span, whole = min(now.span, run.given.longest, longest), until - now.s
+    return float(whole if span > (1.0 - 0.1 * OVERRUN) * whole else span)
+
+
+def _attempt(run: Run, span: float) -> float:
+    """Try a step; return its error relative to the tolerance. If it is above 1, the next is shorter."""
+    now = run.now
+    prepare(run, span)
+    size = size_of(run) if solve(run) else math.inf
+    if not size <= 1.0:
+        now.rejected += 1
+        shorter = FAILED
+        if size < math.inf:
+            shorter = max(SHRINK, SAFETY * math.pow(size, -1.0 / run.given.stages))
+        now.span = shorter * span
+    return float(size)
+
+
+def _longer(run: Run, span: float, size: float) -> float:
+    """Return the length of the step after one with an error `size`."""
+    factor = SAFETY * math.pow(max(size, TINY), -1.0 / run.given.stages)
+    return float(span * min(run.given.grow, factor))
+
+
+def _close(run: Run, span: float, until: float) -> int:
+    """Take the step in which the contact closes, and begin a flight."""
+    if not close(run, span):
+        return STUCK
+    _commit(run, span, until, 1.0)
+    run.now.steps, run.now.toggles = run.now.steps + 1, 0
+    fly(run)
+    run.now.span = _first(run)
+    return DONE
+
+
+def _fly(run: Run, until: float) -> int:
+    """Try one step in flight; accept it up to the landing."""
+    now, shortest = run.now, SHORTEST * run.given.end
+    _, drive, slope = b_.evaluate(run.pieces[now.piece], now.s)
+    slides = RELIEF / (abs(drive - now.w) + math.sqrt(RELIEF * abs(slope)) + TINY)
+    span = _length(run, until, max(slides, -0.5 * now.d / (abs(now.v) + 1e-3)))
+    if not span > shortest:
+        return STUCK
+    size = _attempt(run, span)
+    if not size <= 1.0:
+        return DONE
+    theta, _ = _event(run)
+    side, number, x, touches = 0, NEVER, 0.0, theta
+    if theta <= 1.0:
+        s = now.s + theta * span
+        d, _, Y, _, _ = motion(run, now.steps, s)
+        _, side, number, x = least_gap(run, s, d, Y)
+        touches = touches_at(run, theta, number, x)
+    now.span = _longer(run, span, size)
+    if touches * span > shortest:
+        _commit(run, span, until, min(touches, 1.0))
+        now.steps += 1
+    if theta > 1.0:
+        return DONE
+    now.span = max((theta - touches) * span, 4.0 * shortest)
+    land(run, side, number, x)
+    if not open_contact(run, now.span):
+        return STUCK
+    _commit(run, now.span, until, 1.0)
+    now.steps += 1
+    return DONE
+
+
 def _change(run: Run, violated: Monitors) -> int:
     """Change what the event at the present time violates."""
     now = run.now
     now.toggles += 1
     if violated[0] < 0.0:
-        return CLOSES
+        return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
     if now.toggles > TOGGLES:
         return STUCK
     for k in range(2):
         if violated[2 * k + 2] < 0.0:
             cross(run, k)
             if now.count == 0:
-                return CLOSES
+                return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
         elif violated[2 * k + 1] < 0.0:
             turn(run, k)
     return DONE
@@ -280,7 +379,7 @@ def _one_interval(run: Run) -> bool:
         number, count = side.own if side.state == PEELING else side.segment, 0
         while number != NEVER and count < WATCHED:
             segment = run.segments[number]
-            for half in range(3):
+            for half in range(3 if segment.step != NEVER else 0):
                 x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
                 index = step_of(run, segment.edge, segment.step, x)
                 gap, xi = free(run, now.s, now.d, Y, segment.edge, index, x)
@@ -312,7 +411,7 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
         side, before = now.sides[k], now.sides[k].sigma
         index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
         side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
-        if not whole and side.segment != NEVER:
+        if not whole and side.segment != NEVER and side.state != FREE:
             for i in over(len(run.arms)):
                 for row in (DEPTHS, SLIDES):
                     run.here[i, row] = run.state[i, row]
