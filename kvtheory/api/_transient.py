@@ -37,9 +37,9 @@ def transient(
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola,
         or a ball at constant depth that does not re-enter its own trace (`elements` simulates any ball). At
         t < 0 it rests at its static depth. With `drive.stiffness` it is held along x by a spring that is then
-        relaxed; the mass that moves along x must be above zero. A drive that is a function of time is replaced
-        by polynomials within its tolerance, which the certificate adds to the errors of the velocities, the
-        pressure and the surface, but not of the other quantities.
+        relaxed; the mass that moves along x must be above zero. A drive that is a function of time is
+        replaced by polynomials within its tolerance, which the certificate adds to the errors of the
+        velocities, the pressure and the surface, but not of the other quantities.
     at
         Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or ``"0 ms:200 ms:201"``
         (START:STOP:COUNT, both ends included); without it, the steps of the solver, subdivided.
