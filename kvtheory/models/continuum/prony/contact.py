@@ -195,9 +195,7 @@ def edge_at(
         at_far, x = step_of(run, segment.edge, index, far), sigma
     f, _ = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
     if f < 0.0 and side.state == PEELING:
-        inside = _inside(run, k, s, d, Y, at_far, far, near, f)
-        if not inside < math.inf:
-            return math.nan, at_far, far
+        inside = _inside(run, k, s, d, Y, at_far, far, f)
         if inside != far:
             far, f = inside, 0.0
     if f >= 0.0:
@@ -212,16 +210,35 @@ def edge_at(
     return xi + beyond * min(abs(f / slope), FARTHEST), at_far, far
 
 
+def at_far_end(run: Run, k: int, s: float, d: float, Y: float) -> float:
+    """Return p, or the gap if the edge touches, where the segment of an edge ends; `here` has A_i and B_i."""
+    side, never = run.now.sides[k], math.inf
+    if side.segment == NEVER:
+        return never
+    segment, touches = run.segments[side.segment], side.state == TOUCHING
+    far, X = (segment.a, segment.X_a) if segment.edge == k else (segment.b, segment.X_b)
+    if far == math.inf:
+        return never
+    if segment.step == NEVER:
+        if touches:
+            return (X + Y) * (X + Y) - d
+        return pressed(run, s, d, Y, X + Y, segment.edge, NEVER, 0.0)[0]
+    index = step_of(run, segment.edge, segment.step, far)
+    return _margin(run, side.state, s, d, Y, segment.edge, index, far)[0]
+
+
 def _inside(
-    run: Run, k: int, s: float, d: float, Y: float, index: int, far: float, near: float, f: float
+    run: Run, k: int, s: float, d: float, Y: float, index: int, far: float, f: float
 ) -> float:
     """Return an element in contact if the other edge passed the far end, where p < 0, else that end.
 
-    The pressure falls outward from the far end if it was this edge that passed. NaN if there is no contact.
+    The pressure falls outward from the far end if it was this edge that passed.
     """
-    edge, at_rest = run.segments[run.now.sides[k].segment].edge, index == NEVER
-    low, high, best = far, near, f
-    x = far + PROBE * (near - far)
+    side, at_rest = run.now.sides[k], index == NEVER
+    edge, low, high, best = run.segments[side.segment].edge, far, side.sigma, f
+    if at_rest:
+        high = side.xi - evaluate(run.pieces[run.now.piece], run.now.s)[0] + run.now.x + Y
+    x = far + PROBE * (high - far)
     for turn in range(ITERATIONS):
         if not at_rest:
             index = step_of(run, edge, index, x)
@@ -233,10 +250,7 @@ def _inside(
                 return far
             at, best = x, p
         elif p > best:
-            if x > at:
-                low, high = (at, high) if high > low else (low, at)
-            else:
-                low, high = (low, at) if high > low else (at, high)
+            low, high = (at, high) if (x > at) == (high > low) else (low, at)
             at, best = x, p
         elif (x > at) == (high > low):
             high = x
@@ -244,7 +258,7 @@ def _inside(
             low = x
         wide = abs(high - at) > abs(at - low)
         x = at + GOLDEN * ((high if wide else low) - at)
-    return math.nan
+    return far
 
 
 def _margin(

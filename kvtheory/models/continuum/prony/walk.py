@@ -15,6 +15,7 @@ from kvtheory.models.continuum.prony.contact import (
     SIDES,
     SLIDES,
     STRESSES,
+    at_far_end,
     edge_at,
     free,
     integral,
@@ -64,6 +65,8 @@ right length."""
 BISECTIONS = 60
 ALLOWED, ROUNDING = 1e-3, 1e-13
 """Share of the tolerance, and least violation, that an event needs."""
+LATE = 0.9
+"""Share of a step before which an event, rather than the error, sets the length of the next attempt."""
 PROBES = 3
 """Instants per stage at which events are looked for."""
 TOGGLES = 12
@@ -85,6 +88,7 @@ of zero, or no consistent state of the edges; where the contact is no interval a
 Monitors = tuple[float, float, float, float, float]
 """Event functions, which stay positive until an event: the width, the state and the ground of the left edge,
 and of the right one."""
+NOTHING = (math.inf, math.inf, math.inf, math.inf, math.inf)
 Run = Any
 
 
@@ -169,8 +173,12 @@ def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: f
     return float((-rise if state == PEELING else rise) / terms + allowed)
 
 
-def monitors(run: Run, theta: float) -> Monitors:
-    """Return the event functions at a share of the step; in flight the gap is in the place of the width."""
+def monitors(run: Run, theta: float, exact: bool) -> Monitors:
+    """Return the event functions at a share of the step; in flight the gap is in the place of the width.
+
+    Where an edge passes the end of its segment within the step, its polynomial has a kink to follow, but p,
+    or the gap, at this end has none: with `exact` it is the event function.
+    """
     now, index = run.now, run.now.steps
     rows = run.rows[index]
     s = now.s + theta * run.steps[index].span
@@ -178,28 +186,39 @@ def monitors(run: Run, theta: float) -> Monitors:
     if flies(run):
         gap = least_gap(run, s, d, Y)[0] + closed(run) * closed(run)
         return gap, math.inf, math.inf, math.inf, math.inf
-    l_state, l_ground = _watch(run, 0, theta, v, Y, number)
-    r_state, r_ground = _watch(run, 1, theta, v, Y, number)
+    if exact:
+        for i in over(len(run.arms)):
+            for row in (DEPTHS, SLIDES):
+                run.here[i, row] = past(run, index, i, row, theta)
+        l_ground, r_ground = at_far_end(run, 0, s, d, Y), at_far_end(run, 1, s, d, Y)
+    else:
+        l_ground = _ahead(run, 0, value(rows[EDGES], theta), Y)
+        r_ground = _ahead(run, 1, value(rows[EDGES + 1], theta), Y)
+    l_state, r_state = _keeps(run, 0, theta, v, number), _keeps(run, 1, theta, v, number)
     width = value(rows[EDGES + 1], theta) - value(rows[EDGES], theta)
     return width, l_state, l_ground, r_state, r_ground
 
 
-def _watch(
-    run: Run, k: int, theta: float, v: float, Y: float, number: float
-) -> tuple[float, float]:
-    """Return whether an edge may keep its state, and how far it is from the end of its segment."""
-    side, index, relaxing = run.now.sides[k], run.now.steps, 0.0
+def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
+    """Return a number that is positive as long as an edge may keep its state."""
+    index, relaxing = run.now.steps, 0.0
     for i in over(len(run.arms)):
         relaxing += total(past(run, index, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
-    xi, ground = value(run.rows[index, EDGES + k], theta), math.inf
-    if side.segment != NEVER:
-        segment = run.segments[side.segment]
-        inward = SIDES[k] if side.state == PEELING else -SIDES[k]
-        if segment.edge == k:
-            ground = inward * (xi - Y - segment.X_a) + ROUNDING * (1.0 + abs(Y))
-        elif segment.b < math.inf:
-            ground = inward * (xi - Y - segment.X_b) + ROUNDING * (1.0 + abs(Y))
-    return _slack(run, side.state, xi, v, number, relaxing), ground
+    xi = value(run.rows[index, EDGES + k], theta)
+    return _slack(run, run.now.sides[k].state, xi, v, number, relaxing)
+
+
+def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
+    """Return how far an edge is from the end of its segment."""
+    side = run.now.sides[k]
+    if side.segment == NEVER:
+        return math.inf
+    segment = run.segments[side.segment]
+    if segment.edge != k and segment.b == math.inf:
+        return math.inf
+    inward = SIDES[k] if side.state == PEELING else -SIDES[k]
+    end = segment.X_a if segment.edge == k else segment.X_b
+    return float(inward * (xi - Y - end) + ROUNDING * (1.0 + abs(Y)))
 
 
 def _smallest(values: Monitors) -> float:
@@ -211,11 +230,15 @@ def _event(run: Run) -> tuple[float, Monitors]:
     count, low = PROBES * run.given.stages, 0.0
     for m in range(1, count + 1):
         high = m / count
-        violated = monitors(run, high)
+        violated = monitors(run, high, False)
         if _smallest(violated) < 0.0:
+            precise = monitors(run, high, True)
+            exact = _smallest(precise) < 0.0 and not flies(run)
+            if exact:
+                low, violated = 0.0, precise
             for _ in range(BISECTIONS):
                 middle = 0.5 * (low + high)
-                values = monitors(run, middle)
+                values = monitors(run, middle, exact)
                 if _smallest(values) < 0.0:
                     high, violated = middle, values
                 else:
@@ -238,27 +261,34 @@ def _next_step(run: Run, until: float) -> int:
 def _advance(run: Run, until: float, longest: float) -> int:
     """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
     now, shortest = run.now, SHORTEST * run.given.end
-    span = _length(run, until, longest)
+    span = _length(run, until, min(longest, now.limit))
     if not span > shortest:
         return STUCK
-    size = _attempt(run, span)
-    if not size <= 1.0:
-        return DONE
-    theta, violated = _event(run)
+    size, limited = _attempt(run, span), now.limit < math.inf
+    now.limit = math.inf
+    theta, violated = _event(run) if size < math.inf else (math.inf, NOTHING)
+    if size > 1.0 and not theta < LATE:
+        return _reject(run, span, size)
     if theta * span <= shortest:
         now.rejected += 1
         return _change(run, violated)
     if theta < 1.0 - OVERRUN and (1.0 - theta) * span > NEAR * run.given.end:
         now.rejected += 1
-        now.span = theta * (1.0 + 0.5 * OVERRUN) * span
+        now.limit = theta * (1.0 + 0.5 * OVERRUN) * span
         return DONE
-    now.span = _longer(run, span, size)
+    longer = _longer(run, span, size)
+    now.span = max(now.span, longer) if limited else longer
     _commit(run, span, until, min(theta, 1.0))
+    return _after(run, theta, violated)
+
+
+def _after(run: Run, theta: float, violated: Monitors) -> int:
+    """Check the contact after a step, and handle its event."""
     interval = _one_interval(run)
-    now.steps, now.toggles = now.steps + 1, 0
-    if interval and theta <= 1.0:
-        return _change(run, violated)
-    return DONE if interval else PARTS
+    run.now.steps, run.now.toggles = run.now.steps + 1, 0
+    if not interval:
+        return PARTS
+    return _change(run, violated) if theta <= 1.0 else DONE
 
 
 def _length(run: Run, until: float, longest: float) -> float:
@@ -269,17 +299,19 @@ def _length(run: Run, until: float, longest: float) -> float:
 
 
 def _attempt(run: Run, span: float) -> float:
-    """Try a step; return its error relative to the tolerance. If it is above 1, the next is shorter."""
-    now = run.now
+    """Try a step; return its error relative to the tolerance, infinite if it is not solved."""
     prepare(run, span)
-    size = size_of(run) if solve(run) else math.inf
-    if not size <= 1.0:
-        now.rejected += 1
-        shorter = FAILED
-        if size < math.inf:
-            shorter = max(SHRINK, SAFETY * math.pow(size, -1.0 / run.given.stages))
-        now.span = shorter * span
-    return float(size)
+    return float(size_of(run) if solve(run) else math.inf)
+
+
+def _reject(run: Run, span: float, size: float) -> int:
+    """Reject a step whose error is too large; the next one is shorter."""
+    run.now.rejected += 1
+    shorter = FAILED
+    if size < math.inf:
+        shorter = max(SHRINK, SAFETY * math.pow(size, -1.0 / run.given.stages))
+    run.now.span = shorter * span
+    return DONE
 
 
 def _longer(run: Run, span: float, size: float) -> float:
@@ -309,7 +341,7 @@ def _fly(run: Run, until: float) -> int:
         return STUCK
     size = _attempt(run, span)
     if not size <= 1.0:
-        return DONE
+        return _reject(run, span, size)
     theta, _ = _event(run)
     side, number, x, touches = 0, NEVER, 0.0, theta
     if theta <= 1.0:
