@@ -16,7 +16,8 @@ TOPICS = {
         *("phase_portrait", "regime_map", "onset_maps"),
     ),
     "Other foundations": (
-        *("foundations", "rubber", "temperature", "fewer_arms", "foundation_precision"),
+        *("foundations", "rubber", "rubber_start"),
+        *("temperature", "fewer_arms", "foundation_precision"),
     ),
     "The ball": ("ball", "ball_start", "ball_pressure"),
     "A spring in the drive": (

@@ -61,7 +61,8 @@ def compiled_loop() -> Loop | None:
 
 
 def suits(scene: Scene) -> bool:
-    """Whether the C loop covers a scene: a parabola under a dead weight, at constant velocity."""
+    """Whether the C loop covers a scene: a parabola on Kelvin-Voigt, a dead weight, a constant velocity."""
     V = scene.drive.velocity
     steady = V is not None and scene.drive == Drive(velocity=V)
-    return isinstance(scene.indenter, Parabola) and isinstance(scene.support, DeadWeight) and steady
+    plain = isinstance(scene.indenter, Parabola) and not scene.foundation.arms
+    return plain and isinstance(scene.support, DeadWeight) and steady

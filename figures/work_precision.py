@@ -1,4 +1,4 @@
-"""Speed against accuracy of every method, measured side by side: Table 1, and a stop-and-go drive.
+"""Speed against accuracy of every method, measured side by side: Table 1, a stop-and-go drive, and rubber.
 
 The script writes the quick version; `kvtheory chart work-precision` makes others.
 """
@@ -19,11 +19,12 @@ from kvtheory.charts.collection import measure
 from kvtheory.charts.methods import DENSITIES, transient_methods
 from kvtheory.charts.problems import Curves, Problem, standard_scene
 from kvtheory.charts.work_precision import Chart, Clock, Method, make_chart
+from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.elements import row
 from kvtheory.plots.work_precision import default_errors, draw_work_precision
 from kvtheory.results import DivergenceError
 
-SCENES = "table-1", "stop-and-go"
+SCENES = "table-1", "stop-and-go", "rubber"
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ def compute() -> Data:
     """Measure all methods; the chart of steady sliding is left to the command."""
     loop: Any = compiled_loop()
     row.Tally.steps = row.WORTHWHILE  # all elements compiled, as the C loop is
+    trajectory.Tally.steps = trajectory.WORTHWHILE  # the reference too
 
     def in_c(problem: Problem, density: float, _: Clock) -> tuple[Curves, int]:
         """Solve a scene by the C loop, with so many elements per static half length."""

@@ -15,7 +15,7 @@ from generators import gallery
 
 import kvtheory as kv
 from figures import __main__ as every
-from figures import drawing, onset_maps
+from figures import drawing, onset_maps, work_precision
 from figures.__main__ import FIGURES
 from kvtheory.charts import collection, stability
 from kvtheory.charts.work_precision import Effort
@@ -30,6 +30,7 @@ BRIEF = (
     (onset_maps, "INERTIAS", onset_maps.INERTIAS[::3]),
     (stability, "QUICK_POINTS", (3, 3)),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
+    (work_precision, "SCENES", ("table-1", "stop-and-go")),  # on rubber kernels would be compiled
     (drawing, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
 )
 """Coarse where it takes minutes. `test_charts_stability` and `test_charts_work_precision` test the charts."""
@@ -359,3 +360,21 @@ def test_the_picture_of_the_onset_shows_its_maps(made):
     assert np.array_equal(np.asarray(shown), data.ratio)
     hops = drawn.axes[2].collections[0].get_array()
     assert np.array_equal(np.asarray(hops), data.hops)
+
+
+def test_on_rubber_sliding_starts_without_the_first_peak_of_kelvin_voigt(made):
+    """All end in steady sliding, which is dotted."""
+    data, drawn, _ = made["rubber_start"]
+    for support, found in data.starts.items():
+        plain, *others = found.values()
+        assert plain.normal_force[0] == plain.normal_force.max() > 3.5e4
+        for run in others:
+            assert run.friction_force[0] == pytest.approx(0.0, abs=1e-9)
+            assert run.normal_force[0] < 0.3 * plain.normal_force[0]
+            assert run.friction_force.max() < 0.6 * plain.friction_force[0]
+        for name, run in found.items():
+            friction = data.ends[support][name].friction_force
+            assert run.friction_force[-1] == pytest.approx(float(friction), rel=2e-3)
+    kinds = importlib.import_module("figures.rubber_start").foundations().values()
+    assert [each.damping for each in kinds] == pytest.approx([1e9, 1e9, 1e9])
+    assert len(drawn.axes) == 6

@@ -202,10 +202,12 @@ def test_what_shapes_a_waveform_is_swept_as_any_other_value():
     "scene",
     [
         kv.Scene(indenter=kv.Circle(0.01), run=kv.Run(0.01)),
-        kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]), run=kv.Run(0.01)),
+        kv.Scene(
+            kv.Circle(0.01), kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]), run=kv.Run(0.01)
+        ),
         kv.Scene(kv.Circle(0.01), drive=kv.Drive(0.1, stiffness=1e8), run=kv.Run(0.01)),
     ],
-    ids=["circle", "Prony series", "circle on a spring"],
+    ids=["circle", "circle on a Prony series", "circle on a spring"],
 )
 def test_what_the_solver_does_not_hold_for_is_swept_by_elements(scene):
     """Within the errors of both, the same as by elements alone; what only the solver gives is refused."""
@@ -221,6 +223,60 @@ def test_what_the_solver_does_not_hold_for_is_swept_by_elements(scene):
         assert friction == pytest.approx(alone.friction_force[-1], rel=0.02)
     with pytest.raises(ValueError, match=r"settling_time, hops: .*`elements`.* NAME.max"):
         kv.sweep(scene, over=over, quantities=["depth.max", "settling_time", "hops"])
+
+
+def on_an_arm(stiffness, history, duration):
+    foundation = kv.GeneralizedMaxwell(1e10, arms=[(stiffness, 0.01)])
+    return kv.Scene(foundation=foundation, drive=kv.Drive(history=history), run=kv.Run(duration))
+
+
+def test_on_a_prony_series_measures_are_those_of_the_dense_series():
+    scene = on_an_arm(3e10, [(0.0, 0.1), (0.008, 0.1), (0.008, 0.02)], 0.03)
+    names = "depth", "friction_force", "trailing_edge"
+    asked = [f"{name}.{of}" for name in names for of in ("end", "max", "min", "time_of_max")]
+    found = one(scene, [*asked, "peak_to_steady_friction", "settling_time", "hops", "events"])
+    dense = kv.transient(scene, at=np.linspace(0.0, 0.03, 121), certify=False)
+    friction, steady = dense.friction_force, kv.steady(scene).friction_force
+    scale, when = scales(StaticState.of(scene)), [found[f"{name}.time_of_max"] for name in names]
+    peaks = kv.transient(scene, at=when, certify=False)
+    for k, name in enumerate(names):
+        values = getattr(dense, name) / scale[name]
+        end, top, least = (found[f"{name}.{of}"] / scale[name] for of in ("end", "max", "min"))
+        assert end == pytest.approx(values[-1], abs=1e-12)
+        assert -1e-9 < top - values.max() < 1e-3
+        assert -1e-3 < least - values.min() < 1e-9
+        assert getattr(peaks, name)[k] / scale[name] == pytest.approx(top, abs=1e-9)
+    assert found["peak_to_steady_friction"] == found["friction_force.max"] / steady
+    settled = dense.time > 0.008 + found["settling_time"]
+    outside = np.abs(friction / steady - 1.0) > 0.01
+    assert 0 < settled.sum() < 80
+    assert not outside[settled].any()
+    assert outside[np.flatnonzero(settled)[0] - 2]
+    kinds = [event["kind"] for event in json.loads(found["events"])]
+    assert found["hops"] == 0.0
+    assert kinds == [event.kind for event in dense.events]
+
+
+def test_a_scene_that_the_solver_refuses_on_a_prony_series_is_swept_by_elements(monkeypatch):
+    """Its values are those of elements; what only the solver gives is missing, with the reason."""
+    scene, over = on_an_arm(3e10, [(0.0, 0.1), (1.0, 0.1)], 0.01), {V: [0.1, 0.3]}
+    solved = measures.on_arms.transient
+
+    def refusing(scene, *given, **more):
+        if scene.drive.velocity == 0.3:
+            raise ValueError("it takes off")
+        return solved(scene, *given, **more)
+
+    monkeypatch.setattr(measures.on_arms, "transient", refusing)
+    found = kv.sweep(scene, over=over, quantities="depth.end")
+    assert not found.failures
+    for velocity, depth, error in zip(over[V], found["depth.end"], (1e-6, 1e-3), strict=True):
+        alone = dataclasses.replace(scene, drive=kv.Drive(velocity))
+        truth = kv.elements(alone, at=[0.01]) if velocity == 0.3 else kv.transient(alone, at=[0.01])
+        assert depth == pytest.approx(truth.depth[0], rel=error)
+    assert 1e-5 < found.certificate.relative_error["depth"] < 1e-2
+    found = kv.sweep(scene, over=over, quantities=["depth.end", "hops"])
+    assert [failure.reason for failure in found.failures] == ["it takes off"]
 
 
 def test_largest_values_by_elements_are_those_of_the_solver_within_what_is_stated():

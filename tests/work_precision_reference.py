@@ -2,14 +2,15 @@
 
 `python -m tests.work_precision_reference` writes them with the data of the package, in a minute or two:
 by `transient_history`, or where no memory is needed by `two_states`; they share no code with
-the package.
+the package. The solution on a Prony series is kept as it is: it is by a program that follows material points
+one by one, which takes minutes; with half as many steps it differs by 1.5e-9.
 """
 
 import json
 from pathlib import Path
 
 import kvtheory
-from kvtheory.charts.problems import STANDARD, TABLE, Problem, standard_scene
+from kvtheory.charts.problems import ARMS, STANDARD, TABLE, Problem, standard_scene
 from tests.transient_history import Scene, history
 from tests.transient_reference import two_states
 
@@ -30,4 +31,6 @@ def solve(name: str, tolerance: float = TOLERANCE) -> dict[str, list[float]]:
 
 
 if __name__ == "__main__":
-    PATH.write_text(json.dumps({name: solve(name) for name in STANDARD}, indent=1) + "\n")
+    kept = {name: row for name, row in json.loads(PATH.read_text()).items() if name in ARMS}
+    found = {name: solve(name) for name in STANDARD if name not in ARMS}
+    PATH.write_text(json.dumps(found | kept, indent=1) + "\n")

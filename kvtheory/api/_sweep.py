@@ -11,7 +11,7 @@ from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
 from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene import arguments as argument
-from kvtheory.scene.capabilities import lacks_arms, lacks_paper_model, lacks_stability, require
+from kvtheory.scene.capabilities import lacks_arms, lacks_continuum, lacks_stability, require
 from kvtheory.scene.mistakes import SceneError
 from kvtheory.scene.model import Scene
 
@@ -42,7 +42,8 @@ def sweep(
     """Solve a scene for many values of some of its quantities.
 
     A scene that fails is a missing value with its reason in `Sweep.failures`; the sweep goes on.
-    The numbers are the same to the last bit for every executor and every size of block.
+    The numbers are the same to the last bit for every executor and every size of block; transients on a Prony
+    series are so if all of them are compiled.
 
     Parameters
     ----------
@@ -63,8 +64,8 @@ def sweep(
         neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the indenter
         along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with ``.cycle_max``
         and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the steady value.
-        Elements simulate other shapes and Prony series, within seconds each: series, ``NAME.end``,
-        ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
+        Elements simulate other shapes, and a parabola that `transient` cannot solve on a Prony series, within
+        seconds each: series, ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
     at, method, rtol
         As in `transient` and `steady`; with `at`, the times of the series.
     executor
@@ -146,11 +147,11 @@ def plan_of(
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
-    if plan.transient and lacks_paper_model(scene):
+    if plan.transient and lacks_continuum(scene):
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
-            why = f"{lacks_paper_model(scene)}; `elements` gives {had}"
+            why = f"{lacks_continuum(scene)}; `elements` gives {had}"
             raise SceneError([f"`quantities` {', '.join(lacking)}: {why}"])
     for column in columns:
         if not sprung and (column.measure in CYCLE or column.base in SPRING_UNITS):

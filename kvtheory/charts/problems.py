@@ -5,7 +5,7 @@ Scenes for testing other simulations are in `kvtheory.reference_problems`.
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from importlib.resources import files
 from itertools import pairwise
@@ -18,8 +18,11 @@ from kvtheory.charts import naive
 from kvtheory.charts.naive import Array, Piece, scaled_scene
 from kvtheory.charts.work_precision import MISSED, NO_LIMIT, WRONG, Clock, Reference
 from kvtheory.models.continuum import evaluation, solver
+from kvtheory.models.continuum.prony import evaluation as prony
+from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.foundations import Arm, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -53,8 +56,11 @@ STANDARD: dict[str, tuple[list[Piece], float]] = {
     "stop-and-go": ([(0.0, 0.5, LAMBDA), (0.5, 0.7, 0.0), (0.7, 1.5, LAMBDA)], EPSILON),
     "reversal": ([(0.0, 0.5, LAMBDA), (0.5, 1.5, -LAMBDA)], EPSILON),
     "hop": ([(0.0, 4.0, 4.0)], 0.3),
+    "rubber": ([(0.0, 1.5, 4.0)], EPSILON),
 }
 """Drive (pieces of s, lambda) and inertia number of the standard scenes."""
+ARMS = {"rubber": (Arm(4.0, 0.03), Arm(2.0, 0.3), Arm(1.0, 3.0))}
+"""Stiffness and relaxation time of the arms that stand for the damper, in the scaled scene."""
 
 
 class Curves(NamedTuple):
@@ -76,6 +82,15 @@ class Problem:
     def units(self) -> StaticState:
         """The static state: scales of all quantities, and the dimensionless numbers."""
         return StaticState.of(self.scene)
+
+    @cached_property
+    def arms(self) -> list[tuple[float, float]]:
+        """K_i/K and tau_i in the unit of time of a Prony series, or an empty list."""
+        foundation = self.scene.foundation
+        return [
+            (arm.stiffness / foundation.stiffness, arm.relaxation_time / self.units.time)
+            for arm in foundation.arms
+        ]
 
     @cached_property
     def drive(self) -> BaseMotion:
@@ -122,7 +137,7 @@ class Problem:
         if known and np.array_equal(known["times"], self.times):
             curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
             return curves, "stored solution, see the tests"
-        if not self.scene.held:  # else there is no equation of motion
+        if not self.scene.held and not self.arms:  # else two states are none or too few
             try:
                 curves = by_two_states(self, INDEPENDENT_RTOL, method="Radau")[0]
             except ArithmeticError:
@@ -152,7 +167,8 @@ class Problem:
 
 def standard_scene(name: str) -> Scene:
     """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1."""
-    return scaled_scene(*STANDARD[name])
+    scene = scaled_scene(*STANDARD[name])
+    return replace(scene, foundation=GeneralizedMaxwell(1.0, ARMS[name])) if name in ARMS else scene
 
 
 def errors(found: Curves, right: Curves) -> dict[str, float]:
@@ -178,8 +194,14 @@ def by_continuum(
     """Return the curves by the package's transient, and its evaluations of the equation of motion."""
     units, drive = problem.units, problem.drive
     numbers = units.inertia_number, units.support_number
-    motion = solver.solve(drive, *numbers, drive.end, rtol, fast=fast, progress=clock.check)
-    found = motion.states(np.minimum(problem.times / units.time, motion.end)).T
+    s = np.minimum(problem.times / units.time, drive.end)
+    how: Any = {"fast": fast, "progress": clock.check}
+    if problem.arms:
+        run: Any = trajectory.solve(drive, problem.arms, numbers, drive.end, rtol, **how)
+        found = run.states(s, peaks=False)
+        return Curves(found[prony.DEPTH], found[prony.FRICTION_FORCE]), run.counts.evaluations
+    motion = solver.solve(drive, *numbers, drive.end, rtol, **how)
+    found = motion.states(s).T
     curves = Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE])
     return curves, motion.counts.evaluations
 

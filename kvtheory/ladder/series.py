@@ -27,6 +27,7 @@ from kvtheory.results.table import scales
 from kvtheory.scene.capabilities import (
     lacks_arms,
     lacks_closed_form,
+    lacks_continuum,
     lacks_kelvin_voigt,
     lacks_paper_model,
     lacks_parabola,
@@ -174,7 +175,7 @@ def _strips(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _parabola(models: Models, scene: Scene, request: Request) -> Offer:
-    need(lacks_parabola(scene), lacks_arms(scene))
+    need(lacks_continuum(scene))
     return Offer(math.nan, lambda: _continuum(models, scene, request))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
-from kvtheory.scene.capabilities import lacks_paper_model
+from kvtheory.scene.capabilities import lacks_continuum
 from kvtheory.scene.foundations import EXTRAPOLATED, extrapolates
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import FAILS, STABLE, Array, Measured, Plan, Table
@@ -117,11 +117,9 @@ def _steady(given: Task) -> Measured:
 def _transients(given: Task, steady: Measured) -> Measured:
     """Compute the transients of the scenes whose steady sliding did not fail."""
     # Imported here, as the solver and the simulator take a while to import.
-    if lacks_paper_model(given.plan.scene):
-        from kvtheory.sweeps.simulated import measure
-    else:
-        from kvtheory.sweeps.measures import measure
+    from kvtheory.sweeps import measures, simulated
 
+    plan, by_elements = given.plan, bool(lacks_continuum(given.plan.scene))
     latest = max(given.plan.times or (0.0,))
     scenes: dict[int, Scene] = {}
     reasons: dict[int, Exception] = {}
@@ -136,7 +134,10 @@ def _transients(given: Task, steady: Measured) -> Measured:
             reasons[index] = error
     friction = steady.values.get("friction_force", np.full(given.points, np.nan))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        found = measure(given.plan, scenes, friction)
+        found = (simulated if by_elements else measures).measure(plan, scenes, friction)
+        if not by_elements and plan.scene.foundation.arms and plan.of_elements:
+            refused = {index: scenes[index] for index in found.reasons}
+            found.replace(refused, simulated.measure(plan, refused, friction))
     found.reasons |= reasons
     for name, wrong in found.errors.items():
         wrong[[*found.reasons]] = 0.0
@@ -149,12 +150,10 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
 
     Workers load the compiled kernels from the disk, if they share it and the kind of processor.
     """
-    if not plan.transient or lacks_paper_model(plan.scene):
+    if not plan.transient or lacks_continuum(plan.scene):
         return
-    from kvtheory.models.continuum import compiled
-    from kvtheory.sweeps.measures import STEPS
+    from kvtheory.sweeps.measures import compiles
 
-    if compiled.available() and STEPS * points >= INTERPRETED * compiled.WORTHWHILE * workers:
-        compiled.Tally.steps += compiled.WORTHWHILE
+    if compiles(plan.scene, points / (INTERPRETED * workers)):
         for index in {0, plan.points - 1}:  # one of the two may fail
             compute(task(plan, index, index + 1))

@@ -10,20 +10,24 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory import compilation
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
+from kvtheory.models.continuum.prony import solved_scene as on_arms
+from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import ROOM, begin, readable, with_more_room
 from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
-from kvtheory.results.certificate import AT_REST
+from kvtheory.results.certificate import AT_REST, Certificate
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Array, Column, Measured, Plan
+from kvtheory.sweeps.prony_motion import PronyMotion
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
@@ -31,8 +35,9 @@ CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "fric
 """Scale of a value of the cycle, by its unit."""
 SETTLED = 0.01
 """Share of the steady friction force within which the motion counts as settled."""
-STEPS = 40
-"""Approximate number of steps of a certified scene, to decide whether compiling pays."""
+STEPS = {False: 40, True: 200}
+"""Approximate cost of a certified scene in interpreted steps, on Kelvin-Voigt and on a Prony series (True),
+where peak pressures count as steps; to decide whether compiling pays."""
 DOUBLINGS = 2
 """Doublings of the workspace of a single run: few scenes need more, and are solved alone."""
 
@@ -48,6 +53,15 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
     asked = [column for column in plan.columns if column.measure != "steady"]
     block.measured.values = {column.name: block.values(column) for column in asked}
     return block.measured
+
+
+def compiles(scene: Scene, points: float) -> bool:
+    """Count so many scenes as interpreted if compiling the kernels pays for them; return whether it does."""
+    arms = bool(scene.foundation.arms)
+    kernels: Any = trajectory if arms else compiled
+    pays = compilation.available() and STEPS[arms] * points >= kernels.WORTHWHILE
+    kernels.Tally.steps += kernels.WORTHWHILE * pays
+    return pays
 
 
 def relative(statement: str) -> str:
@@ -66,6 +80,7 @@ class _Motions:
         names = estimate.unknown("", sprung=True).relative_error
         self.measured = Measured(errors={name: np.zeros(size) for name in names})
         self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
+        scaled = on_arms.own_units if plan.scene.foundation.arms else StaticState.of
         self.friction = np.full(size, np.nan)
         self.texts = np.full(size, "", object)
         self.cycles = np.full((size, len(CYCLE)), np.nan)
@@ -81,18 +96,18 @@ class _Motions:
         )
         for index, scene in scenes.items():
             try:
-                units = StaticState.of(scene)
+                units = scaled(scene)
                 self.scenes[index] = scene, units, scaled_drive(scene, units)
                 self.friction[index] = friction[index] / units.friction_force
             except FAILS as error:
                 self.measured.reasons[index] = error
 
     def follow(self) -> None:
-        """Solve the scenes, in one call if all drives are rigid, no text is requested and compiling pays."""
+        """Solve the scenes, in one call on Kelvin-Voigt and rigid drives if compiling pays."""
+        plain = not (self.plan.scene.foundation.arms or self.plan.texts)
         rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
-        worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
-        together = rigid and not self.plan.texts and worthwhile and compiled.available()
-        if self.scenes and together:
+        pays = compiles(self.plan.scene, len(self.scenes)) or compiled.worthwhile()
+        if self.scenes and plain and rigid and pays:
             self.follow_together()
         for index in self.scenes:
             if not (self.found.status[index] == self.found.other[index] == DONE):
@@ -143,12 +158,12 @@ class _Motions:
     def follow_alone(self, index: int) -> None:
         """Solve one scene."""
         scene, units, _ = self.scenes[index]
-        solution, _, errors = certified(scene, None, self.plan.rtol)
-        motion, found = solution.motion, self.found
+        solution, motion, errors = self.solved(scene)
+        found = self.found
         found.largest[index] = motion.largest(*self.wanted)
         found.settled[index] = motion.settled(self.friction[index], SETTLED)
         if self.plan.times:
-            found.states[index] = solution.states(self.plan.times).T
+            found.states[index] = motion.states(solution.scaled(self.plan.times))
         found.last[index] = motion.states([motion.end])[0]
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         if not units.rigid_drive:
@@ -156,6 +171,15 @@ class _Motions:
         if self.plan.texts:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
         self.tell(index, errors.relative_error, errors.statement)
+
+    def solved(self, scene: Scene) -> tuple[Any, Any, Certificate]:
+        """Return a solved scene, its motion and its certificate."""
+        if not scene.foundation.arms:
+            solution, _, errors = certified(scene, None, self.plan.rtol)
+            return solution, solution.motion, errors
+        found = on_arms.transient(scene, None, self.plan.rtol)
+        peaks = "peak_pressure" in self.plan.needed(steady=False)
+        return found.solution, PronyMotion(found.solution, peaks), found.certificate
 
     def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
         """Keep the errors of scenes, and what the certificate states of them."""

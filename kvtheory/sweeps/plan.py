@@ -9,7 +9,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -176,6 +176,11 @@ class Plan:
         return any(column.measure != "steady" for column in self.columns)
 
     @property
+    def of_elements(self) -> bool:
+        """Whether elements can give every column."""
+        return all(column.measure in OF_ELEMENTS for column in self.columns)
+
+    @property
     def vectorised(self) -> bool:
         """Whether a block is one call on arrays."""
         return not self.transient and self.method != "quadrature"
@@ -251,6 +256,16 @@ class Measured:
     errors: dict[str, Any] = field(default_factory=dict)
     reasons: dict[int, Exception] = field(default_factory=dict)
     statements: set[str] = field(default_factory=set)
+
+    def replace(self, indices: Iterable[int], other: "Measured") -> None:
+        """Take some scenes from another model."""
+        for index in indices:
+            del self.reasons[index]
+            for own, theirs in ((self.values, other.values), (self.errors, other.errors)):
+                for name, array in theirs.items():
+                    own[name][index] = array[index]
+        self.reasons |= other.reasons
+        self.statements |= other.statements
 
 
 def is_csv(path: Path) -> bool:
