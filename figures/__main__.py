@@ -17,7 +17,7 @@ TOPICS = {
     ),
     "Other foundations": (
         *("foundations", "rubber", "rubber_start"),
-        *("temperature", "foundation_precision"),
+        *("temperature", "fewer_arms", "foundation_precision"),
     ),
     "The ball": ("ball", "ball_start", "ball_pressure"),
     "A spring in the drive": (

@@ -188,6 +188,13 @@ def test_curves_of_all_temperatures_lie_on_the_master_curve(made):
     assert data.shift_factors[0.0] > 1.0 > data.shift_factors[40.0] > data.shift_factors[80.0]
 
 
+def test_the_true_change_by_fewer_arms_is_below_its_bound(made):
+    data, _, _ = made["fewer_arms"]
+    assert np.all(data.change < data.bound)
+    assert np.all(np.diff(data.change) < 0.0)
+    assert data.arms[0] < 10 < 17 <= data.arms[-1]
+
+
 def test_table2_carries_the_papers_coefficients(made):
     columns = made["table2"][0].columns
     alpha, R, K, C, delta, W = 2 * np.sqrt(2) / 3, 0.01, 1e10, 1e9, 3e-4, 9806.65

@@ -351,7 +351,12 @@ BAD = {
     "rest": ("V [mm/s],mu\n0,1\n0,2\n0,3\n", VOIGT, 'column "V [mm/s]": is zero throughout'),
     "few": ("V [mm/s],mu\n1,1\n2,2\n", VOIGT, "2 unknowns need more than 2 values"),
     "negative load": ("V [mm/s],mu,F_z [N/mm]\n1,1,-3\n2,1,3\n3,1,3\n", VOIGT, "line 2"),
-    "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n", VOIGT, "is not of this scene"),
+    "temperature": (
+        "V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n",
+        VOIGT,
+        "needs a scene with foundation.wlf",
+    ),
+    "huge": (MU + "5,1e300\n", VOIGT, "1e+300 is not plausible"),
     "misspelt key": (MU, ["foundation.stifness"], 'did you mean "foundation.stiffness"'),
     "velocity": (MU, ["drive.velocity"], "is not a quantity of this scene"),
     "nothing free": (MU, [], "expected the keys of free quantities"),

@@ -188,7 +188,7 @@ def test_arms_and_rtol_choose_the_number_of_arms():
     data = dynamic(0.02)
     assert len(kv.fit_foundation(data, arms=2).arms) == 2
     assert len(kv.fit_foundation(data, rtol=0.4).arms) < 3
-    with pytest.raises(ValueError, match="is as close: the least misfit is 0"):
+    with pytest.raises(ValueError, match="the least misfit of any is 0"):
         kv.fit_foundation(data, rtol=0.005)
     assert "arms fit best; 50 would be no better" in kv.fit_foundation(data, arms=50).notes[0]
 

@@ -87,10 +87,7 @@ class Slopes(Moduli):
         fall = np.exp(-z)
         slope = np.where(fall > 0.0, fall * (np.where(fall > 0.0, z, 0.0) - 1.0), 0.0) / finite
         rows, rises = fall / finite, slope
-        for row, n in (
-            (-3, 2),
-            (-2, 3),
-        ):  # the integrals of t and t^2 are incomplete Gamma functions
+        for row, n in ((-3, 2), (-2, 3)):  # incomplete Gamma functions, integrals of t and t^2
             size = math.factorial(n - 1) * finite ** (n - 1)
             part = gammainc(n, z[row])
             z_n = np.where(fall[row] > 0.0, np.where(fall[row] > 0.0, z[row], 0.0) ** n, 0.0)
@@ -169,10 +166,8 @@ def reduced(
         limit = bound(solve, scene, V, eps) if line else math.nan
         if proved and limit > rtol:
             break
-        arms = tuple(
-            Arm(float(K), float(t)) for K, t in zip(series.modulus, series.time, strict=True)
-        )
-        own = type(foundation)(+foundation.stiffness, arms=arms)
+        pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
+        own = type(foundation)(+foundation.stiffness, arms=tuple(Arm(*pair) for pair in pairs))
         other = replace(scene, foundation=own)
         mu = solve(other.at(V)).friction_coefficient
         off = float(np.max(np.abs(mu / moving.friction_coefficient - 1.0)))

@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from kvtheory.fitting import moduli, shifting
 from kvtheory.fitting.shifting import Law, Shifted
-from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, rms
+from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, refined, rms
 
 CONFIDENCE = 0.95
 """Probability with which the scatter of the data alone makes the sum of squares as large as is allowed."""
@@ -59,9 +59,7 @@ def fit(
         reference = float(T[np.abs(log_shift).argmin()])
         master = Shifted(whole, reference, T, log_shift, 0.0 * T, 0.0 * T)
     if master is not None:
-        law = shifting.law_of(
-            master.temperatures, master.log_shift, master.reference, master.errors
-        )
+        law = shifting.law_of(master)
         notes += _about_shifts(master, law)
     thin = whole.thinned
     if thin.x.size < whole.x.size:
@@ -89,7 +87,7 @@ def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> fl
     """
     if rtol is not None:
         if least > rtol:
-            told = f"no series with arms above 0 is as close: the least misfit is {least:.3g}, see `notes`"
+            told = f"no Prony series is as close: the least misfit of any is {least:.3g}"
             raise ValueError(f"`rtol` = {rtol:g}: {told}")
         return rtol
     count = data.target.size
@@ -105,8 +103,6 @@ def _no_plateau(data: Moduli, series: Series) -> bool:
 
 def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
     """Return a series with a relaxed modulus for data that do not reach it."""
-    from kvtheory.fitting.spectrum import refined
-
     found = series
     while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
         found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
@@ -119,11 +115,7 @@ def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
 
 def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     notes = []
-    vague = [
-        f"{T - 273.15:.4g}"
-        for T, e in zip(master.temperatures, master.errors, strict=True)
-        if e > VAGUE
-    ]
+    vague = [f"{T - 273.15:.4g}" for T in master.temperatures[master.errors > VAGUE]]
     if vague:
         told = "The sweeps overlap too little, or are too flat, to tell their shift factors"
         notes.append(f"{told} to {VAGUE} decades at {', '.join(vague)} degC.")

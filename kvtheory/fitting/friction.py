@@ -3,8 +3,8 @@
 Unknowns are logarithms. The first guess needs no help: the maximum of the measured friction gives the
 stiffness of the foundation, and the velocities its times (fact F26); many points around them are tried at
 once, as theory takes arrays, and the best ones are refined. The covariance is that of the linear theory at
-the minimum. A direction of the unknowns that the data leave open by more than a factor of two is reported
-by its keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
+the minimum. A combination of unknowns that is uncertain by more than a factor of two is reported by its
+keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
 much above its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t).
 """
 
@@ -50,10 +50,7 @@ ORDER = 0.05, 1.0
 TRIED, SOME = {False: (6, 8, 10), True: (4, 6, 7)}, 16
 """Points that are tried for one, two and more unknowns (as powers of two), of steady sliding and of a time
 series, and rows of the data at most."""
-ROUNDS = {
-    False: ((32, 6), (12, 10), (4, 15), (1, 200)),
-    True: ((6, 4), (2, 8), (1, 40)),
-}
+ROUNDS = {False: ((32, 6), (12, 10), (4, 15), (1, 200)), True: ((6, 4), (2, 8), (1, 40))}
 """How many of the best points are refined, and by how many steps, in each round; likewise."""
 REWEIGHED = 3
 """Times that columns are weighed by their scatter."""
@@ -103,9 +100,8 @@ class Problem:
             over = {key: np.exp(points[:, [i]]) for i, key in enumerate(self.keys)}
             try:
                 state = self._state(data, over)
-                return {
-                    name: np.broadcast_to(getattr(state, name), shape) for name in data.measured
-                }
+                found = {name: getattr(state, name) for name in data.measured}
+                return {name: np.broadcast_to(values, shape) for name, values in found.items()}
             except (ValueError, ArithmeticError, RuntimeError):
                 if len(points) == 1:
                     return {name: np.full(shape, np.nan) for name in data.measured}
@@ -337,10 +333,8 @@ def _sorted(points: Array, keys: Sequence[str]) -> Array:
         keys[i].rpartition(".")[0] for i in others
     ]:
         order = np.argsort(points[0, times])
-        points[:, times], points[:, others] = (
-            points[:, times][:, order],
-            points[:, others][:, order],
-        )
+        for own in (times, others):
+            points[:, own] = points[:, own][:, order]
     return points
 
 

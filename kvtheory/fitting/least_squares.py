@@ -55,12 +55,8 @@ def descend(
     def loss(r: Array) -> Array:
         return np.asarray((2.0 * (np.hypot(1.0, r) - 1.0) if robust else r * r).sum(axis=-1))
 
-    points, r = points.copy(), residuals(points)
-    cost, damping, J = (
-        loss(r),
-        np.full(len(points), FIRST_DAMPING),
-        slopes(residuals, points, step=step),
-    )
+    points, r, J = points.copy(), residuals(points), slopes(residuals, points, step=step)
+    cost, damping = loss(r), np.full(len(points), FIRST_DAMPING)
     active = cost > 0.0
     for count in range(steps):
         if not active.any():

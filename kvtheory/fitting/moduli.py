@@ -91,13 +91,9 @@ def read(data: Any, modulus: str | None = None) -> Measured:
         own = own[:, np.append(True, (np.diff(own, axis=1) != 0.0).any(axis=0))]
         if own.shape[1] < each.size:
             notes.append(f"{each.size - own.shape[1]} rows occur twice and count once.")
-        where = (
-            ""
-            if len(temperature) == each.size
-            else f" at {temperature[each].mean() - 273.15:.4g} degC"
-        )
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
-            what = "frequencies" if dynamic else "times"
+            what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
+            where = "" if one else f" at {temperature[each].mean() - 273.15:.4g} degC"
             told = f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
             raise ValueError(f"{table.source}: holds {told}")
         sweeps.append(Sweep(float(np.mean(temperature[each])), Moduli(own[0], own[1:])))

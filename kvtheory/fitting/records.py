@@ -32,6 +32,8 @@ STATIC = {"load": "support.load", "depth": "support.depth"}
 """The keys of a support that are conditions of a row if it has them; on other supports they are measured."""
 MOST_ROWS = 2000
 """Most rows that are used: more would hardly sharpen a fit."""
+LARGEST = 1e30
+"""Largest number that is accepted as a measured one; squares of larger ones overflow."""
 SAME_DRIVE = 0.05
 """Median difference of a column of velocities from the drive of the scene, over its largest velocity, up to
 which they are the same."""
@@ -131,6 +133,9 @@ def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Arra
                 told = "is not that of the first row; a time series has one value"
                 table.require(name, values == values[0], told)
             conditions[key] = float(values[0]) if over_time else values
+        elif name == "foundation.temperature":
+            told = "needs a scene with foundation.wlf or foundation.activation_energy"
+            raise table.error(name, f"{told}, and foundation.reference_temperature")
         elif name in FRICTION or name.removeprefix("-") in STATIC:
             shown = "normal_force" if over_time and name == "load" else name.removeprefix("-")
             measured[shown] = _measured(table, name, scene)
@@ -141,6 +146,8 @@ def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Arra
 
 def _measured(table: Table, name: str, scene: Scene) -> Array:
     """Return a measured quantity in SI."""
+    plausible = np.abs(table.columns[name].values) < LARGEST
+    table.require(name, plausible, f"is not plausible; expected less than {LARGEST:g}")
     if name == "friction_coefficient":
         return table.number(name)
     force = "N/m" if scene.indenter.per_width else "N"

@@ -165,12 +165,8 @@ def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, flo
             inside = (at >= u[0]) & (at <= u[-1])
             if np.count_nonzero(inside) < LEAST_OVERLAP:
                 return math.inf, 0.0
-            gaps.append(
-                [
-                    side * (np.interp(at, u, row) - own)[inside]
-                    for row, own in zip(v, y, strict=True)
-                ]
-            )
+            pairs = zip(v, y, strict=True)
+            gaps.append([side * (np.interp(at, u, row) - own)[inside] for row, own in pairs])
         gap = np.concatenate(gaps, axis=1)
         weight = np.broadcast_to(scatter**-2, gap.shape) / gap.size
         mean = float((weight * gap).sum() / weight.sum())
@@ -203,15 +199,16 @@ def _scatter(x: Array, y: Array) -> Array:
     return np.maximum(np.sqrt(np.mean(off * off, axis=1) / 1.5), LEAST_SCATTER)
 
 
-def law_of(T: Array, log_shift: Array, reference: float, errors: Array | float = 0.0) -> Law | None:
+def law_of(master: Shifted) -> Law | None:
     """Return the law that fits shift factors better for its number of constants; None if none does.
 
-    Shift factors count by their standard `errors`, if these exceed the usual deviation from a law.
+    Shift factors count by their standard errors, if these exceed the usual deviation from a law.
     """
+    T, log_shift, reference = master.temperatures, master.log_shift, master.reference
     off = np.abs(T - reference) > 0.0
     if not off.any():
         return None
-    sigma, slope = np.hypot(USUAL, np.broadcast_to(errors, T.shape)), 1.0 / T - 1.0 / reference
+    sigma, slope = np.hypot(USUAL, master.errors), 1.0 / T - 1.0 / reference
     start = max(float(slope @ log_shift / (slope @ slope)) * GAS_CONSTANT * math.log(10.0), 1.0)
     tried: list[tuple[str, list[float], Any]] = [("arrhenius", [start], 0.0)]
     if np.count_nonzero(off) > 2:  # from the law made linear in its constants

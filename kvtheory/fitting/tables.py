@@ -116,7 +116,7 @@ def _spelt(unit: str, si: str) -> str:
     return {"C": "degC", "F": "degF"}.get(unit, unit) if si == "K" else unit
 
 
-Found = dict[int, tuple[str, str, str]]
+Known = dict[int, tuple[str, str, str]]
 """Quantity, header and unit of the known columns of a row, by their place."""
 
 
@@ -179,7 +179,7 @@ class Reader:
             raise ValueError(f"{path}: not a text file in UTF-8 or UTF-16; expected {self.example}")
         lines, at, header = text.splitlines(), 0, None
         skipped: list[str] = []
-        tables: list[tuple[Found, list[Array], list[int], tuple[str, ...]]] = []
+        tables: list[tuple[Known, dict[str, Array], list[int], tuple[str, ...]]] = []
         while at < len(lines):
             found_here = None if _blank(lines[at]) else self._header(lines[at], lines[0])
             if found_here is None:
@@ -211,16 +211,10 @@ class Reader:
             tuple(sorted((name, unit) for name, _, unit in found.values())) for found, *_ in tables
         }
         if len(kinds) > 1:
-            told = " and ".join(
-                ", ".join(" ".join(each) for each in kind) for kind in sorted(kinds)
-            )
+            told = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
             raise ValueError(f"{path}: its tables differ in their columns or units: {told}")
-        by_name = [
-            dict(zip((name for name, _, _ in found.values()), values, strict=True))
-            for found, values, _, _ in tables
-        ]
         columns = {
-            name: Column(head, unit, np.concatenate([each[name] for each in by_name]))
+            name: Column(head, unit, np.concatenate([values[name] for _, values, *_ in tables]))
             for name, head, unit in tables[0][0].values()
         }
         numbers = np.concatenate([np.array(rows) + 1 for _, _, rows, _ in tables])
@@ -245,8 +239,8 @@ class Reader:
         name, unit = (cell, "") if whole else parts(cell)
         return whole or self.names(name), unit
 
-    def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Found:
-        found: Found = {}
+    def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
+        found: Known = {}
         seen: dict[str, str] = {}
         for i, cell in enumerate(cells):
             name, unit = self._quantity(cell)
@@ -263,7 +257,7 @@ class Reader:
             found[i] = name, cell, unit or below
         return found
 
-    def _others(self, cells: Sequence[str], found: Found) -> tuple[str, ...]:
+    def _others(self, cells: Sequence[str], found: Known) -> tuple[str, ...]:
         return tuple(shown(cell) for i, cell in enumerate(cells) if cell and i not in found)
 
     def _unknown(self, rows: Sequence[str]) -> str:
@@ -303,16 +297,17 @@ def _units_below(
 
 
 def _numbers(
-    path: Path, lines: Sequence[str], rows: Sequence[int], header: tuple[list[str], str], found: Found,
+    path: Path, lines: Sequence[str], rows: Sequence[int], header: tuple[list[str], str], found: Known,
     partial: Container[str],
-) -> list[Array]:  # fmt: skip
+) -> dict[str, Array]:  # fmt: skip
     """Return the known columns; if the fast reader fails, find the cell that is no number."""
+    names = [name for name, _, _ in found.values()]
     (heads, separator), decimal = header, "." if header[1] == "," else ","
     texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in rows]
     if all(text.count(separator) < len(heads) for text in texts):
         with suppress(ValueError):
             options: Any = {"delimiter": separator, "usecols": list(found), "quotechar": '"'}
-            return list(np.loadtxt(texts, ndmin=2, **options).T)
+            return dict(zip(names, np.loadtxt(texts, ndmin=2, **options).T, strict=True))
     values = []
     for k in rows:
         cells = _split(lines[k], separator)
@@ -331,4 +326,4 @@ def _numbers(
                 raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {told}')
             row.append(value)
         values.append(row)
-    return list(np.array(values).T)
+    return dict(zip(names, np.array(values).T, strict=True))

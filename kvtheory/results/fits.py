@@ -142,7 +142,7 @@ class FrictionFit(Exported):
 
     `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
     of the correlations of their logarithms, in the same order. `not_identifiable` lists the keys that the
-    data cannot tell, or cannot tell apart: a combination of them is open by more than a factor of two.
+    data cannot tell, or cannot tell apart: a combination of them is uncertain by more than a factor of two.
     `misfit` is the root mean square of the relative residuals. `models` are the foundations that were
     weighed. `scene` is the scene with the fitted values.
     """
@@ -166,8 +166,8 @@ class FrictionFit(Exported):
         lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
         for keys in self.not_identifiable:
             apart = " apart: a combination of them" if len(keys) > 1 else ": it"
-            open_ = "is open by more than a factor of two"
-            lines.append(f"The data cannot tell {', '.join(keys)}{apart} {open_}.")
+            doubt = "is uncertain by more than a factor of two"
+            lines.append(f"The data cannot tell {', '.join(keys)}{apart} {doubt}.")
         return [*lines, *self.notes]
 
     def __repr__(self) -> str:
