@@ -138,7 +138,8 @@ def allowance(
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            rounding = rounded(values, GIVEN_DIGITS if name in given else 0)
+            fewest, grid = GIVEN_DIGITS if name in given else 0, name not in EDGES  # on elements
+            rounding = rounded(values, fewest, grid)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
             if name in EDGES and not fine.spacing_known:

@@ -135,8 +135,8 @@ def make_case(
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
     edges = [
-        (edge_jumps(case.columns[n] - case.now[n]), rms(case.bands[n].noise))
-        for n in EDGES if n in names
+        (edge_jumps(case.columns[n] - case.now[n]) - 2.0 * float(case.bands[n].rounding.max()),
+         rms(case.bands[n].noise)) for n in EDGES if n in names
     ]  # fmt: skip
     (jump, loud), read = max(edges, default=(0.0, 0.0)), SAWTOOTH if seen != MARGIN else ""
     if jump > seen * fine.spacing:

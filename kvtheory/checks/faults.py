@@ -268,7 +268,10 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in failing}
     if any(half.any() for half in digits.values()):
         cut = {name: x + np.sign(x) * digits.get(name, 0.0) for name, x in columns.items()}
-        text = "the last digits of the data are cut off, not rounded"
+        text = (
+            "the difference is within the last digit of the data: digits are cut off, not rounded, or too "
+            "few to name a fault"
+        )
         yield fixed(CUT_OFF, text, (cut, now))
 
 
