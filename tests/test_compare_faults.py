@@ -430,3 +430,14 @@ def test_digits_that_were_cut_off_prove_no_other_fault(support):
         cut[name] = np.trunc(data[name] / last) * last
     found = kv.compare(scene, {"time": data["time"], **cut})
     assert first_of(found, "digits cut off").enough
+
+
+def test_edges_of_few_digits_are_not_taken_for_few_elements():
+    drive = kv.Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, -0.1), (0.1, -0.1)])
+    given = replace(kv.Scene.table1("fixed"), drive=drive, run=kv.Run(0.1))
+    exact = kv.transient(given, at=np.linspace(0.0, 0.1, 401), certify=False)
+    rows = {
+        name: getattr(exact, name).copy() for name in (*MEASURED, "leading_edge", "trailing_edge")
+    }
+    rounded = {n: x if n == "time" else [float(f"{v:.2g}") for v in x] for n, x in rows.items()}
+    assert failed(kv.compare(given, rounded)) == []

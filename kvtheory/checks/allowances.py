@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
+from kvtheory.checks.noise import SEVERAL, extreme, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
@@ -133,12 +133,16 @@ def allowance(
         step = fine.time_step if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
-    bands, given = {}, ("velocity", "sliding_velocity")[: 1 + theory.scene.drive.rigid]
+    few = (
+        np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL
+    )  # those of the drive
+    bands, given = {}, ("velocity", "sliding_velocity")[: 1 + (few or theory.scene.drive.rigid)]
     for name in CURVES:
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            rounding = rounded(values, GIVEN_DIGITS if name in given else 0)
+            fewest, grid = GIVEN_DIGITS if name in given else 0, name not in EDGES  # on elements
+            rounding = rounded(values, fewest, grid)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
             if name in EDGES and not fine.spacing_known:

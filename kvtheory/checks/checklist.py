@@ -21,16 +21,16 @@ EQUATIONS = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14"
 """The equation behind each curve."""
 RELATIVE = "relative to the static state"
 TRANSIENT = 3.0
-"""Length of a transient after a change of the drive, in slow time constants: three samples show it."""
+"""Length of a transient after a change of the drive, in slow time constants."""
 SAMPLING = "sampling"
 """The check whose failure alone is no evidence against the data."""
 SHORTEST_WINDOW, LONGEST_WINDOWS, OVERLAP = 16, 6, 2
-"""Fewest samples in a window of the impulse balance, to resolve phi''; the number of lengths tried, each half
-the one before, from the whole series down; and the number of windows of a length that cover a sample."""
+"""Fewest samples in a window of the impulse balance, to resolve phi''; number of lengths, from the whole
+series down by halves; and number of windows of each length that cover a sample."""
 SETTLED = 7.0
 """Slow time constants from the last change of the drive to steady sliding: e^-7 is below a thousandth."""
 LAST_PART, FEWEST_LATE = 0.75, 3
-"""Fraction of the time after which the mean is taken for the limit, and the fewest samples for it."""
+"""Part of the series after which the mean is taken for the limit, and the fewest samples for it."""
 PHASE = "phase of the cycle"
 """The check whose failure alone is no evidence against the data: theory cannot predict the phase."""
 LOST = 0.25
@@ -131,7 +131,7 @@ def windows(time: Array) -> Iterator[Window]:
 
 
 def balance(case: Case) -> Measured:
-    """Compare M z'' with F_z - W, of the data alone, over windows, without differentiating noisy data.
+    """Compare M z'' with F_z - W in the data alone, over windows, without differentiating them.
 
     For a test function phi that vanishes at both ends of a window with its derivative, partial integration
     of M z'' = F_z - W - k_s (z - z_0), with z = -delta, gives

@@ -33,14 +33,11 @@ FAMILIES: Families = (
 OF_TIME = {"delays and filters", "units of the time"}
 """The families that show in a series alone."""
 EXACT, BUDGET = 0.999, 8.0
-"""Part of the difference that a wrong sign or unit must explain to end the search at once, and the processor
-time in s after which no other family is begun."""
-TIE = 3.0
-"""Factor on the remaining difference of the best explanation up to which another is as likely."""
+"""Part of the difference that a fault must explain to end the search; and processor time in s after which no
+other family is begun."""
 REFINED, FLEXIBLE = 3, 0.1
-"""Most remote starts that are followed; and the part of the remaining difference by which a fault with an
-unknown must fit better than one without. A parameter has to fit the better, the further it is from its
-value."""
+"""Most remote starts that are followed; and the part by which a fault with an unknown must fit better than
+one without. A parameter must fit the better, the further it is from its value."""
 NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
@@ -48,7 +45,7 @@ SHOWN = 4
 MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
 SCATTER = "scatter"
-"""The check of the scatter of a measured curve."""
+"""Name of the check of the scatter of a measured curve."""
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",

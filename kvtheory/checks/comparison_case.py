@@ -24,51 +24,50 @@ from kvtheory.results.schemes import SCHEME_ROWS
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
-"""Fraction of a scale: smaller differences are ignored."""
+"""Relative difference that is always allowed."""
 LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
-"""Fractions of the load: if half an element at the edge contributes more, the contact is not resolved; if it
-would have to contribute more than the second, the data are wrong rather than coarse."""
+"""Force of half an element at an edge, over the load: beyond the first the contact is not resolved; beyond
+the second the data are wrong rather than coarse."""
 MARGIN, IN_STEP = 1.4, 1.75
-"""Factors by which the spacing may exceed the one assumed or estimated from an even sawtooth; and from an
-uneven one, of which samples nearly in step with the elements show little."""
+"""Margins on the spacing assumed or estimated from an even sawtooth; and from an uneven one, of which samples
+nearly in step with the elements show little."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
-"""Median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random, in units of b."""
+"""Median and 95th percentile of the gaps of a sawtooth +-b sampled at random, in units of b."""
 EVEN = 0.6
-"""Fraction of the expected ratio of both, below which a part of the samples is in step with the elements."""
+"""Part of the expected ratio of both below which some samples are in step with the elements."""
 FINEST = 0.1
-"""Fraction of the assumed spacing: a smaller sawtooth is due to samples all in step, or to rounding."""
+"""Part of the assumed spacing below which a sawtooth is due to samples in step, or to rounding."""
 ROUNDED = 1.64
-"""Gap due to rounding, as `gaps` measures it, in units of half the last digit."""
+"""Gap due to rounding, by `gaps`, in units of half the last digit."""
 COMMON = 0.5
-"""Squared correlation of the noise of both forces, from which it counts as the sawtooth of F15."""
+"""Squared correlation of the noise of both forces from which it is the sawtooth of F15."""
 QUIET = 0.1
-"""Noise of an edge over its jumps, below which these are elements: between jumps it moves with the base."""
+"""Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
-"""Multiple of the median: larger differences are jumps, and are clipped to it."""
+"""Multiple of the median to which larger differences, which are jumps, are clipped."""
 SAWTOOTH = "the sawtooth"
-"""What the spacing is read from, if not from the edges."""
+"""What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
-"""Fractions of the load: noise that is negligible; and a little less than the largest noise allowed for."""
+"""Noise over the load that is negligible; and the largest allowed that is not of elements."""
 LIKELY, READ = 0.8, 0.75
-"""Ranks of faults that show but cannot be tried: an unknown time step, and a spacing that is estimated from
-the sawtooth."""
+"""Ranks of faults that show but cannot be tried: an unknown time step, and an estimated spacing."""
 LARGE, MANY = 10.0, 30.0
-"""Multiples of a scale, and of the initial difference: a difference beyond both has grown."""
+"""Multiples of the scale and of the initial difference beyond which a difference has grown."""
 UNSTABLE, FEW = "unstable time step", "too few elements"
 """The names of the faults."""
 
 
 class NotMade(Exception):  # noqa: N818
-    """A check cannot be made, for the reason that its text gives."""
+    """A check cannot be made; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A series, theory at its times (`now`), and the allowed differences.
+    """A series, theory at its times (`now`), and the differences allowed.
 
-    `names` are the curves that count, and `edge_force` is the force b of half an element at an edge, in N/m.
+    `names` are the curves to compare; `edge_force` is the force b of half an element at an edge, in N/m.
     """
 
     theory: Theory
@@ -120,8 +119,8 @@ def make_case(
 ) -> Case:
     """Compare a series with theory.
 
-    An unknown element density is estimated from the noise, if that is due to elements: up to a force of half
-    an element of `coarsest`, relative to the load.
+    An unknown spacing is estimated from noise that is due to elements, up to a force of half an element of
+    `coarsest`, relative to the load.
     """
     names = tuple(name for name in CURVES if name in series.columns)
 
@@ -136,8 +135,8 @@ def make_case(
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
     edges = [
-        (edge_jumps(case.columns[n] - case.now[n]), rms(case.bands[n].noise))
-        for n in EDGES if n in names
+        (edge_jumps(case.columns[n] - case.now[n]) - 2.0 * float(case.bands[n].rounding.max()),
+         rms(case.bands[n].noise)) for n in EDGES if n in names
     ]  # fmt: skip
     (jump, loud), read = max(edges, default=(0.0, 0.0)), SAWTOOTH if seen != MARGIN else ""
     if jump > seen * fine.spacing:
@@ -147,7 +146,7 @@ def make_case(
 
 
 def _coarser(case: Case) -> float:
-    """Return the spacing over the assumed one, from the sawtooth of +-b in the normal force (F15)."""
+    """Return the spacing over the assumed one by the sawtooth +-b of the normal force (F15)."""
     force = "normal_force"
     gap, rows = gaps(case.time, case.columns[force] - case.now[force])
     b, digits = case.edge_force[rows], case.bands[force].rounding[rows]
@@ -160,9 +159,9 @@ def _coarser(case: Case) -> float:
 
 
 def common_noise(case: Case) -> float | None:
-    """Return the squared correlation of the noise of both forces, if both are there.
+    """Return the squared correlation of the noise of both forces, if both are given.
 
-    An element that enters at the leading edge changes both; noise of a file or a sensor does not.
+    An element that enters changes both; the noise of a file or a sensor does not.
     """
     if not {"normal_force", "friction_force"} <= set(case.columns):
         return None
@@ -184,7 +183,7 @@ def rms(values: Array) -> float:
 
 
 def sawtooth(case: Case) -> tuple[float, float, str]:
-    """Compare the noise of the normal force with that of elements entering at the leading edge."""
+    """Compare the noise of the normal force with that of entering elements."""
     W, fine = case.theory.static.load, case.resolution
     sigma, density = float(np.median(case.bands["normal_force"].noise)) / W, 1e-3 / fine.spacing
     if not fine.spacing_known:
@@ -203,13 +202,10 @@ def elements(case: Case) -> tuple[float, float, str]:
     fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
     unread = not fine.spacing_read or "normal_force" not in case.names
     if not fine.spacing_known and unread:
-        told = (
-            "the element density is not given (per_length), and cannot be estimated from the forces"
-        )
-        raise NotMade(told)
+        raise NotMade("the element density is not given (per_length), nor shown by the forces")
     if not case.theory.scene.indenter.per_width:
-        told = f"{b:.2g} of the load if all strips gain an element at the same time"
-        raise NotMade(f"for a ball only an upper bound is known, {told}")
+        bound = f"{b:.2g} of the load, if all strips gain an element at once"
+        raise NotMade(f"for a ball only an upper bound is known: {bound}")
     limit = case.tolerance * LARGEST_SAWTOOTH
     if fine.spacing_known:
         return b, limit, ""
@@ -217,10 +213,8 @@ def elements(case: Case) -> tuple[float, float, str]:
         b /= IN_STEP
     else:  # edges may jump by noise too: what counts is the smooth part of the difference
         force = "normal_force"
-        off, random = (
-            rms(case.excess(force)),
-            rms(case.bands[force].noise) / case.theory.static.load,
-        )
+        off = rms(case.excess(force))
+        random = rms(case.bands[force].noise) / case.theory.static.load
         b = math.sqrt(max(off * off - random * random, 0.0))
     return b, limit, f"about {_density(case):.2g} /mm, estimated from {fine.spacing_read}"
 
@@ -254,7 +248,7 @@ def stability(case: Case) -> tuple[float, float, str]:
 
 
 def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
-    """Yield the faults that show without a trial: by a failed check of elements or steps, or by growth."""
+    """Yield the faults that need no trial: a failed check of elements or steps, or growth."""
     known, density = case.resolution.spacing_known, _density(case)
     for check in failed:
         measured, allowed = check.measured or 0.0, check.allowed or 1.0
@@ -271,7 +265,6 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
             yield Explanation(FEW, text, 1.0 if known else READ, True)
     if case.theory.scene.held or case.resolution.step_known:
         return
-    # Do the data look like an explicit scheme beyond its stability limit?
     steps = np.diff(case.time)
     h = float(steps[steps > 0.0].min())
     number, force, loud = _stability_number(case, h), "normal_force", 0.0
@@ -291,9 +284,10 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
 
 
 def _grows(case: Case) -> bool:
-    """Whether the difference to theory is small at first and becomes large.
+    """Whether the difference from theory is small at first and becomes large.
 
-    A depth may return, as an indenter that was thrown off falls back; a force may jump without growing.
+    For the depth at any time, as an indenter that was thrown off falls back; for a force at the end, as it
+    may jump.
     """
     quarter = max(case.time.size // 4, 1)
     for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):

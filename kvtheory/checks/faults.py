@@ -51,7 +51,7 @@ PARAMETERS = (
     Parameter("c_x", {"drive.damping": 1.0}, " (beside the spring in the drive)"),
     Parameter("R_y", {"indenter.radius_across": 1.0}, " (across the motion)"),
 )  # fmt: skip
-"""The parameters that may be wrong; those that the scene does not have are left out."""
+"""The parameters that may be wrong, if the scene has them."""
 USUAL = {"s": ("ms", 1e3), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "N/m^3": ("GN/m^3", 1e-9),
          "kg/m": ("kg/mm", 1e-3), "N/m^2": ("MN/m^2", 1e-6), "N/m": ("MN/m", 1e-6)}  # fmt: skip
 """The units in which parameters are shown, by their SI unit."""
@@ -91,11 +91,10 @@ SIGNS = {
 MEASURED = "friction_coefficient", "normal_force", "friction_force", "spring_force", "depth"
 """Columns measured by a sensor, whose zero may be off."""
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
-"""Remote initial guesses for the factor of a parameter: a diameter for a radius, and wrong units; only the
-first
-two where theory is a run of elements, which would take too many."""
+"""Remote initial guesses for the factor of a parameter: a diameter for a radius, and wrong units; the first
+two alone where theory is a simulation by elements, which takes longer."""
 LARGEST_FACTOR = 2e3
-"""Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
+"""Largest factor of a fitted parameter, up or down: no wrong unit is farther off."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
 NOTHING = 1e-6
@@ -109,20 +108,20 @@ DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
 LONGEST = 30.0
-"""Longest motion on a spring that is computed to try a unit, in durations of the run or of the data."""
+"""Longest motion on a spring computed to try a unit, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
-"""Initial guesses for an offset of the time, in both directions, as fractions of the span of the data."""
+"""Initial guesses for an offset of the time, in both directions, in spans of the data."""
 HUNDREDTH = 0.01
 """Unit in which an offset of the time is fitted, as a fraction of the span."""
 FORCES = "normal_force", "friction_force"
-"""Columns that may be late or filtered beside the others, together or one of them."""
+"""Columns that may be late or filtered, together or alone."""
 SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
 """Columns whose sign follows that of the velocity."""
 DELAYS, SMALL = (0.05, 0.3, 2.0, 10.0), 1e-6
-"""Initial guesses for a delay or the time constant of a filter, as hundredths of the span; and a step that is
-short for it."""
+"""Initial guesses for a delay or the time constant of a filter, in hundredths of the span; and a short step,
+relative to it."""
 ONSET = 0.1
-"""Fraction of the range of a force: once the force has changed by this much, the drive has started."""
+"""Change of a force, relative to its range, from which the drive has started."""
 
 
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
@@ -269,7 +268,10 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in failing}
     if any(half.any() for half in digits.values()):
         cut = {name: x + np.sign(x) * digits.get(name, 0.0) for name, x in columns.items()}
-        text = "the last digits of the data are cut off, not rounded"
+        text = (
+            "the difference is within the last digit of the data: digits are cut off, not rounded, or too "
+            "few to name a fault"
+        )
         yield fixed(CUT_OFF, text, (cut, now))
 
 

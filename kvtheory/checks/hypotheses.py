@@ -1,4 +1,4 @@
-"""Hypotheses about a fault: each changes the data or the theory, and is rated by how well these then fit."""
+"""Hypotheses about a fault: each changes the data or the theory, and is rated by how well both then fit."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -18,31 +18,31 @@ Pair = tuple[Curves, Curves]
 """Data and theory to compare with each other, in SI."""
 
 ROWS = 160
-"""Rows of the data on which faults are tried: half of them spread evenly, half right after the start."""
+"""Rows of the data on which faults are tried: half spread evenly, half right after the start."""
 LARGEST = 1e3
-"""Upper bound of the difference of a single value, in units of its allowance."""
+"""Largest difference of a value that counts, in units of its allowance."""
 SHARE_OF_VALUES = 0.98
-"""Fraction of the values that must be allowed for a fault to explain the data; the rest are at jumps."""
+"""Share of the values that a fault must bring within their allowance; the rest are at jumps."""
 LEFT_OVER = 1.5
-"""Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
+"""Factor on the allowance for a fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP = 1e-4, 1e-3
-"""Precision of a fitted unknown, and its step for slopes: the theory of trials is smooth far below that."""
+"""Precision of a fitted unknown, and its step for slopes."""
 FAR, WALKS = 0.7, 4
-"""Logarithm of the largest factor by which a parameter is changed in one descent, as theory is slow far away;
-and most descents, the next one where the one before reached that factor."""
+"""Largest change of a parameter in a descent, as a logarithm, for theory is slow far away; and most descents,
+each from where the one before reached that bound."""
 EVALUATIONS = 8
 """Most evaluations of a descent."""
 PROMISING = 0.03
-"""Part of the squared difference that must be along the slope of an unknown for a fit from zero to go on."""
+"""Part of the squared difference that the first step of a fit must promise."""
 NO_EFFECT = 1e-6
 """Slope, relative to that of the best parameter, below which another has no effect."""
 LATE_START = 3.0
-"""End of the data, over their span, from which the times must be off."""
+"""End of the data over their span from which the times must be off."""
 DENSE, SOON, AFTER = 1200, 60, 1e-4
-"""Instants at which theory is interpolated: evenly; after each change of the drive; the first of these,
-relative to the span."""
+"""Instants at which theory is interpolated: evenly spread, and after each change of the drive, the first so
+soon, relative to the span."""
 POWER_OF_TEN = 0.02
-"""A factor counts as a power of ten if its decadic logarithm is this close to a whole number."""
+"""Distance of a decadic logarithm from a whole number up to which a factor counts as a power of ten."""
 WRONG = "wrong "
 """Prefix of the names of faults that are a wrong parameter."""
 VELOCITY = "drive.velocity"
@@ -52,10 +52,10 @@ VELOCITY = "drive.velocity"
 class Hypothesis(NamedTuple):
     """A possible fault: its name, its description, and the data and theory that it compares.
 
-    With `starts` it has an unknown x, fitted by least squares, from the best of them if there are several;
-    `remote` are starts that are tried if nothing else explains the data. Its number is `unit` times x, or
-    times e^x with `log`: `make` takes it, {0} in the text is it, and {1} is `shown` times it. Without an
-    unknown, `factor` is what is reported. `powers` are those of the quantities of the scene that scale.
+    With `starts` it has an unknown x, fitted by least squares from the best of them; `remote` starts are
+    tried if nothing explains the data. Its number, `unit` times x, or e^x with `log`, is passed to `make` and
+    shown in the text as {0}, and `shown` times it as {1}. Without an unknown, `factor` is reported. `powers`
+    are those of the scene's quantities that scale with it.
     """
 
     name: str
@@ -110,20 +110,20 @@ class Trial(NamedTuple):
 
 @dataclass(frozen=True)
 class Bench(Case):
-    """A case cut down to the rows and the curves on which faults are tried."""
+    """A case reduced to the rows and curves on which faults are tried."""
 
     @cached_property
     def _units(self) -> tuple[Array, Array]:
-        """The width of theory's band and the allowance outside of it, by curve."""
+        """The width of theory's range and the allowance outside it, by curve."""
         bands = [np.nan_to_num(self.bands[n].high - self.bands[n].low) for n in self.names]
         return np.array(bands), np.array([self.allowed(name) for name in self.names])
 
     def _gaps(self, pair: Pair) -> Array:
-        """Return the differences of the curves that count; zero where one side does not exist."""
+        """Return the differences of the curves; zero where one side does not exist."""
         return np.nan_to_num(np.array([pair[0][name] - pair[1][name] for name in self.names]))
 
     def ratios(self, pair: Pair | None) -> Array:
-        """Return the differences relative to the band of theory and what is allowed outside of it."""
+        """Return the differences relative to the range of theory and what is allowed outside it."""
         band, limit = self._units
         if pair is None:
             return np.full(limit.shape, LARGEST)
@@ -146,7 +146,7 @@ class Bench(Case):
         return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
 
     def shows(self, pair: Pair | None) -> bool:
-        """Whether another theory differs from the right one by more than is allowed anywhere."""
+        """Whether another theory differs from the right one by more than is allowed, anywhere."""
         band, limit = self._units
         off = np.abs(self._gaps((pair[1], self.now))) - band if pair else np.array(np.inf)
         return bool((off > limit).any())
@@ -195,9 +195,8 @@ class Bench(Case):
         end = end if end <= LATE_START * span else span  # the times may be off by hours
         changes = self.theory.motion.changes
         near = [t + span for t in changes for span in end * np.geomspace(AFTER, 0.1, SOON)]
-        times = np.unique(
-            np.clip([*np.linspace(0.0, end, DENSE), *near, *changes], 0.0, max(end, 0.0))
-        )
+        times = np.array([*np.linspace(0.0, end, DENSE), *near, *changes])
+        times = np.unique(np.clip(times, 0.0, max(end, 0.0)))
         return {"time": times, **self.theory.at(times, TRIAL_RTOL)}
 
     @cached_property
@@ -207,19 +206,17 @@ class Bench(Case):
         return {name: values[0] for name, values in found.items()}
 
     def late(self, delay: float, names: Sequence[str] = CURVES) -> Pair:
-        """Return the data, and theory whose curves of these names are late by a time in s."""
+        """Return the data, and theory with curves of these names late by a time in s."""
         at, known = self.time - delay, self.dense
-        moved = {
-            n: np.where(at < 0.0, self.rest[n], np.interp(at, known["time"], known[n]))
-            for n in names
-        }
+        moved = {n: np.interp(at, known["time"], known[n]) for n in names}
+        moved = {n: np.where(at < 0.0, self.rest[n], x) for n, x in moved.items()}
         return self.columns, {**self.now, **moved}
 
     def indistinguishable(self, best: Trial, trials: Sequence[Trial]) -> tuple[str, ...]:
-        """Return the parameters among `trials` that the data cannot distinguish from the best one.
+        """Return the parameters that the data cannot distinguish from the best one.
 
-        With such a parameter free too, the uncertainty of the best fault's unknown exceeds its value: the
-        data do not need it. The slopes are those of theory at the best fit.
+        With such a parameter free as well, the uncertainty of the best one's unknown, by the slopes of theory
+        at the best fit, exceeds its value.
         """
         powers = {t.hypothesis.name: t.hypothesis.powers for t in trials if t.hypothesis.powers}
         fitted = powers.pop(best.hypothesis.name)
@@ -241,9 +238,9 @@ class Bench(Case):
 
 
 def deviation(*slopes: Array) -> float:
-    """Return the standard deviation of an unknown while others are free too, by the slopes of n values.
+    """Return the standard deviation of the first unknown with the others free, by the slopes of n values.
 
-    The slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
+    Slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
     """
     return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 

@@ -80,8 +80,8 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
     return np.max(found, axis=0) if found else np.zeros_like(residual)
 
 
-def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
-    """Return the rounding error: half the smallest step between values, or half their last digit.
+def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Array:
+    """Return the rounding error: half the step of a grid that all values lie on, or half their last digit.
 
     Digits are counted after the point or as significant ones, whichever leaves the larger error.
     Values with fewer of them than `fewest` count as exact.
@@ -89,7 +89,7 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     distinct = np.unique(values[np.isfinite(values)])
     steps = np.diff(distinct)
     steps = steps[steps > DISTINCT * np.abs(distinct).max(initial=0.0)]
-    step = float(steps.min()) if steps.size >= SEVERAL - 1 else math.inf
+    step = float(steps.min()) if grid and steps.size >= SEVERAL - 1 else math.inf
     on_grid = np.abs(distinct / step - np.round(distinct / step)).max(initial=0.0) <= ON_GRID
     half = 0.5 * step if on_grid and math.isfinite(step) else 0.0
     size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), SMALLEST)))

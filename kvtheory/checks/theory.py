@@ -26,13 +26,13 @@ CURVES = tuple(name for name in SERIES_UNITS if name != "time")
 TRIAL_RTOL = 1e-5
 """Tolerance of the theory in the trials of a diagnosis."""
 DECAYED, LONGEST = 40.0, 1e9
-"""Time constants after which a change has decayed below rounding, and beyond which series are refused."""
+"""Time constants after which a change has decayed, and beyond which a series is refused."""
 MOST_RUNS = 10.0
-"""Longest series, in durations of the run, where theory is a simulation by elements."""
+"""Longest series where theory is a simulation by elements, in durations of the run."""
 SHALLOWEST = 1e-3
-"""Fraction of the static depth used for the length and the width of a contact that vanishes."""
+"""Depth that stands for that of a vanishing contact, in static depths."""
 NO_VELOCITY = 1e-9
-"""In units of a_0/tau: the smallest scale of the velocity."""
+"""Smallest scale of the velocity, in a_0/tau."""
 
 
 def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
@@ -46,9 +46,8 @@ def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
 class Methods(NamedTuple):
     """The functions that solve a scene; `tell` reports progress: the fraction done, and a text.
 
-    `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
-    `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
-    spring.
+    `transient` returns curves by name for a scene, increasing times (s) and a tolerance, `steady` exact
+    steady sliding, `rates` the rates (1/s) of small motions about it for a scene on a spring.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
@@ -60,8 +59,8 @@ class Methods(NamedTuple):
 class Rates(NamedTuple):
     """The shortest and the longest time constant near steady sliding, in s; complex if it oscillates.
 
-    With a rigid drive these are the two of F12, on a spring two of those of F22. `settling` (s) is the time
-    in which the slowest motion decays to 1/e, infinite if steady sliding is unstable.
+    They are the two of F12, or on a spring two of F22. `settling` (s) is that of the decay of the slowest
+    motion, infinite if steady sliding is unstable.
     """
 
     fast: complex
@@ -149,9 +148,9 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        On a spring they follow from the rates of F22. With a rigid drive, M s^2 + C B s + K A + k_s = 0 with
-        B = x_TE + a (F12). For arms the damping is that of slow sliding, and for a ball the width is the
-        mean one: there they only set windows and allowances, and no series is compared with them.
+        They follow from the rates of F22, or with a rigid drive from M s^2 + C B s + K A + k_s = 0 with
+        B = x_TE + a (F12). On arms, with the damping of slow sliding, and for a ball, with its mean width,
+        they are approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
         if not self.scene.drive.rigid:
@@ -190,9 +189,9 @@ class Theory:
         return self._known[key]
 
     def _settled(self, end: float) -> float:
-        """Return a time in s after which nothing changes, or `end` if that is sooner.
+        """Return the time in s after which nothing changes, or `end` if that is sooner.
 
-        On a spring there may be none: the motion may end in a cycle.
+        On a spring there may be none, as the motion may end in a cycle.
         """
         foundation, run = self.scene.foundation, self.scene.run.duration
         if self.by_elements and end > MOST_RUNS * run:
