@@ -18,12 +18,12 @@ from mpmath.libmp import prec_to_dps
 from sympy.core.function import AppliedUndef
 
 from . import symbols as sym
-from .atoms import atoms, replaced
-from .book import established, tex
-from .groups import k_s
-from .letters import letters
-from .nomenclature import BY_LATEX, Symbol
-from .record import Calculation, Claim, Derivation, Step
+from .chapters.groups import k_s
+from .engine.atoms import atoms, replaced
+from .engine.book import established, tex
+from .engine.letters import letters
+from .engine.nomenclature import BY_LATEX, Symbol
+from .engine.record import Calculation, Claim, Derivation, Step
 from .render.text import relations
 
 Numbers = dict[sp.Symbol, sp.Expr]

@@ -5,13 +5,13 @@ from functools import cache
 from importlib import import_module
 from types import ModuleType
 
-from .book import finished, restore
-from .nomenclature import BY_LATEX
-from .record import Derivation
-from .store import digests, keep, load
+from .engine.book import finished, restore
+from .engine.nomenclature import BY_LATEX
+from .engine.record import Derivation
+from .engine.store import digests, keep, load
 
 CHAPTERS: tuple[ModuleType, ...] = tuple(
-    import_module(f".{name}", __package__)
+    import_module(f".chapters.{name}", __package__)
     for name in (
         *("model", "steady", "one_contact", "friction_identity", "asymptotics", "tables", "groups"),
         *("theorems", "master_curve", "energy", "asymptote_errors", "circle"),

@@ -12,13 +12,13 @@ import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 from sympy.core.function import AppliedUndef
 
-from .atoms import atoms
-from .book import tex
-from .letters import letters, printed
-from .nomenclature import BY_LATEX, TEX
-from .record import Derivation
-from .rubber_transient import Determinant
-from .step import Greatest
+from .chapters.rubber_transient import Determinant
+from .engine.atoms import atoms
+from .engine.book import tex
+from .engine.letters import letters, printed
+from .engine.nomenclature import BY_LATEX, TEX
+from .engine.record import Derivation
+from .engine.step import Greatest
 
 Dimension = tuple[sp.Expr, ...]
 

@@ -12,12 +12,12 @@ from pathlib import Path
 import sympy as sp
 
 from . import symbols as sym
-from .book import established
 from .catalogue import catalogue
+from .chapters.viscoelastic import MOMENTS
 from .code_printer import CodePrinter
+from .engine.book import established
 from .symbols import Q, b, kappa, l, lam, q, r, rho, right, s
 from .symbols import exponent as n
-from .viscoelastic import MOMENTS
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "theory" / "closed_forms.py"
 

@@ -11,12 +11,12 @@ import sympy as sp
 
 from . import symbols as sym
 from .catalogue import catalogue
+from .chapters.transient_edges import RIGHT_AT_ONCE
+from .chapters.transient_motion import NORMAL_FORCE, START
 from .code_printer import CodePrinter
 from .emit import FORMS, HALF, OF_ARM, Form, number, parts, replace, sentence
 from .symbols import E, a, b, d, d_s, kappa, l, lam, q, rho, right
 from .symbols import exponent as n
-from .transient_edges import RIGHT_AT_ONCE
-from .transient_motion import NORMAL_FORCE, START
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "explorer" / "closed_forms.js"
 

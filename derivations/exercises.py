@@ -28,9 +28,9 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .book import StepError
+from .engine.book import StepError
+from .engine.step import Proof
 from .render.recheck import Steps
-from .step import Proof
 
 _UNEVALUATED = (sp.Integral, sp.Derivative, sp.Limit, sp.Subs, sp.Sum, sp.nan, sp.zoo)
 

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from .book import forget, tex
-from .model import C, K, V, delta, h, x
-from .nomenclature import Symbol, symbol
-from .record import Derivation
+from .chapters.model import C, K, V, delta, h, x
+from .chapters.steady import F, W, a, l_r, mu, p, q
+from .engine.book import forget, tex
+from .engine.nomenclature import Symbol, symbol
+from .engine.record import Derivation
+from .engine.step import Proof, StepError
 from .shape_text import Shape, distance, read_shape
-from .steady import F, W, a, l_r, mu, p, q
-from .step import Proof, StepError
 
 W_ahead, W_behind, F_ahead = (
     symbol(f"{force}_{side}", latex=rf"{force}_{{\mathrm{{{side[0]}}}}}")

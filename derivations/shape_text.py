@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from .nomenclature import symbol
+from .engine.nomenclature import symbol
 
 distance = symbol("x_abs", latex=r"\bar x")
 """Distance from the lowest line of the indenter."""

@@ -5,7 +5,7 @@ from typing import Any
 import sympy as sp
 
 from .catalogue import CHAPTERS
-from .nomenclature import DECLARED
+from .engine.nomenclature import DECLARED
 
 
 def __getattr__(name: str) -> Any:

@@ -58,7 +58,9 @@ def by_drake(run: Run) -> Iterator[tuple[float, ...]]:
     plant.RegisterCollisionGeometry(*below, "ground", ground)
     drake.AddRigidHydroelasticProperties(1.0 / run.per_length, hard)
     x = np.linspace(-REACH, REACH, round(2 * REACH * run.per_length) + 1)
-    mesh = [f"v {xi!r} {y} {xi * xi / (2 * R)!r}" for xi in x.tolist() for y in (-0.5, 0.5)]
+    mesh = [
+        f"v {xi!r} {y} {xi * xi / (2 * run.radius)!r}" for xi in x.tolist() for y in (-0.5, 0.5)
+    ]
     for i in range(1, 2 * x.size - 2, 2):
         mesh += [f"f {i} {i + 1} {i + 2}", f"f {i + 2} {i + 1} {i + 3}"]
     cylinder = drake.InMemoryMesh(mesh_file=drake.MemoryFile("\n".join(mesh), ".obj", "mesh"))

@@ -30,7 +30,7 @@ STEPS = 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5
 
 @dataclass(frozen=True)
 class Run:
-    """What is simulated: velocity from a time on, solver, time step, elements per m, stored rows."""
+    """What is simulated: velocity from a time on, solver, time step, elements per m, stored rows, radius."""
 
     history: tuple[tuple[float, float], ...] = ((0.0, 0.5),)
     duration: float = 0.2
@@ -39,6 +39,7 @@ class Run:
     per_length: float = 4e4
     rows: int = 1
     ball: bool = False
+    radius: float = R
 
     @property
     def mass(self) -> float:
@@ -51,7 +52,7 @@ class Run:
         starts, V = zip(*self.history, strict=True)
         ends = [*starts[1:], self.duration]
         points = [(t, v) for *span, v in zip(starts, ends, V, strict=True) for t in span]
-        shape = kv.Sphere(R) if self.ball else kv.Parabola(R)
+        shape = (kv.Sphere if self.ball else kv.Parabola)(self.radius)
         support, drive = kv.DeadWeight(mass=self.mass), kv.Drive(history=points)
         return kv.Scene(shape, kv.Foundation(K, TAU), support, drive, kv.Run(self.duration))
 
@@ -69,7 +70,12 @@ RUNS = {
     **{f"MuJoCo {V:g}": Run(((0.0, V),), 0.3, "mujoco") for V in SPEEDS},
     **{f"step {h:g}": Run(step=h) for h in STEPS},
     **{f"mesh {n:g}": Run(per_length=n) for n in (5e3, 1e4, 2e4, 4e4, 8e4)},
-    **{f"ball {n:g}": Run(duration=0.1, ball=True, per_length=n) for n in (125, 250, 500, 1e3)},
+    **{
+        f"ball {n:g}": Run(duration=0.1, ball=True, per_length=n) for n in (125, 250, 500, 1e3, 2e3)
+    },
+    "Hunt-Crossley 0.5, step 2e-05": Run(((0.0, 0.5),), 0.3, "lagged", 2e-5),
+    "steady 2, step 2e-05": Run(((0.0, 2.0),), 0.3, step=2e-5),
+    "radius 0.01": Run(((0.0, 0.02),), 0.3, radius=0.01),
 }
 
 

@@ -7,7 +7,7 @@ statement past the engine, and as an author would who has a right one.
 from dataclasses import replace
 
 import sympy as sp
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations.engine.step import Proof
 
 from tests.planted_fresh import equal, root, sign, unique
 

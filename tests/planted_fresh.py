@@ -14,8 +14,8 @@ import time
 from collections import Counter
 
 import sympy as sp
-from kvtheory.derivations.book import StepError
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations.engine.book import StepError
+from kvtheory.derivations.engine.step import Proof
 from sympy import Abs, Derivative, I, Integral, Subs, Sum, atan, cos, exp, log, oo, pi, sin, sqrt
 
 x, u, v = sp.symbols("x u v", real=True)

@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from figures.engines import RUNS, hunt_crossley
+from kvtheory.api._compare import METHODS
 from kvtheory.checks.hypotheses import scaled_scene
+from kvtheory.checks.theory import Theory
+from kvtheory.checks.trial_elements import Rule, steady, steady_changes
 from tests import SCENES as MANY
 from tests import engine
 from tests.confusion import SCENES, by_points, plants, quick, series
@@ -377,7 +381,52 @@ def test_a_measured_curve_is_judged_with_its_scatter():
         kv.compare(scene, {"velocity": V[:3], "friction_coefficient": mu[:3]})
 
 
+CURVE_SCENES = {
+    "line": kv.Scene(), "ball": kv.Scene(kv.Sphere(0.01), support=kv.DeadWeight(1.0)),
+    "prony": kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, ARMS)),
+    "ball on arms": kv.Scene(kv.Sphere(0.01), kv.GeneralizedMaxwell(1e10, ARMS), kv.Fixed(1e-4)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CURVE_SCENES)
+def test_the_trials_of_steady_sliding_agree_with_exact_steady_sliding(name):
+    scene, V = CURVE_SCENES[name], np.geomspace(1e-3, 0.3, 7)
+    methods = Theory(scene, METHODS)
+    found, exact = steady(methods, Rule(), V), kv.steady(scene.at(V))
+    for curve, expected in (("depth", exact.depth), ("normal_force", exact.load),
+                            ("friction_force", exact.friction_force)):  # fmt: skip
+        np.testing.assert_allclose(found[curve], expected, rtol=0.02)
+    late, early = steady_changes(methods, [Rule(hunt=1.0), Rule(start=0.8)], np.array([-0.1, 0.1]))
+    assert late["friction_force"][0] == -late["friction_force"][1]
+    assert not any(values.any() for values in early.values())
+
+
+def test_a_wrong_curve_is_explained_by_a_contact_rule_or_said_to_be_zero():
+    """Damping of Hunt and Crossley by quadrature; and the engine whose friction is zero at every speed."""
+    scene, V = RUNS["start"].scene, np.geomspace(0.01, 2.0, 15)
+    mu = np.array([hunt_crossley(v) for v in V])
+    found = kv.compare(scene, {"velocity": V, "friction_coefficient": mu})
+    assert "c = 2.5" in first_of(found, "Hunt-Crossley damping").text
+    for name, columns in (("friction_coefficient", {}), ("friction_force", {"normal_force": 98.0})):
+        still = {"velocity": V, name: 0.0 * V, **{key: x + 0.0 * V for key, x in columns.items()}}
+        found = first_of(kv.compare(scene, still), f"no {name}")
+        assert "zero throughout" in found.text
+    dry = kv.compare(scene, {"velocity": V, "friction_coefficient": 0.3 + 0.0 * V})
+    assert dry.diagnosis.startswith("Closest, but not all")
+
+
 def test_five_fast_arms_need_no_more_elements():
     arms = [(1e11, 1e-5), (5e10, 3e-5), (5e10, 1e-4), (3e10, 3e-4), (2e10, 1e-3)]
     scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms), run=kv.Run("20 ms"))
     assert failed(kv.compare(scene)) == []
+
+
+@pytest.mark.parametrize("support", ["dead-weight", "fixed"])
+def test_digits_that_were_cut_off_prove_no_other_fault(support):
+    scene, cut = kv.Scene.table1(support), {}
+    data = by_elements(scene, "200 /mm")
+    for name in ("depth", "normal_force", "friction_force"):
+        last = 10.0 ** (np.floor(np.log10(np.abs(data[name]).max())) - 1.0)
+        cut[name] = np.trunc(data[name] / last) * last
+    found = kv.compare(scene, {"time": data["time"], **cut})
+    assert first_of(found, "digits cut off").enough

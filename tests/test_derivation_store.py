@@ -6,8 +6,9 @@ import shutil
 
 import pytest
 import sympy as sp
-from kvtheory.derivations import book, catalogue, store
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations import catalogue
+from kvtheory.derivations.engine import book, store
+from kvtheory.derivations.engine.step import Proof
 
 CHAPTERS = [catalogue._name(chapter) for chapter in catalogue.CHAPTERS]
 
@@ -46,7 +47,7 @@ def _prove_first(monkeypatch):
         return catalogue._chapter.__wrapped__(chapter), len(proved)
 
 
-@pytest.mark.parametrize("name", ["model", "algebra", "symbols"])
+@pytest.mark.parametrize("name", ["chapters/model", "engine/algebra", "engine/nomenclature"])
 def test_one_other_character_and_it_is_proved_anew(monkeypatch, elsewhere, name):
     first, proved = _prove_first(monkeypatch)
     assert proved == 1
@@ -59,7 +60,7 @@ def test_one_other_character_and_it_is_proved_anew(monkeypatch, elsewhere, name)
 def test_a_chapter_rests_on_those_before_it_alone(elsewhere):
     before = store.digests(CHAPTERS)
     changed = CHAPTERS[10]
-    (elsewhere / f"{changed}.py").write_text("", encoding="utf-8")
+    (elsewhere / "chapters" / f"{changed}.py").write_text("", encoding="utf-8")
     after = store.digests(CHAPTERS)
     assert [name for name in CHAPTERS if after[name] == before[name]] == CHAPTERS[:10]
 
@@ -72,7 +73,7 @@ def _taken(path):
 
 
 def test_no_chapter_takes_anything_from_a_later_one(elsewhere):
-    taken = {path.stem: set(_taken(path)) for path in elsewhere.glob("*.py")}
+    taken = {path.stem: set(_taken(path)) for path in elsewhere.glob("chapters/*.py")}
     for place, chapter in enumerate(CHAPTERS):
         reached, last = {chapter}, 0
         while len(reached) > last:
@@ -117,7 +118,7 @@ def test_the_home_takes_what_the_package_cannot(elsewhere, proofs):
 
 def test_proofs_of_the_package_under_another_name_are_not_read(monkeypatch, elsewhere, proofs):
     """`python -m derivations.emit` and `kvtheory derive` import it under two names: two sets of classes."""
-    other = importlib.import_module("derivations.store")
+    other = importlib.import_module("derivations.engine.store")
     monkeypatch.setattr(other, "SOURCES", elsewhere)
     store.keep("kept", "0" * 64, proofs)
     assert store.load("kept", "0" * 64) is not None

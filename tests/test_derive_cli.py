@@ -103,7 +103,7 @@ def test_only_what_is_needed_is_derived_and_how_much_that_is(monkeypatch, tmp_pa
     used, whole = [], chapters._chapter
     monkeypatch.setattr(chapters, "_chapter", lambda one: used.append(one.__name__) or whole(one))
     told = run("--only", "27", "--format", "json", "-o", str(tmp_path)).stderr
-    assert used == ["kvtheory.derivations.model", "kvtheory.derivations.steady"]
+    assert used == ["kvtheory.derivations.chapters.model", "kvtheory.derivations.chapters.steady"]
     assert f"deriving {list(CONTENTS).index('eq27') + 1} records for the 1 asked for" in told
 
 

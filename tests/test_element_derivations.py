@@ -4,10 +4,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from kvtheory.derivations import element_arms as arms
-from kvtheory.derivations import element_edges as edges
-from kvtheory.derivations import element_schemes as schemes
-from kvtheory.derivations import element_strips as strips
+from kvtheory.derivations.chapters import element_arms as arms
+from kvtheory.derivations.chapters import element_edges as edges
+from kvtheory.derivations.chapters import element_schemes as schemes
+from kvtheory.derivations.chapters import element_strips as strips
 
 from kvtheory.models.elements.kernels import (
     exponential_fit,

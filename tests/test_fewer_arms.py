@@ -1,5 +1,7 @@
 """Fewer arms: the bound holds, the difference is true, and what has no bound is refused (F27)."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -83,6 +85,20 @@ def test_rows_of_arms_are_the_integrals_and_slopes_that_the_theorem_names():
     assert data.deviation(Series(0.0, np.array([1.0]), np.array([1.0]))) < 1e-12
 
 
+@pytest.mark.parametrize("V", [1e-9, 1e-3, 1e3])
+def test_contacts_much_longer_or_shorter_than_relaxation_do_not_matter(V):
+    arms = [(4.5e9, 2.4e-5), (1e9, 3.14e-3), (7.4e9, 3.3e-3), (6.5e9, 4.2e-3), (8.3e9, 4.5e-2)]
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e9, arms=arms))
+    velocities = V * np.geomspace(0.03, 1.0, 8)
+    found = kv.fewer_arms(scene, velocities=velocities, rtol=0.02)
+    assert len(found.arms) < 5
+    mu = [
+        kv.steady(s, over={"drive.velocity": velocities}).friction_coefficient
+        for s in (scene, found.scene)
+    ]
+    assert np.abs(mu[1] / mu[0] - 1.0).max() <= found.bound <= 0.02
+
+
 def test_a_ball_has_a_difference_and_no_bound():
     ball = kv.Scene(kv.Sphere("10 mm"), RUBBER, kv.DeadWeight(load="1 N"))
     with pytest.raises(ValueError, match="a bound is known for a parabola"):
@@ -95,3 +111,21 @@ def test_a_ball_has_a_difference_and_no_bound():
         kv.fewer_arms(kv.Scene())
     with pytest.raises(ValueError, match="other than 0"):
         kv.fewer_arms(kv.Scene(foundation=RUBBER), velocities=[0.0, 1.0])
+
+
+def test_solve_follows_elements_with_no_more_arms_than_the_tolerance_needs():
+    """A ball with 33 arms: as it is, elements would be too much work for this tolerance."""
+    arms = [(3e9 * 1.6**-k, 10.0 ** (0.25 * k - 6)) for k in range(33)]
+    drive = kv.Drive(history=[["0 s", "0 m/s"], ["10 ms", "0.1 m/s"]])
+    rubber = kv.GeneralizedMaxwell(1e9, arms=arms)
+    scene = kv.Scene(kv.Sphere("10 mm"), rubber, kv.DeadWeight(load="10 N"), drive)
+    at = ["1 ms", "10 ms", "30 ms"]
+    found = kv.solve(scene, at=at, rtol=0.04, quantity=["friction_force", "depth"])
+    told = re.search(
+        r"plus 2 times the change, .* by (\d+) arms instead of 33", found.certificate.statement
+    )
+    assert told
+    assert int(told[1]) < 16
+    whole = kv.elements(scene, per_length=found.answer.per_length, at=at, certify=False)
+    assert found.friction_force == pytest.approx(whole.friction_force, rel=0.01)
+    assert found.depth == pytest.approx(whole.depth, rel=0.01)

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.stats import t as student
 
 import kvtheory as kv
 from kvtheory.cli import main
@@ -95,6 +96,16 @@ def test_the_true_values_are_within_two_standard_errors(name, few):
         hits.append(np.abs(found.point - true) < 2.0 * np.sqrt(np.diag(found.covariance)))
     spread = 3.0 * np.sqrt(0.95 * 0.05 / (len(keys) * count))
     assert np.mean(hits) > 0.95 - max(spread, 0.02)
+
+
+def test_rows_that_hardly_scatter_do_not_make_the_others_look_better():
+    """Rows at rest have no residual; counted as measurements they would shrink every standard error."""
+    data = table(TABLE1, 0.02, 1)
+    rest = {name: np.append(np.zeros(15), values) for name, values in data.items()}
+    alone, with_rest = solved(TABLE1, VOIGT, data), solved(TABLE1, VOIGT, rest)
+    assert with_rest.variance == pytest.approx(alone.variance, rel=1e-6)
+    equal = np.linalg.inv(alone.slopes.T @ alone.slopes) * alone.variance
+    assert np.all(np.diag(alone.covariance) >= 0.999 * np.diag(equal))
 
 
 @pytest.mark.parametrize("name", ["line", "one arm"])
@@ -259,6 +270,20 @@ def test_rows_before_the_start_and_more_than_enough_are_left_out():
     assert found.size == found.time.size == 1501
 
 
+def test_a_long_record_is_thinned_at_random_so_that_no_condition_drops_out():
+    """Loads that take turns: every second row would be of one load."""
+    velocity, loads = np.geomspace(1e-3, 1.0, 8000), np.tile([1e3, 2e4], 4000)
+    mu = measured(TABLE1, 0.02, 0, {"support.load": loads}, velocity=velocity)
+    data = {"V [m/s]": velocity, "F_z [N/m]": loads, "mu": mu}
+    found = kv.fit(TABLE1, data, free=VOIGT)
+    (rows,) = found.data["sets"]
+    assert rows.size == 2000
+    assert 800 < np.count_nonzero(rows.conditions["support.load"] == 1e3) < 1200
+    assert found.notes == ("One row in 4 is used.",)
+    for key, true in zip(VOIGT, (1e10, 0.1), strict=True):
+        assert abs(found.parameters[key].value - true) < 4.0 * found.parameters[key].standard_error
+
+
 def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
     """Where errors are not elliptic; brute force: the others are fitted with the unknown held."""
     problem = friction.Problem(
@@ -270,6 +295,7 @@ def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
     errors = np.sqrt(np.diag(best.covariance))
     assert np.ptp(np.abs(limits - best.point[:, None]) / errors[:, None]) > 0.5
     linear = np.linalg.inv(best.slopes.T @ best.slopes)
+    t = student.ppf(0.975, 30 - len(ONE_ARM))
     for i, ends in enumerate(limits):
         for end in ends:
 
@@ -279,13 +305,13 @@ def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
             start = np.delete(best.point, i)[None]
             _, (least,) = descend(held, start, start[0] - 9.0, start[0] + 9.0, 200)
             rise = least - best.residuals @ best.residuals
-            assert rise == pytest.approx(4.0 * errors[i] ** 2 / linear[i, i], rel=0.03)
+            assert rise == pytest.approx((t * errors[i]) ** 2 / linear[i, i], rel=0.03)
 
 
-def test_intervals_are_two_standard_errors_if_errors_are_elliptic_and_infinite_if_open():
-    found = kv.fit(TABLE1, table(TABLE1, 0.005), free=VOIGT)
+def test_intervals_are_those_of_student_if_errors_are_elliptic_and_infinite_if_open():
+    found, t = kv.fit(TABLE1, table(TABLE1, 0.005), free=VOIGT), student.ppf(0.975, V.size - 2)
     for value, error, (low, high) in found.parameters.values():
-        assert np.log([value / low, high / value]) == pytest.approx(2.0 * error / value, rel=0.05)
+        assert np.log([value / low, high / value]) == pytest.approx(t * error / value, rel=0.05)
     slow = kv.fit(TABLE1, table(TABLE1, 0.01, 2, np.geomspace(1e-5, 1e-4, 12)), free=VOIGT)
     assert slow.parameters[VOIGT[0]].interval[0] == 0.0
     assert slow.parameters[VOIGT[1]].interval == pytest.approx((0.1, 0.1), rel=0.03)

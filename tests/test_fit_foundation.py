@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -336,6 +337,59 @@ def test_mistakes_in_the_options_are_messages(tmp_path):
         assert done.exit_code == 2, options
         assert told in done.stderr, (options, done.stderr)
         assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_sliding_outside_the_measured_frequencies_is_noted(tmp_path):
+    cold = {"activation_energy": "80 kJ/mol", "reference_temperature": "20 degC"}
+    for temperature in ("20 degC", "5 degC"):
+        rubber = kv.GeneralizedMaxwell(
+            "10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]], temperature=temperature, **cold,
+            lowest_frequency="2 Hz", highest_frequency="30 Hz",
+        )  # fmt: skip
+        scene = kv.Scene(foundation=rubber)
+        V = np.geomspace(1e-4, 1.0, 30)
+        curve = kv.steady(scene, over={"drive.velocity": V})
+        f = V / (curve.trailing_edge - curve.leading_edge) * rubber.shift_factor
+        outside = np.flatnonzero((f < 2.0) | (f > 30.0))
+        assert f"V a_T/c is, in {outside.size} of 30 scenes, outside" in curve.notes[0]
+        for k in (outside[0], outside[-1]):
+            (note,) = kv.steady(scene, over={"drive.velocity": -V[k]}).notes
+            assert f"V a_T/c = {f[k]:.3g} Hz is outside" in note
+        assert not kv.steady(scene, over={"drive.velocity": 0.0}).notes
+    within = scene.replace({"foundation.highest_frequency": "1 THz"})
+    for run in (partial(kv.transient, rtol=1e-4), partial(kv.elements, per_length="20 /mm")):
+        found = run(scene, at=["10 ms", "20 ms"], certify=False)
+        assert "outside the frequencies" in str(found)
+        assert not run(within, at=["10 ms", "20 ms"], certify=False).notes
+    assert kv.solve(scene, quantity="friction_force").notes
+    swept = kv.sweep(scene, over={"drive.velocity": V}, quantities="friction_force")
+    assert "outside the frequencies" in swept.certificate.statement
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(scene))
+    assert kv.load_scene(path) == scene
+    with pytest.raises(ValueError, match=r"expected above foundation\.lowest_frequency"):
+        scene.replace({"foundation.highest_frequency": "1 Hz"})
+    with pytest.raises(ValueError, match=r"foundation\.highest_frequency: missing"):
+        kv.Foundation("10 GN/m^3", "10 ms", lowest_frequency="1 Hz")
+
+
+def test_a_fitted_foundation_remembers_what_the_data_cover():
+    found = kv.fit_foundation(dynamic(), thickness="0.1 mm", poisson_ratio=0.3)
+    own = found.foundation
+    assert (own.lowest_frequency, own.highest_frequency) == found.frequencies
+    assert found.frequencies == pytest.approx(OMEGA[[0, -1]] / (2.0 * np.pi), rel=1e-5)
+    slow, fast = found.velocities
+
+    def outside(V):
+        notes = kv.steady(found.scene, over={"drive.velocity": V}).notes
+        return any("outside the frequencies" in note for note in notes)
+
+    assert [outside(V) for V in (0.99 * slow, slow, fast, 1.01 * fast)] == [
+        True,
+        False,
+        False,
+        True,
+    ]
 
 
 def test_a_long_record_is_averaged_and_read_in_one_go(tmp_path):

@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations.identity import vanishes
+from kvtheory.derivations.engine.identity import vanishes
 
 x, y, n = sp.symbols("x y n", positive=True)
 _ROOT = sp.sqrt(1 + x)

@@ -153,7 +153,11 @@ def test_the_elements_are_as_good_as_they_say(rtol):
     at = [1e-3, 5e-3, 0.05]
     request = Request(SOLVED, rtol, at, TRANSIENT_UNITS)
     scene = kv.Scene(run=kv.Run(0.05))
-    answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].judge(scene, request).run()
+    answer = (
+        rungs(Models(kv.steady, kv.transient, kv.elements, kv.fewer_arms))[-1]
+        .judge(scene, request)
+        .run()
+    )
     truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
     for name in SOLVED:
         error = np.max(np.abs(answer.values[name] - getattr(truth, name))) / scales[name]

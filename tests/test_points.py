@@ -2,12 +2,12 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations.algebra import antiderivative
-from kvtheory.derivations.book import StepError
-from kvtheory.derivations.conditions import Conditions, proves_positive
-from kvtheory.derivations.points import signs
-from kvtheory.derivations.series import leading_of_series
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations.engine.algebra import antiderivative
+from kvtheory.derivations.engine.book import StepError
+from kvtheory.derivations.engine.conditions import Conditions, proves_positive
+from kvtheory.derivations.engine.points import signs
+from kvtheory.derivations.engine.series import leading_of_series
+from kvtheory.derivations.engine.step import Proof
 
 from tests.planted_fresh import _proof
 

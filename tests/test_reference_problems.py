@@ -22,6 +22,7 @@ FOLDERS = {
     "wedge": "elements",
     "springpot": "steady",
     "point-contact": "transient",
+    "ball": "elements",
 }
 
 RUBBER = {
@@ -128,7 +129,7 @@ def test_a_folder_holds_scene_reference_certificate_criteria_and_picture(folders
             assert 2 * error * unit * largest < allowed
     assert (folder / "reference.png").read_bytes().startswith(b"\x89PNG")
     assert f'kvtheory.problem("{name}")' in (folder / "README.md").read_text()
-    assert len((folder / "judge.py").read_text().splitlines()) < 30
+    assert len((folder / "judge.py").read_text().splitlines()) < 35
 
 
 @pytest.mark.parametrize("name", ["wedge", "springpot", "paper-fixed"])
@@ -155,6 +156,23 @@ def test_a_point_contact_is_found_to_disagree(folders):
     assert "depth, largest" in {check.name for check in found.checks if check.ok is False}
 
 
+def test_the_script_of_a_ball_names_a_fault_and_what_cannot_be_read(folders):
+    """Theory is a simulation by elements there, and judges as for a line."""
+    folder = folders / "ball"
+    assert "F_z [N],F_x [N]" in (folder / "README.md").read_text()
+    rows = np.loadtxt(folder / "reference.csv", delimiter=",", skiprows=1)[:, [0, 2, 4, 5]]
+    for drag, status, told in (
+        ("F_x [N]", 1, "times theory, while the rest"),
+        ("fricton [N]", 2, "did you mean"),
+    ):
+        head = f"t [s],depth [m],F_z [N],{drag}"
+        table = rows[::8] * [1.0, 1.0, 1.0, 0.5]
+        np.savetxt(folder / "mine.csv", table, delimiter=",", header=head, comments="")
+        done = run(folder / "judge.py", folder / "mine.csv")
+        assert (done.returncode, "Traceback" in done.stderr) == (status, False)
+        assert told in done.stdout + done.stderr
+
+
 def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path):
     folder = tmp_path / "problem"
     given = ["scene", "--problem", "springpot", "-o", str(folder)]
@@ -170,6 +188,8 @@ def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path):
         ]
         (folder / "mine.csv").write_text("\n".join(["V [mm/s];F_x [N/mm]", *rows]))
         assert run(folder / "judge.py", folder / "mine.csv").returncode == status
+    done = run(folder / "judge.py", folder / "nothing.csv")
+    assert (done.returncode, "Traceback" in done.stderr) == (2, False)
     again = CliRunner().invoke(main, given)
     assert (again.exit_code, "is not an empty folder" in again.output) == (2, True)
     nothing = CliRunner().invoke(main, ["scene", "-o", str(tmp_path / "other")])

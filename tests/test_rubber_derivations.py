@@ -7,8 +7,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from kvtheory.derivations import few_arms, rubber_transient, viscoelastic
 from kvtheory.derivations import symbols as s
+from kvtheory.derivations.chapters import few_arms, rubber_transient, viscoelastic
 from scipy.optimize import brentq, minimize_scalar
 
 import kvtheory as kv

@@ -193,6 +193,22 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
         assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
 
 
+def test_a_rate_is_not_lost_among_the_resonances_of_the_strips_of_a_ball():
+    """Against zeros of `residue` in 48 strips."""
+    layer = kv.GeneralizedMaxwell(
+        thickness="2 mm", poisson_ratio=0.3, modulus="2 MPa",
+        arms=[["1 MPa", "10 ms"], ["0.5 MPa", "0.1 s"]],
+    )  # fmt: skip
+    drive = kv.Drive(velocity=0.01, stiffness=1e3, mass=0.3)
+    scene = kv.Scene(kv.Sphere(0.01), layer, kv.DeadWeight(mass=0.3, load=1.0), drive)
+    found = kv.stability(scene, quantity="rates")
+    errors = found.certificate.relative_error["rates"]
+    assert (errors < 1e-4).all()
+    truth = -0.522553710386766 + 58.0810207562919j, -13.9105590785273 + 260.123835034526j
+    for rate, error, true in zip(found.rates[1::2], errors[1::2], truth, strict=True):
+        assert abs(complex(*rate) - true) <= error * abs(true)
+
+
 @pytest.mark.parametrize(
     ("arms", "velocity", "mass", "side"),
     [([(2e11, 5e-3)], 0.091, 100.0, 1.4), (TWO, 0.2, 50.0, 0.7)],

@@ -5,9 +5,9 @@ from functools import cache
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import steady
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.book import established
+from kvtheory.derivations.chapters import steady
+from kvtheory.derivations.engine.book import established
 from kvtheory.derivations.shape import derive_shape, q_root
 from kvtheory.derivations.shape_text import distance, read_shape
 

@@ -3,8 +3,8 @@
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import friction_identity, power_law, power_law_weight, wedge
 from kvtheory.derivations import symbols as s
+from kvtheory.derivations.chapters import friction_identity, power_law, power_law_weight, wedge
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 

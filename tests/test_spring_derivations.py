@@ -6,8 +6,13 @@ from itertools import pairwise
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import rubber_drive, spring_drive, spring_ringing, spring_stability
 from kvtheory.derivations import symbols as s
+from kvtheory.derivations.chapters import (
+    rubber_drive,
+    spring_drive,
+    spring_ringing,
+    spring_stability,
+)
 
 from tests import reference_stability as reference
 

@@ -2,9 +2,10 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations import book
-from kvtheory.derivations.book import StepError, established
-from kvtheory.derivations.step import Proof
+from kvtheory.derivations.engine import book
+from kvtheory.derivations.engine.book import StepError, established
+from kvtheory.derivations.engine.chapter import Chapter
+from kvtheory.derivations.engine.step import Proof
 
 from tests import planted
 from tests.planted import x, y, z
@@ -240,16 +241,25 @@ def test_the_interval_of_a_named_root_restricts_nothing_else():
         later.holds(x, ">", 0, "x is any place here")
 
 
-def test_what_words_say_is_argued_and_nothing_better():
-    first = Proof("words", None, section="Trial", title="Trial")
-    first.argued(sp.sqrt(y), ">", sp.log(y), "a root grows faster")
-    first.equal(2 * y, y + y, "twice")
-    assert first.done(2 * y, y + y).status == "argued"
-    second = Proof("resting", None, section="Trial", title="Trial", uses=("words",))
-    second.equal(3 * y, y + y + y, "thrice")
-    assert second.done(3 * y, y + y + y).status == "argued"
-    with pytest.raises(StepError, match="does not establish"):
-        second.recall("words", (sp.sqrt(y), sp.log(y)))
-    for relation, wrong in (("=", sp.sqrt(y) + 1), (">", sp.sqrt(y) + 1)):
-        with pytest.raises(StepError, match=r"fails|is wrong"):
-            second.argued(sp.sqrt(y), relation, wrong, "a planted error")
+def test_a_title_that_words_prove_is_argued_and_its_lines_are_proved():
+    result = Chapter("Trial")
+
+    @result("words")
+    def _argued(proof):
+        """A root grows faster than a logarithm.
+
+        Twice.
+
+        Argued: It is seen in a plot.
+        """
+        proof.equal(2 * y, y + y, "twice")
+
+    @result("resting", uses=("words",))
+    def _proved(proof):
+        """Thrice."""
+        proof.equal(3 * y, y + y + y, "thrice")
+
+    words, resting = result.derive()
+    assert words.status == "argued"
+    assert words.text == "Twice. Argued, not checked by machine. It is seen in a plot."
+    assert {words.steps[0].status, resting.status} == {"proved"}

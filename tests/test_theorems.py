@@ -10,10 +10,11 @@ from itertools import pairwise
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import asymptote_errors, circle, emit, energy, master_curve, theorems
+from kvtheory.derivations import emit
 from kvtheory.derivations import symbols as sym
-from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.chapters import asymptote_errors, circle, energy, master_curve, theorems
+from kvtheory.derivations.engine.book import StepError, established
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
 from tests.planted import derive

@@ -5,16 +5,16 @@ import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations import (
+from kvtheory.derivations.chapters import (
     theorems,
     transient_balance,
     transient_edges,
     transient_motion,
     transient_rates,
 )
-from kvtheory.derivations.book import established
-from kvtheory.derivations.step import Proof, StepError
-from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, TRAILING
+from kvtheory.derivations.chapters.transient_scaling import LEADING, PRESSURE, TRAILING
+from kvtheory.derivations.engine.book import established
+from kvtheory.derivations.engine.step import Proof, StepError
 
 from tests.planted import derive
 

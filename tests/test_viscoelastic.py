@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
-from kvtheory.derivations import viscoelastic as theory
+from kvtheory.derivations.chapters import viscoelastic as theory
 from scipy.signal import lfilter
 
 import kvtheory as kv

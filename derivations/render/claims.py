@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, UndefinedFunction
 from sympy.core.relational import Relational
 
-from ..record import Claim, Derivation
+from ..engine.record import Claim, Derivation
 
 Tree = str | list[Any]
 

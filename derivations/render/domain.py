@@ -2,9 +2,9 @@
 
 import sympy as sp
 
-from ..book import tex
-from ..letters import letters, printed
-from ..record import Claim, Derivation
+from ..engine.book import tex
+from ..engine.letters import letters, printed
+from ..engine.record import Claim, Derivation
 
 _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", "< 0"))
 
@@ -19,7 +19,14 @@ def domain(derivation: Derivation) -> str:
     claims = [step.claim for step in own if step.claim]
     symbols = {symbol for claim in claims for symbol in _symbols(claim)}
     new, signs = letters(derivation.label, derivation.section), []
-    assumed = [each for each in symbols if f"{printed(tex(each), new)} > 0" in derivation.domain]
+    stated = {step.latex for step in own} | {
+        part for step in own for part in step.domain.split(", ")
+    }
+    defined = {step.claim.lhs for step in derivation.steps if step.claim}
+    signed = {each: f"{printed(tex(each), new)} > 0" for each in symbols & defined}
+    assumed = {
+        each: latex for each, latex in signed.items() if latex in {*derivation.domain} - stated
+    }
     symbols -= {*assumed}
     for sign, relation in _SIGNS:
         having = sorted((s for s in symbols if getattr(s, sign)), key=str)
@@ -29,7 +36,7 @@ def domain(derivation: Derivation) -> str:
     said = {step.latex for step in own} | {
         step.domain for step in own if step.latex == derivation.latex
     }
-    apart = [f"{printed(tex(each), new)} > 0" for each in sorted(assumed, key=str)]
+    apart = [assumed[each] for each in sorted(assumed, key=str)]
     holds = [*signs, *(f"${each}$" for each in derivation.domain if each not in {*said, *apart})]
     parts = [f"It holds for {', '.join(holds)}"] if holds else []
     parts += [f"assumed, not proved: {', '.join(f'${each}$' for each in apart)}"] if apart else []

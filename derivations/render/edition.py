@@ -4,11 +4,11 @@ import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ..atoms import Atom, atoms, replaced
 from ..catalogue import SYMBOLS
+from ..engine.atoms import Atom, atoms, replaced
+from ..engine.nomenclature import HEADS, Symbol
+from ..engine.record import Derivation, Step, Table
 from ..labels import closure, find
-from ..nomenclature import HEADS, Symbol
-from ..record import Derivation, Step, Table
 from .domain import domain
 from .frame import TITLE
 from .notation import check_letters

@@ -6,7 +6,7 @@ A fragment has no number: the document numbers it, and refers to it by its label
 from collections.abc import Collection
 
 from ..catalogue import CONTENTS
-from ..record import Derivation, Table
+from ..engine.record import Derivation, Table
 from . import frame
 from .breaking import lines, width
 from .edition import Edition

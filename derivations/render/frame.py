@@ -19,7 +19,8 @@ INTRODUCTION = (
     "A check establishes the formula of its line, on the domain that is given with it, from the "
     "definitions and results that are named; what is printed was read back and compared with what was "
     "checked. The words beside a line say what the formula means for the contact; they are not "
-    "checked, nor that a law of the model is right or that the lines together prove the title.",
+    "checked, nor that a law of the model is right. Where the lines alone do not prove the title, the text "
+    "says what is argued, and the result is called argued.",
 )
 
 VOCABULARY = {
@@ -28,7 +29,7 @@ VOCABULARY = {
     "proved-leading-order": "an asymptote, proved with the coefficient and the order of its "
     "remainder",
     "sampled": "compared at many random admissible points with 50 digits, not proved",
-    "argued": "follows by the words beside it, which no machine checked; the formula alone does not say it",
+    "argued": "its lines are proved, but the title also rests on words of the text, which are marked",
 }
 """The meaning of each `record.STATUSES`."""
 

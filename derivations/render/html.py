@@ -6,7 +6,7 @@ from html import escape
 
 from latex2mathml.converter import convert
 
-from ..record import Calculation, Derivation, Table
+from ..engine.record import Calculation, Derivation, Table
 from . import frame
 from .edition import Edition
 from .pdf import RenderError

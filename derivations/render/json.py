@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, fields
 from typing import Any
 
-from ..record import Derivation
+from ..engine.record import Derivation
 from .claims import Names, claims
 from .edition import Edition
 

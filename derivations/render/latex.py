@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Sequence
 
-from ..record import Calculation, Derivation, Table
+from ..engine.record import Calculation, Derivation, Table
 from . import frame
 from .edition import Edition
 from .latex_words import escape, printed, words

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable
 
-from ..record import Derivation, Table
+from ..engine.record import Derivation, Table
 from . import frame
 from .edition import Edition
 from .text import (

@@ -5,8 +5,8 @@ import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from ..atoms import atoms
 from ..catalogue import SYMBOLS
+from ..engine.atoms import atoms
 from ..labels import unknown
 
 

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, UndefinedFunction
 from sympy.printing.str import StrPrinter
 
-from ..record import Claim, Derivation, Step
+from ..engine.record import Claim, Derivation, Step
 from . import frame, recheck
 from .edition import Edition
 from .text import calculation, number

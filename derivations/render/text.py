@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from ..record import Calculation, Derivation, Step
+from ..engine.record import Calculation, Derivation, Step
 
 _REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)")
 """How text names a derivation; the name of the group and the digits make its label."""

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
+from ..engine.record import Derivation
 from ..labels import unknown
-from ..record import Derivation
 from . import bibliography, fragments, html, json, latex, markdown, notebook, pdf
 from .edition import Edition, edition
 

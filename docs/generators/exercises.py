@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import sympy as sp
-from kvtheory.derivations.book import tex
+from kvtheory.derivations.engine.book import tex
+from kvtheory.derivations.engine.letters import letters, printed
+from kvtheory.derivations.engine.record import Derivation, Step
 from kvtheory.derivations.exercises import ingredients
-from kvtheory.derivations.letters import letters, printed
-from kvtheory.derivations.record import Derivation, Step
 from kvtheory.derivations.render import notebook
 
 from generators.labels import anchor_of

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from html import escape
 
 import sympy as sp
-from kvtheory.derivations.book import tex
+from kvtheory.derivations.engine.book import tex
+from kvtheory.derivations.engine.letters import letters, printed
+from kvtheory.derivations.engine.record import Claim, Derivation, Step
 from kvtheory.derivations.labels import closure
-from kvtheory.derivations.letters import letters, printed
-from kvtheory.derivations.record import Claim, Derivation, Step
 from kvtheory.derivations.render import edition
 from kvtheory.derivations.render.html import mathml
 from kvtheory.derivations.render.notation import plain

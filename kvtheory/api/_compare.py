@@ -89,9 +89,9 @@ def compare(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola
-        or a ball. For a ball theory is a simulation with many elements, and `steady` at the end. A diagnosis
-        then takes seconds; so it does on a Prony series, where faults are tried with elements. With a spring
-        in the drive the data may also hold ``sliding_velocity`` and ``spring_force``.
+        or a ball. For a ball, theory is a simulation with many elements, and `steady` at the end. A diagnosis
+        of a ball, or on a Prony series, takes seconds: faults are tried with elements. With a spring in the
+        drive the data may also hold ``sliding_velocity`` and ``spring_force``.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a result
         with the names of `transient`, or a mapping of arrays (by those names in SI, or with a bracketed

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
+from kvtheory.scene.foundations import extrapolates
 from kvtheory.scene.mistakes import SceneError, problem
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -35,6 +37,17 @@ def times_of(scene: Scene, at: list[float] | None, problems: list[str] | None = 
     elif found:
         raise SceneError(found)
     return at
+
+
+def noted(scene: Scene, series: Any) -> Any:
+    """Return a time series with a note if V/c leaves the frequencies of the measured foundation."""
+    if scene.foundation.lowest_frequency is None:
+        return series
+    length = np.abs(series.trailing_edge - series.leading_edge)
+    passing = np.nan_to_num(np.abs(series.velocity) / np.where(length > 0.0, length, np.nan))
+    k = int(passing.argmax())
+    note = extrapolates(scene.foundation, passing[k], 1.0)
+    return replace(series, notes=(note,)) if note else series
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from kvtheory.api._edge import double_precision, one_scene, times_of
+from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.results.schemes import SIMULATED
@@ -100,10 +100,11 @@ def elements(
 
     try:
         with double_precision(scene):
-            return simulate(
+            found = simulate(
                 scene, 1.0 / (per_length or DENSITY), SCHEMES[scheme], at=times_of(scene, at),
                 time_step=time_step, certify=certify, progress=progress, warn=warn,
             )  # fmt: skip
+            return noted(scene, found)
     except ValueError as error:
         key, _, hint = str(error).partition(": ")
         if per_length is not None or not key.startswith("`per_length`"):

@@ -19,12 +19,13 @@ from kvtheory.results.fits import FrictionFit, Parameter, WeighedModel
 from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names
 from kvtheory.scene.capabilities import lacks_arms, lacks_transient, require
+from kvtheory.scene.foundations import MEASURED_RANGE
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
-NOT_FREE = "drive.velocity", "run.duration"
+NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED_RANGE)
 """Quantities that no measured friction tells."""
 FINE, COARSE = 1e-7, 1e-3
 """Tolerances of the transient and of a model that is slower."""

@@ -12,7 +12,7 @@ from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
 from kvtheory.scene.arguments import a_scene, checked, choice, count, flag, measured, number
-from kvtheory.scene.foundations import MOST_ARMS, GeneralizedMaxwell
+from kvtheory.scene.foundations import MEASURED_RANGE, MOST_ARMS, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
 
@@ -139,23 +139,15 @@ def fit_foundation(
             "no law of the shift factor is known: it needs several temperatures, or `shift_factors`"
         )
         raise ValueError(f"`temperature`: {told}")
-    own = {"stiffness": relaxed, "arms": pairs, **thermal} if per_area else None
-    if thickness is not None:
-        own = {
-            "modulus": relaxed,
-            "thickness": thickness,
-            "poisson_ratio": poisson_ratio,
-            "arms": pairs,
-            **thermal,
-        }
-    whole = None if own is None else replace(scene, foundation=GeneralizedMaxwell(**own))
-    residuals = series.residuals(found.data)
-    x = found.data.x
-    ends = (
-        np.array([x.min(), x.max()]) / (2.0 * math.pi)
-        if found.data.dynamic
-        else 1.0 / np.array([x.max(), x.min()])
-    )
+    x, residuals = found.data.x, series.residuals(found.data)
+    ends = x[[0, -1]] / math.tau if found.data.dynamic else 1.0 / x[[-1, 0]]
+    frequencies = _rounded(ends[0]), _rounded(ends[1])
+    own = {"arms": pairs, **thermal, **dict(zip(MEASURED_RANGE, frequencies, strict=True))}
+    whole = None
+    if per_area or thickness is not None:
+        layer = {"modulus": relaxed, "thickness": thickness, "poisson_ratio": poisson_ratio}
+        own |= {"stiffness": relaxed} if per_area else layer
+        whole = replace(scene, foundation=GeneralizedMaxwell(**own))
     source = (
         Path(found.measured.source).name if isinstance(data, (str, Path)) else found.measured.source
     )
@@ -174,8 +166,8 @@ def fit_foundation(
         shift_law=None if law is None or master is None else (
             f"{law.text} at {master.reference - ZERO_CELSIUS:.4g} degC, log10 a_T to {law.misfit:.2g}"
         ),
-        frequencies=(_rounded(ends[0]), _rounded(ends[1])),
-        velocities=None if whole is None else _velocities(whole, ends),
+        frequencies=frequencies,
+        velocities=None if whole is None else _velocities(whole, frequencies),
         source=source,
         notes=found.notes,
         scene=whole,

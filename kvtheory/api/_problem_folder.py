@@ -71,7 +71,7 @@ REFERENCES = {"transient": _transient, "elements": _elements, "steady": _steady}
 
 def judge(scene: Scene, found: Any, kind: str) -> str:
     """Return the script that tests a series: against theory, if `compare` accepts the scene."""
-    if kind != "transient":
+    if kind == "steady":
         return "within"
     try:
         return "within" if compare(scene, data=found).verdict == "disagrees" else "compare"
@@ -128,7 +128,7 @@ def readme(name: str, found: Any, kind: str, rule: str) -> str:
     return _README.format(
         title=problems()[name], about=about(name), name=name, scene=problem_text(name), what=what,
         certificate=f"{found.certificate.kind}: {found.certificate.statement}",
-        rule=_RULES[rule],
+        rule=_RULES[rule] if problem(name).indenter.per_width else _RULES[rule].replace("N/mm", "N"),
         more=_POINT_CONTACT if name == "point-contact" else "",
     )  # fmt: skip
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.api._elements import elements
+from kvtheory.api._fewer_arms import fewer_arms
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
@@ -101,7 +102,7 @@ def solve(
     if over_time:
         follow = partial(transient, progress=progress)
         simulate = partial(elements, progress=progress)
-        rungs = series.rungs(series.Models(steady, follow, simulate))
+        rungs = series.rungs(series.Models(steady, follow, simulate, fewer_arms))
     else:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         known = not lacks_stability(scene)

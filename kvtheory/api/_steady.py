@@ -19,7 +19,7 @@ from kvtheory.scene.capabilities import (
     lacks_quadrature,
     require,
 )
-from kvtheory.scene.foundations import thick_layer
+from kvtheory.scene.foundations import extrapolates, thick_layer
 from kvtheory.scene.model import Scene
 
 LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
@@ -57,8 +57,9 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
-        whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, and if a foundation
-        given as a layer is not thin for its contact.
+        whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, if a foundation
+        given as a layer is not thin for its contact, and if V/c is outside the frequencies at which the
+        foundation was measured.
 
     Raises
     ------
@@ -94,11 +95,12 @@ def steady(
             varied = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
             state = replace(state, over=varied, units=units)
         foundation = scene.foundation
-        if foundation.modulus is None:
-            return state
-        shortest = state.half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
-        note = thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
-        return replace(state, notes=(*state.notes, note)) if note else state
+        length = state.trailing_edge - state.leading_edge
+        notes = [extrapolates(foundation, scene.drive.final_velocity, length)]
+        if foundation.modulus is not None:
+            shortest = state.half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
+            notes.append(thick_layer(foundation.thickness, shortest, foundation.poisson_ratio))
+        return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
 
 
 @checked(scene=a_scene, over=replacements)

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kvtheory.api._edge import double_precision, one_scene, times_of
+from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
@@ -35,11 +35,11 @@ def transient(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola,
-        or a ball at constant depth that does not re-enter its own trace (`elements` simulates any ball). On a
-        Prony series it must not take off. At t < 0 it rests at its static depth. With `drive.stiffness` it is
-        held along x by a spring that is then relaxed; the mass that moves along x must be above zero. A drive
-        that is a function of time is replaced by polynomials within its tolerance, which the certificate adds
-        to the errors of the velocities, the pressure and the surface, but not of the other quantities.
+        or a ball at constant depth that does not re-enter its own trace (`elements` simulates any ball). At
+        t < 0 it rests at its static depth. With `drive.stiffness` it is held along x by a spring that is then
+        relaxed; the mass that moves along x must be above zero. A drive that is a function of time is
+        replaced by polynomials within its tolerance, which the certificate adds to the errors of the
+        velocities, the pressure and the surface, but not of the other quantities.
     at
         Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or ``"0 ms:200 ms:201"``
         (START:STOP:COUNT, both ends included); without it, the steps of the solver, subdivided.
@@ -50,7 +50,7 @@ def transient(
         certificate are infinite.
     max_steps
         Steps after which to give up; by default 300,000 plus 100 for each piece of the drive, on a Prony
-        series 5,000.
+        series 20,000.
     progress
         Called repeatedly with the share of the work done, from 0 to 1, and a text, as by every public
         function: `kvtheory.progress.ProgressLine` shows both on standard error.
@@ -66,7 +66,7 @@ def transient(
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is neither a parabola nor such a ball, if it takes off on a Prony series, if an
+        If the indenter is neither a parabola nor such a ball, if the contact on a Prony series parts, if an
         argument is out of range, or a function that drives the foundation fails, is not finite, or is not
         smooth between its breaks.
     ArithmeticError
@@ -91,10 +91,11 @@ def transient(
         if not scene.indenter.per_width:
             from kvtheory.models.strips import held
 
-            return held.transient(scene, times_of(scene, at), certify=certify)
+            return noted(scene, held.transient(scene, times_of(scene, at), certify=certify))
         from kvtheory.models.continuum import prony, solved_scene
 
         solver = prony.solved_scene if scene.foundation.arms else solved_scene
-        return solver.transient(
+        found = solver.transient(
             scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )
+        return noted(scene, found)

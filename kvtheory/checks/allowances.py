@@ -1,16 +1,15 @@
-"""Error budget of a correct simulation: by how much it may differ from theory.
+"""Error budget of a correct simulation: how far it may differ from theory.
 
-Four effects cause a difference although nothing is wrong; each is known from theory or from the data:
+Four effects make a correct simulation differ; theory or the data give the size of each:
 
-- an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
-  b = p dx/2, p the pressure at that edge, the motion by the linear response to b (F12), and on a spring
-  also by a disturbed motion along x (`_spring_response`);
-- a time step shifts the curves: theory within two steps before and after is as good; and unless the
-  scheme is known to be of higher order, the rate may lag behind the depth by one step, and with it the
-  force by h C L d'', which is the fraction z = h C L/M of the unbalanced force;
-- the data are noisy: sigma is estimated from their second differences to theory, in which everything
-  smooth cancels; it counts up to a limit only;
-- the data are rounded: half their last digit, and times to the next one.
+- Elements. One at an edge counts as a whole or not at all (F15): the normal force is off by up to
+  b = p dx/2, p being the pressure at that edge; the depth follows by the linear response to b (F12), and on
+  a spring the motion along x is disturbed as well (`_spring_response`).
+- Time steps. Curves may lead or lag by two steps. A scheme of first order, or of unknown order, has a rate
+  that lags by one step; the force is then off by h C L d'', a fraction z = h C L/M of the unbalanced force.
+- Noise. Sigma comes from second differences of the residual, in which all that is smooth cancels; it is
+  capped.
+- Rounding. Half the last digit; times by up to the next digit.
 """
 
 import math
@@ -28,43 +27,42 @@ from kvtheory.scene.model import Fixed, Scene
 
 STANDARD = 200e3
 FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
-"""Element density (1/m) assumed if none is given: the paper's 200 /mm, limited to these numbers of elements
-in the static half length; the upper one is that of Table 1."""
+"""Elements per m assumed if none are given: the paper's 200 /mm, within these numbers of elements per static
+half length, of which Table 1 has the larger one."""
 UNKNOWN_STEP = 0.25
-"""Longest time step assumed if none is given, as a fraction of the fast time constant; or the sampling
-interval, if that is longer."""
+"""Longest time step assumed if none is given, in fast time constants; the sampling interval if longer."""
 MOST_STEPS, FEWEST_STEPS = 1000.0, 20.0
-"""Steps assumed for a base that never moves; and fewest for any run, so that not all of it is smeared."""
+"""Steps of a run assumed for a base at rest; and the fewest assumed for any run."""
 STEPS_SMEARED = 2.0
-"""Steps by which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
+"""Steps by which data may lead or lag: a first-order scheme lags by one, its start by one more."""
 ELEMENTS_AT_AN_EDGE = 2.0
 """Error of an edge in elements: two enter in a step of the paper's scheme, and edges lie on elements."""
 EDGES, COARSEST_EDGE, NEARLY_ALL = ("leading_edge", "trailing_edge"), 0.12, 0.97
-"""Columns that jump by an element, where the spacing is not known; the largest one in half lengths; and the
-quantile of the changes that is one element."""
+"""Columns that jump by one element; the largest element accepted, in half lengths; and the quantile of their
+changes that is taken for one element."""
 BALL_EDGE = 0.02
-"""Element of a ball in half lengths, if none is known: few elements are enough for its forces."""
+"""Element of a ball assumed for its edges, in half lengths: its forces need few elements."""
 LARGEST_NOISE = 0.1
-"""Upper bound of the noise that is allowed for, as a fraction of the curve or its scale."""
+"""Largest noise that is allowed for, as a fraction of the curve or of its scale."""
 WHOLE_EDGE = 2.0
-"""Ratio of the largest error of an edge, one element, to the mean error, half an element."""
-AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
-"""Fractions of the width of the band: the lag of a first-order scheme, and the lag allowed for the rate, as
-long steps add terms of the next order in h/T."""
+"""Largest error of an edge (one element) over the mean error (half an element)."""
+FIRST_ORDER_LAG, LAG = 0.25 / math.e, 0.25
+"""Lag of the rate by a first-order scheme, as a fraction of the width of the band; and the lag allowed, as
+long steps add terms of higher order in h/T."""
 OVERSHOOT = 2.0
-"""Largest overshoot factor of an oscillation, and of a spring that is loaded suddenly."""
+"""Largest overshoot of an oscillation, or of a spring under a sudden load."""
 INITIAL = 1e-3
-"""Error of the initial depth, relative to the static depth: it may have been typed in with three digits."""
+"""Error of the initial depth, relative to the static depth: it may be typed in with three digits."""
 INPUT = 1e-6
-"""Relative error of given, not computed, quantities: they agree to the digits of a file."""
-EXACT = {"velocity": 3, "sliding_velocity": 3}
-"""Fewest significant digits of a column that count as rounded; a velocity of 0.1 m/s is exact."""
+"""Relative error of quantities that are given, not computed."""
+GIVEN_DIGITS = 3
+"""Fewest significant digits that count as rounded where the velocity is given: 0.1 m/s is exact."""
 QUARTER = 0.5 * math.pi
-"""Quarter period, in radians: the difference of two oscillations is largest so long after they cross."""
+"""Quarter of a period, in radians: two oscillations differ most so long after they cross."""
 
 
 class Resolution(NamedTuple):
-    """Spacing of elements (m) and time step (s): known or assumed; or what the spacing is read from."""
+    """Spacing of elements (m) and time step (s), known or assumed; what the spacing was estimated from."""
 
     spacing: float
     time_step: float
@@ -74,7 +72,7 @@ class Resolution(NamedTuple):
 
 
 def resolution(theory: Theory, series: Series, per_length: float | None) -> Resolution:
-    """Return the spacing and the step, known or else those of the paper for this scene."""
+    """Return the spacing and the step: those given, or else the paper's for this scene."""
     given = per_length or series.per_length
     half, scheme = theory.static.half_length, SCHEME_ROWS.get(series.scheme or "")
     spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
@@ -90,10 +88,10 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
 
 
 class Band(NamedTuple):
-    """Range of a curve of theory within the time smear, and the errors allowed outside of it.
+    """Range of theory within a few time steps, and the errors allowed outside it.
 
-    `systematic` bounds a smooth error, of which `rounding` is the part that comes from the digits; `noise`
-    is the standard deviation of a random one.
+    `systematic` bounds the smooth error, of which `rounding` is due to the digits; `noise` is the standard
+    deviation of the random error.
     """
 
     low: Array
@@ -103,11 +101,11 @@ class Band(NamedTuple):
     rounding: Array
 
     def excess(self, values: Array) -> Array:
-        """Return how far values lie outside the band of theory."""
+        """Return how far values lie outside the range of theory."""
         return np.maximum(np.maximum(self.low - values, values - self.high), 0.0)
 
     def limit(self) -> Array:
-        """Return how far a single value may lie outside the band."""
+        """Return how far a single value may lie outside the range."""
         return self.systematic + extreme(self.systematic.size) * self.noise
 
 
@@ -128,19 +126,19 @@ def allowance(
             unbalanced = support.weight - support.spring * sunk - part["normal_force"]
             z = np.minimum(fine.time_step * C * contact_extent(theory, part) / support.mass, 1.0)
             share, lagging = np.fmax(share, z), np.fmax(lagging, z * np.abs(unbalanced))
-        lagging += AN_EIGHTH / LAGGING * C * contact_extent(theory, now) * late
+        lagging += FIRST_ORDER_LAG / LAG * C * contact_extent(theory, now) * late
     force = np.fmax.reduce([_edge_force(theory, c, fine.spacing) for c in (now, before, after)])
     smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), late, fine)
     if not theory.scene.drive.rigid:
         step = fine.time_step if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
-    bands = {}
+    bands, given = {}, ("velocity", "sliding_velocity")[: 1 + theory.scene.drive.rigid]
     for name in CURVES:
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            rounding = rounded(values, EXACT.get(name, 0))
+            rounding = rounded(values, GIVEN_DIGITS if name in given else 0)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
             if name in EDGES and not fine.spacing_known:
@@ -154,19 +152,19 @@ def allowance(
 
 
 def edge_jumps(residual: Array) -> float:
-    """Return how far an edge jumps to the next element: nearly the largest change between samples."""
+    """Return by how much an edge jumps to the next element: nearly its largest change between samples."""
     changes = np.abs(np.diff(residual[np.isfinite(residual)]))
     return float(np.quantile(changes, NEARLY_ALL)) if changes.size else 0.0
 
 
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
-    """Return theory now, at both ends of the smear, and its least and greatest values within it."""
+    """Return theory at the times, a few steps before and after, and its least and greatest values between."""
     smear = STEPS_SMEARED * step + time_rounding(time)
     jumps = [t for t in theory.scene.drive.jumps if t < time[-1]]
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
     found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)
     parts = {name: [*found[name][: 3 * time.size].reshape(3, -1)] for name in CURVES}
-    near = np.abs(time[:, None] - sides) <= smear[:, None]  # a window over a jump holds both sides
+    near = np.abs(time[:, None] - sides) <= smear[:, None]  # a range holds both sides of a jump
     low, high = {}, {}
     for name in CURVES:
         over = [*np.where(near, found[name][3 * time.size :], np.nan).T]
@@ -175,10 +173,10 @@ def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curve
 
 
 def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
-    """Return the remaining lag of the rate of a first-order scheme, after the band of a fast change.
+    """Return the lag of the rate that a first-order scheme keeps after a fast change.
 
-    Euler's method errs in exp(-t/T) by (h/2T)(t/T) exp(-t/T): an eighth of the width of the band, times
-    t/T, and the rate soon turns, where the band is narrow. T = M/(C L) is that of the contact at the time;
+    The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T): an eighth of the width of the band
+    times t/T, and it lasts after the band has narrowed. T = M/(C L) is that of the current contact, and
     (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
     damping, mass = theory.scene.foundation.damping, theory.scene.support.mass
@@ -186,7 +184,7 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
     with np.errstate(divide="ignore"):
         left = np.maximum.accumulate(np.log(width) + ages) - ages
-    return np.asarray(LAGGING * np.exp(left))
+    return np.asarray(LAG * np.exp(left))
 
 
 def _contact_length(curves: Mapping[str, Array]) -> Array:
@@ -194,17 +192,15 @@ def _contact_length(curves: Mapping[str, Array]) -> Array:
 
 
 def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
-    """Return the extent of the contact: a length in m, for a ball an area in m^2."""
+    """Return the length of the contact in m, for a ball its area in m^2."""
     return np.asarray(theory.width(curves["depth"]) * _contact_length(curves))
 
 
 def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
-    """Return b = p dx/2 at the edge of larger pressure, p = K g + C g' (Eq. 12); zero in flight.
+    """Return b = p dx/2 at the edge with the larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
-    On arms the pressure grows while an element enters. For a ball it is that of the middle plane times the
-    mean
-    width, an upper bound, if all strips agree. At
-    rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
+    On arms the pressure builds up while an element enters. For a ball, p of the middle plane times the mean
+    width is an upper bound. At rest p = 0 at both edges, and the error is of second order, K dx^2 a/R.
     """
     R, foundation = theory.radius, theory.scene.foundation
     p = np.zeros_like(curves["depth"])
@@ -223,13 +219,11 @@ def _systematic(
     theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array], late: Array,
     fine: Resolution,
 ) -> dict[str, Array]:  # fmt: skip
-    """Return the smooth error of each curve due to the force b at the edge (by F12) and to a lag.
+    """Return the smooth error of each curve.
 
-    `forces` are b and the lag of the force, `late` is the lag of the rate.
-
-    Leading edge, x^2 = 2 R delta: R/a times the depth; trailing edge, x^2 + 2 l_r x = 2 R (delta +
-    tau delta') (Eq. 33): R/(x + l_r) times both; friction: b at x = a, and F_x in proportion to
-    delta^(3/2).
+    `forces` are b and the error of the force by a lag, `late` is the lag of the rate. The errors of the edges
+    follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32 and 33); that of
+    friction is b at x = a, with F_x in proportion to delta^(3/2).
     """
     K, tau = theory.scene.foundation.stiffness, theory.scene.foundation.retardation_time
     R, dx, (force, lagging) = theory.radius, fine.spacing, forces
@@ -265,9 +259,9 @@ def _response(
 ) -> tuple[Array, Array]:
     """Return the errors of the depth and of its rate due to b.
 
-    The rate answers C L d' + (K A + k_s) d = b at once, and by b h/M in a step; the depth with the time
-    constant T = C L/(K A + k_s) of the contact at the time. In flight nothing relaxes: the error of the rate
-    stays as it was at take-off, and that of the depth grows with it.
+    The rate answers C L d' + (K A + k_s) d = b at once, and by b h/M in a step; the depth follows with the
+    time constant C L/(K A + k_s) of the current contact. In flight the rate keeps its error, and that of the
+    depth grows with it.
     """
     foundation, static = theory.scene.foundation, theory.static
     length = _contact_length(curves)
@@ -297,16 +291,14 @@ def _response(
 def _spring_response(
     theory: Theory, now: Curves, time: Array, force: Array, step: float, rtol: float
 ) -> Curves:
-    """Return the error of each curve on a spring due to the force b (N/m) at an edge and to the step (s).
+    """Return the error of each curve on a spring due to b (N/m) and to the step (s).
 
-    Motions along x last long, and grow if steady sliding is unstable (F22), up to a cycle in which a
-    disturbance shifts the phase more and more. No linear response covers that, but theory of a disturbed
-    scene does (`_disturbed`). The friction b a/R that goes with b acts on the spring at once: it stretches
-    the spring, and accelerates the indenter. `step` is 0 for a scheme of higher order, whose error is far
-    smaller.
+    Motion along x decays slowly, or grows to a cycle whose phase shifts more and more (F22). Linear response
+    does not cover that, so theory of a disturbed scene does (`_disturbed`). Besides, the friction b a/R acts
+    on the spring at once. `step` is 0 for a scheme of higher order, whose error is negligible.
     """
     inertia, stiffness = theory.scene.drive_mass, float(theory.scene.drive.stiffness or 0.0)
-    swing = math.sqrt(inertia / stiffness)  # the period over 2 pi, in s
+    swing = math.sqrt(inertia / stiffness)  # period over 2 pi, in s
     first = np.searchsorted(time, time - QUARTER * swing, side="left")
     after = np.searchsorted(time, time + QUARTER * swing, side="right")
     ends = np.stack([first, after], axis=1).reshape(-1)
@@ -318,17 +310,17 @@ def _spring_response(
             off = np.append(np.nan_to_num(np.abs(found[name] - now[name])), 0.0)
             moved[name] += np.maximum.reduceat(off, ends)[::2]
     kick = OVERSHOOT * force * theory.static.half_length / theory.radius
-    turned = np.clip(time / swing, 0.0, 1.0)  # a force needs time to move a mass
+    turned = np.clip(time / swing, 0.0, 1.0)  # a mass needs time to move
     moved["spring_force"] += kick * turned**2
     moved["sliding_velocity"] += kick * turned * swing / inertia
     return moved
 
 
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
-    """Yield the scene with a load that is larger by a share, and with the damping of first-order steps.
+    """Yield the scene with a load larger by a share, and with the damping of first-order steps.
 
-    On a fixed indenter, whose forces are in proportion to the stiffness of the foundation, b acts like a
-    stiffer foundation. A first-order step h damps an oscillation, or excites it, as a damper c_x = h k_x.
+    A fixed indenter gets a stiffer foundation instead. A first-order step h acts like a damper c_x = h k_x,
+    or excites as much.
     """
     support = scene.support
     if isinstance(support, Fixed):

@@ -12,8 +12,9 @@ from kvtheory.checks import faults
 from kvtheory.checks.checklist import PHASE, SAMPLING, judge
 from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Trial, bench
+from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Pair, Trial, bench, scaled_scene
 from kvtheory.checks.theory import Theory
+from kvtheory.checks.trial_elements import Rule, changes
 from kvtheory.fitting.series import Series
 from kvtheory.results import TRANSIENT_UNITS, DivergenceError
 from kvtheory.results.comparison import Check, Comparison, Explanation
@@ -29,8 +30,8 @@ FAMILIES: Families = (
     ("units of the time", faults.time_units),
 )  # fmt: skip
 """The faults that are tried, in their order."""
-STEADY = {"signs and units", "scales and offsets", "other foundations and drives", "parameters"}
-"""The families that are tried for steady sliding."""
+OF_TIME = {"delays and filters", "units of the time"}
+"""The families that show in a series alone."""
 EXACT, BUDGET = 0.999, 8.0
 """Part of the difference that a wrong sign or unit must explain to end the search at once, and the processor
 time in s after which no other family is begun."""
@@ -43,7 +44,7 @@ value."""
 NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
-"""Largest number of explanations that are kept."""
+"""Most explanations that are kept, and most parameters that are named as indistinguishable."""
 MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
 SCATTER = "scatter"
@@ -54,41 +55,48 @@ INCONCLUSIVE = {
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
-GIVEN = "depth_rate", "velocity", "sliding_velocity"
-"""Columns that test nothing where the depth and the velocity are given."""
-SLOW, FAST, LIGHT = 0.03, 30.0, 0.02
-"""Retardation length over half length, below which the damper, and above which the stiffness, hardly counts;
-the time constant of the inertia over that of the foundation, below which the motion is without inertia."""
+LARGER = 1.5
+"""Factor on a quantity that must show in the data, for the quantity to count as tested."""
+NEEDED = "depth", "normal_force", "friction_force"
+"""Columns whose absence is worth a remark."""
 
 
 def _untested(case: Case) -> str:
-    """Say what the scene and the data cannot test, and the reference problem that does."""
-    theory, scene, held = case.theory, case.theory.scene, case.theory.scene.held
-    speed, half = abs(theory.motion.highest_speed), theory.static.half_length
-    length = speed * scene.foundation.retardation_time / half
-    fast = theory.rates is not None and abs(theory.rates.fast) < LIGHT * abs(theory.rates.slow)
-    needed = ("depth", "normal_force", "friction_force")
-    missing = [name.replace("_", " ") for name in needed if name not in case.columns]
-    still = "everything but the state at rest, as the base never moves"
-    parts = [(still, "paper-dead-weight", True)]
-    if speed:
-        one_way = scene.drive.constant and scene.drive.rigid
-        flies = bool(np.isnan(case.now["leading_edge"]).any())
-        parts = [
-            ("the memory of the free surface, as the sliding never reverses", "reversal", one_way),
-            ("the damper, as the drive is slow", "high-velocity", length < SLOW),
-            ("the stiffness, as the drive is fast", "low-velocity", length > FAST),
-            ("the inertia, as the indenter is fixed", "paper-dead-weight", held),
-            ("the inertia, which hardly counts", "heavy-mass", not held and fast),
-            ("a flight and a landing", "take-off", not held and not flies),
-        ]
-    if held and len(missing) == len(needed) - 1 and not set(case.names) - {"depth", *GIVEN}:
-        parts = [("anything, as the depth of a fixed indenter is given", "", True)]
-    absent = f"the {' and the '.join(missing)}, which the data do not hold"
-    parts.append((absent, "", bool(missing)))
-    told = [f"{what} ({name})" if name else what for what, name, untested in parts if untested]
-    problems = " (in brackets, the reference problem that does)" if told else ""
-    return f" Not tested{problems}: {'; '.join(told)}." if told else ""
+    """Say what an error would not show of in these data, and the reference problem in which it would."""
+    rows, scene, motion = bench(case), case.theory.scene, case.theory.motion
+    powers = {each.symbol: each.powers for each in faults.parameters_of(scene)}
+    stiffness = {
+        **powers["K"],
+        **({"foundation.retardation_time": -1.0} if "tau" in powers else {}),
+    }
+    times = powers.get("tau") or powers.get("all tau_i") or powers["tau_1"]
+    parts = [
+        ("the stiffness", "low-velocity", stiffness),
+        ("the damper" if "tau" in powers else "the relaxation times", "high-velocity", times),
+        *([] if scene.held else [("the inertia", "heavy-mass", powers["inertia"])]),
+    ]
+    told = [f"{what}, as {LARGER:g} times as much would not show ({problem})"
+            for what, problem, by in parts
+            if not rows.shows(rows.against(scaled_scene(scene, by, LARGER)))]  # fmt: skip
+    memory, one_way = "the memory of the free surface", scene.drive.constant and scene.drive.rigid
+    if one_way and motion.highest_speed:
+        told.append(f"{memory}, as the sliding never reverses (reversal)")
+    elif one_way or not rows.shows(_without_memory(rows)):
+        told.append(f"{memory}, as its absence would not show (reversal)")
+    if scene.held:
+        told.append("the inertia, as the indenter is fixed (paper-dead-weight)")
+    elif not np.isnan(case.now["leading_edge"]).any():
+        told.append("a flight and a landing (take-off)")
+    if missing := [name.replace("_", " ") for name in NEEDED if name not in case.columns]:
+        told.append(f"the {' and the '.join(missing)}, which the data do not hold")
+    problems = "(in brackets, the reference problem that does)"
+    return f" Not tested {problems}: {'; '.join(told)}." if told else ""
+
+
+def _without_memory(rows: Bench) -> Pair:
+    """Return the data, and theory as it were without a memory of the free surface."""
+    change = changes(rows.theory, [Rule(decay=math.inf)], rows.time)[0]
+    return rows.columns, {name: rows.now[name] + change[name] for name in rows.names}
 
 
 @np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared
@@ -226,6 +234,9 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
     """Return the explanations, the best first; a fitted one that changes nothing explains nothing."""
 
     def unlikely(trial: Trial) -> float:
+        cut_off = trial.enough and trial.hypothesis.name == faults.CUT_OFF
+        if cut_off and np.abs(rows.ratios(trial.hypothesis.pair(0.0))).max() <= 1.0:
+            return 0.0  # a difference within the resolution proves no other fault
         far = abs(trial.value) if trial.hypothesis.powers else 0.0
         return trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
 
@@ -238,7 +249,7 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
         )
         alike = rows.indistinguishable(best, ordered) if trial is best and enough else ()
         found.setdefault(fault.name, Explanation(
-            fault.name, fault.words(x), rank, enough and explained >= NAMED, fault.number(x),
+            fault.name, fault.words(x), rank, enough and max(rank, explained) >= NAMED, fault.number(x),
             explained, alike,
         ))  # fmt: skip
     return [each for each in found.values() if each.rank > 0.0]
@@ -259,7 +270,8 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
         text = f"Closest, but not all{part}: {first.text}"
     if first.alike:
-        together = f"{symbol} and {' or '.join(first.alike)}"
+        more = " or others" if len(first.alike) > SHOWN else ""
+        together = f"{symbol} and {' or '.join(first.alike[:SHOWN])}{more}"
         also = f" {together} cannot be told apart by these data.{also}"
     return f"{text}.{also} Failed: {which}."
 

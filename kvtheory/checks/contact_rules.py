@@ -1,6 +1,6 @@
 """Mistakes in the contact rule or the initial state of a simulator, as hypotheses.
 
-What each changes in the curves is simulated (`trial_elements`), and added to theory.
+What each one changes in the curves is simulated (`trial_elements`) and added to theory.
 """
 
 import math
@@ -11,17 +11,16 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from kvtheory.checks.hypotheses import Bench, Hypothesis, Pair, fixed
-from kvtheory.checks.theory import CURVES, Array, Curves
+from kvtheory.checks.theory import Array, Curves
 from kvtheory.checks.trial_elements import Rule, changes
 from kvtheory.scene import Scene
 
 
 class Mistake(NamedTuple):
-    """A fault: its name, its description, and its rules, of which the best counts.
+    """A fault: its name, its description, and its rules, of which the one that fits best counts.
 
-    `shows` is the kind of scenes in which it can show (`SHOWS`). With `strengths`, one for each rule, the
-    strength is an unknown, between the rules, which the text may show; `right` is the one that changes
-    nothing, if there is one.
+    `shows` is the kind of scenes in which it can show (`SHOWS`). `strengths`, one for each rule, make the
+    strength an unknown, which is interpolated and shown in the text; `right` is the one without effect.
     """
 
     name: str
@@ -40,15 +39,14 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
     "ball": lambda scene: not scene.indenter.per_width,
     "": lambda _scene: True,
 }
-"""Kinds of scenes, in which a mistake can show."""
+"""Kinds of scenes in which a mistake can show."""
 FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
 TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
 STARTS, LOSSES = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95)
-"""Strengths at which mistakes are simulated: factors of damping and time, parts of the half length and
-depth."""
+"""Strengths at which mistakes are simulated: factors of damping, of a time and of the depth; parts of a
+force and of the half length."""
 HUGE, BEYOND = 1e100, 0.02
-"""Largest change that is interpolated, as a wrong rule may diverge; and by how much strengths may be
-exceeded."""
+"""Largest change that is interpolated, as a wrong rule may diverge, and how far strengths may go beyond."""
 MISTAKES = (
     Mistake("no sliding term in the compression rate",
             "the compression rate is delta' alone: an element that moves with the base under a slope is "
@@ -125,13 +123,16 @@ MISTAKES = (
 """Every mistake that is tried."""
 
 
-def mistakes(bench: Bench) -> Iterator[Hypothesis]:
-    """Yield each mistake that can show in the scene: what it changes in a simulation is added to theory."""
+def mistakes(
+    bench: Bench, changes: Callable[..., Sequence[Curves]] = changes
+) -> Iterator[Hypothesis]:
+    """Yield each mistake that can show in the scene: theory, and what the mistake changes in a simulation."""
     tried = [mistake for mistake in MISTAKES if SHOWS[mistake.shows](bench.theory.scene)]
     made = iter(changes(bench.theory, [rule for each in tried for rule in each.rules], bench.time))
 
     def changed(change: Curves) -> Pair:
-        return bench.columns, {name: bench.now[name] + change[name] for name in CURVES}
+        there = {name: bench.now[name] + change[name] for name in change if name in bench.now}
+        return bench.columns, {**bench.now, **there}
 
     for mistake in tried:
         found = [next(made) for _ in mistake.rules]
@@ -144,18 +145,18 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
 def _fitted(
     mistake: Mistake, found: Sequence[Curves], changed: Callable[[Curves], Pair]
 ) -> Hypothesis:
-    """Return a hypothesis about a mistake of unknown strength, which is interpolated between simulations."""
+    """Return the hypothesis of a mistake of unknown strength, interpolated between simulations."""
     right = mistake.right
     known = dict(zip(mistake.strengths, found, strict=True))
     if right is not None:
         known[right] = {name: np.zeros_like(values) for name, values in found[0].items()}
-    strengths = np.array(sorted(known))
-    table: Array = np.array([[known[s][name] for name in CURVES] for s in strengths])
+    strengths, names = np.array(sorted(known)), list(found[0])
+    table: Array = np.array([[known[s][name] for name in names] for s in strengths])
     between = PchipInterpolator(strengths, np.clip(table, -HUGE, HUGE), axis=0)
 
     def make(x: float) -> Pair | None:
         if not strengths[0] - BEYOND <= x <= strengths[-1] + BEYOND:
             return None
-        return changed(dict(zip(CURVES, between(x), strict=True)))
+        return changed(dict(zip(names, between(x), strict=True)))
 
     return Hypothesis(mistake.name, mistake.text, make, strengths.tolist())

@@ -98,6 +98,13 @@ LARGEST_FACTOR = 2e3
 """Factor up and down beyond which a fitted parameter explains nothing: no wrong unit is so far off."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
+NOTHING = 1e-6
+"""Largest value, relative to the scale of a column, that counts as zero."""
+FRICTION = "friction_coefficient", "friction_force", "spring_force"
+MADE_BY = "; in theory it comes from the sliding term -h' V of the rate, and from the damper (Eqs. 5 and 7)"
+"""Columns with friction, and what theory has it from."""
+CUT_OFF = "digits cut off"
+"""The name of a fault within the resolution of the data: where it is enough, nothing else is asserted."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
@@ -201,6 +208,11 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
             sign = "" if exact > 0.0 else " and has the wrong sign"
             text = f"{names}: off by a power of ten, 10^{-power}{sign}; check the unit"
             yield fixed(f"unit of {title}", text, pair, 1.0 / exact)
+    for name in bench.names:
+        if np.nanmax(np.abs(bench.columns[name])) <= NOTHING * bench.theory.scales[name]:
+            there = {**bench.now, name: np.zeros_like(bench.time)}
+            text = f"{name.replace('_', ' ')}: zero throughout{MADE_BY * (name in FRICTION)}"
+            yield fixed(f"no {name}", text, (bench.columns, there))
     edges = GROUPS["both edges"]
     if set(edges) <= set(bench.names):
         exchanged = dict(zip(edges, [bench.columns[name] for name in reversed(edges)], strict=True))
@@ -253,11 +265,12 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     for title, name, unit, by, words in added:
         text, make = f"{name.replace('_', ' ')}: {words}", partial(without, name=name, by=by)
         yield Hypothesis(f"{title} of {name}", text, make, [0.0], unit)
-    digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in bench.names}
+    failing = [n for n in bench.names if (bench.excess(n) > bench.limit(n)).any()]
+    digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in failing}
     if any(half.any() for half in digits.values()):
         cut = {name: x + np.sign(x) * digits.get(name, 0.0) for name, x in columns.items()}
         text = "the last digits of the data are cut off, not rounded"
-        yield fixed("digits cut off", text, (cut, now))
+        yield fixed(CUT_OFF, text, (cut, now))
 
 
 def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
@@ -275,8 +288,17 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
             power = power_of_ten(factor)
             plain = power is None or (power == 0 and factor > 0.0)
             exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
-            changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
-            yield title, factor, exact, (changed, bench.now)
+            scaled = {name: _scaled(bench, name, exact) for name in group}
+            yield title, factor, exact, ({**bench.columns, **scaled}, bench.now)
+
+
+def _scaled(bench: Bench, name: str, factor: float) -> Array:
+    """Return a column times a factor, its difference relative to errors of the data that grow with it."""
+    band, now = bench.bands[name], bench.now[name]
+    smooth, limit = band.systematic - band.rounding, band.limit()
+    return now + (factor * bench.columns[name] - now) * limit / (
+        smooth + abs(factor) * (limit - smooth)
+    )
 
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:

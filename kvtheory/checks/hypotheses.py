@@ -145,6 +145,12 @@ class Bench(Case):
         score = math.sqrt(float(np.mean(ratios * ratios)))
         return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
 
+    def shows(self, pair: Pair | None) -> bool:
+        """Whether another theory differs from the right one by more than is allowed anywhere."""
+        band, limit = self._units
+        off = np.abs(self._gaps((pair[1], self.now))) - band if pair else np.array(np.inf)
+        return bool((off > limit).any())
+
     def tried(self, hypothesis: Hypothesis, starts: Sequence[float] | None = None) -> Trial:
         """Return how a hypothesis fits, its unknown fitted from the best of its starts."""
         starts = hypothesis.starts if starts is None else starts

@@ -1,10 +1,10 @@
-"""A measured curve, friction over velocity, held against steady sliding with its own scatter.
+"""A measured curve, friction over velocity, compared with steady sliding and judged by its own scatter.
 
-It is a case whose "time" is the velocity, so that the same faults are tried as for a time series.
+It is a case whose "time" is the velocity, so that faults are tried as for a time series.
 """
 
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,10 @@ from kvtheory.checks import comparing
 from kvtheory.checks.allowances import Band, Resolution
 from kvtheory.checks.checklist import RELATIVE, largest, root_mean_square
 from kvtheory.checks.comparison_case import Case, rms
+from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.noise import SURE, noise, rounded
 from kvtheory.checks.theory import CURVES, Array, Theory
+from kvtheory.checks.trial_elements import steady_changes
 from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Comparison
 
@@ -22,13 +24,17 @@ NAMES = ("friction_coefficient", "friction_force", "normal_force", "depth", "lea
          "peak_pressure")  # fmt: skip
 """The columns that are compared."""
 SMOOTH = 1e-3
-"""Error allowed beside the scatter, relative to a value: no experiment and few simulations are better."""
+"""Relative error allowed beside the scatter: no experiment is better, and few simulations are."""
 LARGEST_SCATTER = 0.2
 """Scatter, relative to the curve, beyond which the points cannot test it."""
+FAMILIES = [
+    (words, partial(mistakes, changes=steady_changes) if family is mistakes else family)
+    for words, family in comparing.FAMILIES if words not in comparing.OF_TIME
+]  # fmt: skip
+"""The faults that are tried for steady sliding."""
 STEADY_ONLY = (
-    " Steady sliding tests neither the inertia nor the memory of the free surface: the problems heavy-mass "
-    "and "
-    "reversal do."
+    " Steady sliding tests neither the inertia nor the memory of the free surface: the problems "
+    "heavy-mass and reversal do."
 )
 
 
@@ -46,9 +52,7 @@ class SteadyTheory(Theory):
         state = self.methods.steady(self.scene.at(times))
         moving = {name: np.zeros_like(times) for name in CURVES}
         known = {name: getattr(state, name, None) for name in NAMES} | {"normal_force": state.load}
-        sizes = {
-            name: np.broadcast_to(x, times.shape) for name, x in known.items() if x is not None
-        }
+        sizes = {n: np.broadcast_to(x, times.shape) for n, x in known.items() if x is not None}
         return {**moving, "velocity": times, "sliding_velocity": times, **sizes}
 
 
@@ -62,15 +66,14 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
         digits = sigma = zero
         if name in names:
             values = series.columns[name]
-            digits, sigma = rounded(values), noise(order, values - now[name], now[name])
+            digits, sigma = rounded(values), _scatter(order, values, now[name])
         smooth = SMOOTH * np.abs(now[name]) + digits
         bands[name] = Band(now[name], now[name], smooth, sigma, digits)
     case = Case(
         steady, series, names, Resolution(1.0, 1.0, True, True), now, bands, zero, tolerance
     )
     checks = tuple(_checks(case))
-    families = [f for f in comparing.FAMILIES if f[0] in comparing.STEADY]
-    text, explanations = comparing.diagnose(case, checks, families)
+    text, explanations = comparing.diagnose(case, checks, FAMILIES)
     if comparing.verdict(checks) == "agrees":
         text += STEADY_ONLY
     columns = {"velocity": series.time, **{name: series.columns[name] for name in names}}
@@ -81,33 +84,38 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
     )  # fmt: skip
 
 
+def _scatter(order: Array, values: Array, curve: Array) -> Array:
+    """Return sigma of the values, without what is smooth, although the points may be far apart.
+
+    A wrong curve may resemble theory times a factor, or be flat.
+    """
+    square = float(curve @ curve)
+    factors = 1.0, float(values @ curve) / square if square else 0.0, 0.0
+    found = [noise(order, values - factor * curve, curve) for factor in factors]
+    return min(found, key=rms)
+
+
 def _checks(case: Case) -> Iterator[Check]:
     """Yield the scatter, and for each column the largest difference, the root mean square and the mean."""
     loud = max(rms(case.bands[name].noise) / rms(case.now[name]) for name in case.names)
-    most = case.tolerance * LARGEST_SCATTER
-    yield Check(
-        comparing.SCATTER, loud, most, loud <= most, "F1", "root mean square, relative to the curve"
-    )
+    most, unit = case.tolerance * LARGEST_SCATTER, "root mean square, relative to the curve"
+    yield Check(comparing.SCATTER, loud, most, loud <= most, "F1", unit)
+    equation = "F17" if case.theory.scene.foundation.arms else "F1"
     for name in case.names:
-        title, equation = (
-            name.replace("_", " "),
-            "F17" if case.theory.scene.foundation.arms else "F1",
-        )
-        mean = abs(float(np.mean(case.residual(name))))
-        band, scale = case.bands[name], case.theory.scales[name]
-        random = SURE * rms(band.noise) / np.sqrt(case.time.size)
-        allowed = case.tolerance * (rms(band.systematic) + random) / scale
-        for kind, (measured, limit, note) in (
-            ("largest", largest(case, name)), ("RMS", root_mean_square(case, name)),
-            ("mean difference", (mean, allowed, "")),
-        ):  # fmt: skip
-            words = note.replace(" ms", " mm/s")
-            yield Check(
-                f"{title}, {kind}",
-                float(measured),
-                float(limit),
-                bool(measured <= limit),
-                equation,
-                RELATIVE,
-                words,
-            )
+        for kind, measure in (
+            ("largest", largest),
+            ("RMS", root_mean_square),
+            ("mean difference", _mean),
+        ):
+            measured, limit, note = measure(case, name)
+            title, words = f"{name.replace('_', ' ')}, {kind}", note.replace(" ms", " mm/s")
+            ok = bool(measured <= limit)
+            yield Check(title, float(measured), float(limit), ok, equation, RELATIVE, words)
+
+
+def _mean(case: Case, name: str) -> tuple[float, float, str]:
+    """Compare the mean difference of a column."""
+    band, scale = case.bands[name], case.theory.scales[name]
+    random = SURE * rms(band.noise) / np.sqrt(case.time.size)
+    allowed = case.tolerance * (rms(band.systematic) + random) / scale
+    return abs(float(np.mean(case.residual(name)))), allowed, ""

@@ -8,30 +8,30 @@ from numpy.typing import NDArray
 from kvtheory.checks.theory import Array
 
 SMALLEST = 1e-300
-"""Magnitude that stands for zero where digits are counted."""
+"""Stands for zero where digits are counted."""
 NORMAL_MAD = 0.6745
-"""Median of the magnitude of a normal variate of variance one."""
+"""Median magnitude of a standard normal variate."""
 FEWEST = 5
 """Values needed to estimate noise from neighbours."""
 MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
-"""Fractions of the noise that are proportional to the value, to be tried; the rest is constant."""
+"""Shares of noise in proportion to the value that are tried; the rest is constant."""
 DOUBT = 5.0
-"""Difference of log-likelihoods up to which the less likely model is not ruled out."""
+"""Difference in log-likelihood up to which a less likely model is not ruled out."""
 RARE, FROM_FEW = 2.0, 2.0
-"""Standard deviations allowed beyond sqrt(2 ln n), where the largest of n normal errors is expected: with
-them fewer than one run of twenty checks in a thousand raises a false alarm. And the relative uncertainty, in
-units of 1/sqrt(n), of a standard deviation that is estimated from n values."""
+"""Standard deviations allowed beyond sqrt(2 ln n), the expected largest of n normal errors: less than one
+false alarm in a thousand runs of twenty checks. And the uncertainty of a standard deviation from n values,
+relative to it, in 1/sqrt(n)."""
 SURE = 4.5
-"""Standard deviations that a single normal error almost never exceeds (once in 150,000)."""
+"""Standard deviations that a normal error exceeds once in 150,000."""
 FEW_DIGITS = (2, 3, 4, 5)
-"""Significant digits to which a column may be rounded; more do not matter."""
-SEVERAL, ON_GRID = 10, 1e-3
-"""Fewest distinct values whose smallest step shows the rounding, and how close to its multiples, relative to
-the step, all values must be."""
+"""Digits to which a column may be rounded; more do not matter."""
+SEVERAL, ON_GRID, DISTINCT = 4, 1e-3, 1e-9
+"""Fewest distinct values that show a grid; accepted distance from it, relative to its step; and smallest
+difference of distinct values, relative to the largest."""
 SAME = 1e-6
-"""Fraction of the last digit within which a value counts as rounded to it."""
+"""Distance from a rounded value, in units of its last digit, that is accepted."""
 REPEATED = 0.1
-"""Fraction of rows with the time of the row before, from which times count as rounded."""
+"""Share of rows with the same time as the row before, from which times count as rounded."""
 
 
 def extreme(count: int) -> float:
@@ -83,15 +83,18 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
 def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     """Return the rounding error: half the smallest step between values, or half their last digit.
 
-    Values with fewer digits than `fewest` count as exact.
+    Digits are counted after the point or as significant ones, whichever leaves the larger error.
+    Values with fewer of them than `fewest` count as exact.
     """
     distinct = np.unique(values[np.isfinite(values)])
-    step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
-    on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
-    half = 0.5 * step if on_grid else 0.0
+    steps = np.diff(distinct)
+    steps = steps[steps > DISTINCT * np.abs(distinct).max(initial=0.0)]
+    step = float(steps.min()) if steps.size >= SEVERAL - 1 else math.inf
+    on_grid = np.abs(distinct / step - np.round(distinct / step)).max(initial=0.0) <= ON_GRID
+    half = 0.5 * step if on_grid and math.isfinite(step) else 0.0
     size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), SMALLEST)))
-    for digits in (d for d in FEW_DIGITS if d >= fewest):
-        last = size * 10.0 ** (1 - digits)
+    sizes = (np.full_like(size, size.max()), size) if steps.size else (size,)
+    for last in (each * 10.0 ** (1 - d) for d in FEW_DIGITS if d >= fewest for each in sizes):
         off = np.abs(values / last - np.round(values / last))
         if np.nanmax(off, initial=0.0) <= SAME:
             return np.asarray(np.maximum(half, 0.5 * last))

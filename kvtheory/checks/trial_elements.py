@@ -1,8 +1,9 @@
-"""A compact simulation of all mistakes in the contact rule together.
+"""Simulates every mistake in the contact rule at once.
 
-Its arrays run over rules, rows and columns of elements: a line contact is one row, a ball has several. The
-right rule is the first, and the difference of the others to it is what a mistake changes, so that most errors
-of the discretization cancel. It is NumPy alone, and shares no code with the models.
+Arrays run over rules, rows and columns of elements: a line contact has one row, a ball several. The first
+rule is the right one, and only differences from it are used: most errors of the discretization cancel.
+Steady sliding uses the same elements in the order in which they pass. It is NumPy alone, and shares no code
+with the models.
 """
 
 import math
@@ -22,16 +23,20 @@ from kvtheory.scene.static_state import StaticState
 class Rule(NamedTuple):
     """How an element presses on the indenter; any value but the default is a mistake.
 
-    The compression rate is `depth_rate` times delta' less `slide_rate` times h' V; the free surface decays as
-    exp(-`decay` t/tau), and is forgotten for an infinite one. `pulls`: an element sticks below z = 0.
-    `stale` is the part of the pressure of receding elements that is lost in the equation of motion, `drops`
-    that of all elements while the indenter rises. `hunt`: the damping is this times C u/delta_0. `friction`
-    is the factor on h' V in the pressure that makes friction. `central`: friction is F_z times the slope in
-    the middle of the patch. `front`, `back`: weights of the elements before and behind the lowest point;
-    `lost` is the part of the half length that is missing at the leading edge. `flat`: all strips of a ball
-    are as its middle one. `start` is the first depth over the static one; `loaded`: the arms bear load at the
-    start. `freezes`: arms do not relax where the indenter has left them. `damper` is that of the indenter,
-    over C times the contact.
+    `depth_rate`, `slide_rate`: factors on delta' and on -h' V in the compression rate.
+    `decay`: the free surface decays as exp(-`decay` t/tau); infinite means no memory.
+    `pulls`: an element sticks, and pulls, until it is back at z = 0.
+    `stale`: part of the pressure of receding elements that the equation of motion misses.
+    `drops`: part of the whole force that it misses while the indenter rises.
+    `hunt`: damping is this times C u/delta_0, as in the law of Hunt and Crossley.
+    `friction`: factor on h' V in the pressure from which friction is computed.
+    `central`: friction is F_z times the slope in the middle of the patch.
+    `front`, `back`: weights of elements before and behind the lowest point.
+    `lost`: part of the half length without elements at the leading edge.
+    `flat`: every strip of a ball is as deep as the middle one.
+    `start`: initial depth over the static depth.
+    `loaded`, `freezes`: arms bear load at the start; arms do not relax once the indenter has left them.
+    `damper`: a damper on the indenter, in units of C times the contact.
     """
 
     depth_rate: float = 1.0
@@ -54,30 +59,41 @@ class Rule(NamedTuple):
 
 
 COLUMNS, ROWS = {False: 100, True: 26}, 8
-"""Elements in the static half length of a line contact and of a ball, and rows in half the width of a
-ball."""
+"""Elements per static half length of a line contact and of a ball; rows per half width of a ball."""
 WINDOW = 1.7
-"""Half of the width over which elements are simulated, in static half lengths."""
+"""Half width of the simulated region, in static half lengths."""
 PASSED = 1.618
-"""Elements that pass in a step: never in step with those that enter."""
+"""Elements that pass in a step; no whole number, so that entries are not in phase with steps."""
 FEWEST_STEPS, LONGEST_RUN = 300, 1500
-"""Fewest and most steps of the simulation; its later curves are taken as constant."""
+"""Fewest and most steps of a simulation; curves are constant afterwards."""
 FINEST, GROWTH = 0.02, 1.3
-"""Length of the first step after a change of the drive, as part of the longest, and growth of the next
-ones."""
+"""First step after a change of the drive, relative to the longest one; growth factor of the next ones."""
 OSCILLATION = 0.05
-"""Longest step, in periods of the spring over 2 pi."""
+"""Longest step, in sqrt(M_x/k_x)."""
 SWING = 4.0
-"""Room for a motion on the spring, in static half lengths."""
+"""Largest displacement on the spring, in static half lengths."""
 SIMULATED = ("velocity", "depth", "depth_rate", "normal_force", "friction_force", "leading_edge",
              "trailing_edge", "peak_pressure", "sliding_velocity", "spring_force")  # fmt: skip
-"""The curves that a simulation returns, in their order."""
-LATE, NEWTON = 0.52, 1
-"""Weight of the end of a step, a little above that of the trapezoidal rule; and Newton steps."""
+"""The curves that a simulation returns, in this order."""
+POINTS, HALVINGS = 24, 24
+"""Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
+SHALLOWEST, DEEPEST = 1e-3, 4.0
+"""Ends of that interval, in static depths."""
+STEADY = "slide_rate", "pulls", "hunt", "friction", "central", "front", "back", "lost", "flat"
+EVEN = "depth", "normal_force", "peak_pressure"
+"""What of a rule shows in steady sliding; and the curves that do not change sign with the velocity."""
+SLOWEST, TINY = 1e-9, 1e-300
+"""Lowest speed on arms, in a_0/tau; and a force in N that divides where there is none."""
+IMPLICIT = 0.52
+"""Weight of the end of a step; slightly more than the trapezoidal rule, for damping."""
 
 
 class Pressed(NamedTuple):
-    """The answer of the elements to a step, by rule: forces, edges, peak, and their new state."""
+    """Forces, edges, peak pressure and new state of the elements after a step, by rule.
+
+    `lift` is the normal force in the equation of motion; `slope` and `drag` are derivatives of both forces by
+    the velocities.
+    """
 
     normal: Array
     lift: Array
@@ -93,11 +109,10 @@ class Pressed(NamedTuple):
 
 @dataclass
 class Elements:
-    """The elements of each rule as arrays (rules, rows, columns), and what they remember.
+    """Elements of every rule as arrays (rules, rows, columns), with their state.
 
-    `surface` is their compression, `stress` that of each arm, in a first dimension; `seen` is the time until
-    which each column is up to date. `heights` are y^2/(2 R'), `areas` those of elements (a length for a
-    line).
+    `surface` is the compression, `stress` that of the arms (first axis), `seen` the time to which a column is
+    up to date. `heights` are y^2/(2 R'); `areas` are lengths for a line contact.
     """
 
     scene: Scene
@@ -112,37 +127,37 @@ class Elements:
 
     @classmethod
     def at_rest(cls, scene: Scene, rules: Sequence[Rule], low: float, high: float) -> "Elements":
-        """Return elements between two places (m), under the indenter at rest."""
-        static, ball, arms = (
-            StaticState.of(scene),
-            isinstance(scene.indenter, Sphere),
-            scene.foundation.arms,
-        )
+        """Return elements at rest under the indenter, between two places (m)."""
+        static, ball = StaticState.of(scene), isinstance(scene.indenter, Sphere)
         rule = Rule(*np.array(rules, dtype=float).T[:, :, None, None])
         length = static.half_length / COLUMNS[ball]
         places: Any = np.arange(math.floor(low / length), math.ceil(high / length) + 1) * length
         heights, areas = np.zeros((len(rules), 1, 1)), np.full((len(rules), 1, 1), length)
         if isinstance(scene.indenter, Sphere):
-            y = (np.arange(int(ROWS * WINDOW)) + 0.5).reshape(
-                1, -1, 1
-            ) / ROWS  # over the half width
+            y = (np.arange(int(ROWS * WINDOW)) + 0.5)[:, None] / ROWS  # over the half width
             heights = static.depth * np.where(rule.flat > 0.0, 0.0, y * y)
             width = 2.0 * static.half_length * scene.indenter.stretch / ROWS
             areas = length * width * ((rule.flat == 0.0) | (y < 1.0))
         R = scene.indenter.radius  # type: ignore[union-attr]
         surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
-        stress: Array = np.array(
-            [arm.stiffness * rule.loaded * surface for arm in arms], dtype=float
-        )
-        stress = stress.reshape(len(arms), *surface.shape)
+        moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
+        seen = np.zeros(places.size)
         return cls(
-            scene, rule, places, heights, areas, length, surface, stress, np.zeros(places.size)
+            scene,
+            rule,
+            places,
+            heights,
+            areas,
+            length,
+            surface,
+            moduli * rule.loaded * surface,
+            seen,
         )
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
-        """Return the answer to a step h (s) of the columns `near`.
+        """Press the columns `near` for a step h (s).
 
-        `state` holds by rule the depth, its rate, the displacement of the base, and the sliding velocity.
+        `state` is, by rule, the depth, its rate, the displacement of the base and the sliding velocity.
         """
         depth, rate, moved, speed = (each[:, None, None] for each in state)
         rule, R = self.rule, self.scene.indenter.radius  # type: ignore[union-attr]
@@ -153,23 +168,20 @@ class Elements:
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         touching = g > -0.5 * np.abs(slope) * self.length  # with a part of the element
         on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
-        other = (
+        rubbed = (
             p + (1.0 - rule.friction) * damping * slope * speed
-        )  # the pressure that makes friction
-        p, other = (np.where(on & ((q > 0.0) | (rule.pulls > 0.0)), q, 0.0) for q in (p, other))
+        )  # from which friction is computed
+        p, rubbed = (np.where(on & ((q > 0.0) | (rule.pulls > 0.0)), q, 0.0) for q in (p, rubbed))
         inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
         area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
         reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
         area = np.where((rule.lost > 0.0) & (np.abs(x) > (1.0 - rule.lost) * reach)
                         & (x * speed < 0.0), 0.0, area)  # fmt: skip
-        normal, friction = (p * area).sum(axis=(1, 2)), -(other * slope * area).sum(axis=(1, 2))
+        normal, friction = (p * area).sum(axis=(1, 2)), -(rubbed * slope * area).sum(axis=(1, 2))
         kept = 1.0 - rule.stale * (g < self.surface[:, :, near])
         lift = (p * area * kept).sum(axis=(1, 2))
-        middle = (p != 0.0).any(axis=1)
-        some = middle.any(axis=1)
-        left, right = (np.where(some, end, np.nan) for end in (
-            np.where(middle, x[:, 0], np.inf).min(axis=1), np.where(middle, x[:, 0], -np.inf).max(axis=1),
-        ))  # fmt: skip
+        pressing = np.where((p != 0.0).any(axis=1), x[:, 0], np.nan)
+        left, right = np.fmin.reduce(pressing, axis=1), np.fmax.reduce(pressing, axis=1)
         central = -normal * np.nan_to_num(left + right) / (2.0 * R)
         friction = np.where(rule.central[:, 0, 0] > 0.0, central, friction)
         held = np.where(p != 0.0, area, 0.0)
@@ -181,7 +193,7 @@ class Elements:
         )
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
-        """Return who presses, p = K u + C u', C, K and the new state, with the exact memory of F8."""
+        """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
         sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
@@ -194,7 +206,7 @@ class Elements:
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
     def _arms(self, h: float, near: slice, g: Any, rise: Any, _touching: Any) -> Any:
-        """Do the same for arms that are strained at a constant rate during the step."""
+        """Return the same on arms, strained at a constant rate during the step."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
         sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
         moduli, times = _moduli_and_times(self.scene)
@@ -213,33 +225,31 @@ class Elements:
         return on, foundation.stiffness * surface + stress.sum(axis=0), 0.0, glassy, surface, stress
 
     def near(self, moved: Array, reach: float) -> slice:
-        """Return the columns that are near the indenter by any rule."""
+        """Return the columns near the indenter, by any rule."""
         ends = -reach - moved.max(), reach - moved.min()
         return slice(*np.searchsorted(self.places, ends).tolist())
 
     def keep(self, time: float, near: slice, found: Pressed) -> None:
-        """Take over the state after a step that ends at a time."""
+        """Accept the state at the end of a step."""
         self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
         self.seen[near] = time
 
     def relax(self, time: float, near: slice) -> None:
-        """Let the columns near the indenter relax from the time when they were last seen to this one."""
+        """Relax the columns near the indenter from the time they were last in use to this one."""
         late = np.flatnonzero(self.seen[near] < time) + near.start
         K, decay = self.scene.foundation.stiffness, np.minimum(self.rule.decay, 1e9)
         for k in late[self.surface[:, :, late].any(axis=(0, 1))]:
             gap = time - self.seen[k]
             if self.scene.foundation.arms:
                 moduli, times = (part[:, 0, 0, 0] for part in _moduli_and_times(self.scene))
-                rates = np.linalg.solve(
-                    np.eye(moduli.size) + moduli[:, None] / K, np.diag(-1.0 / times)
-                )
+                coupled = np.eye(moduli.size) + moduli[:, None] / K
+                rates = np.linalg.solve(coupled, np.diag(-1.0 / times))
                 left = np.einsum("ab,brj->arj", expm(rates * gap), self.stress[..., k])
                 left = np.where(np.isinf(self.rule.decay[..., 0]), 0.0, left)
                 relaxes = self.rule.decay[..., 0] > 0.0
                 self.stress[..., k] = np.where(relaxes, left, self.stress[..., k])
-                self.surface[..., k] = np.where(
-                    relaxes, -left.sum(axis=0) / K, self.surface[..., k]
-                )
+                free = -left.sum(axis=0) / K
+                self.surface[..., k] = np.where(relaxes, free, self.surface[..., k])
             else:
                 tau = self.scene.foundation.retardation_time
                 self.surface[..., k] *= np.exp(-decay[..., 0] * gap / tau)
@@ -252,11 +262,9 @@ def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
 
 
 def instants(theory: Theory, end: float) -> Array:
-    """Return the ends of the steps: short ones follow each change of the drive, whose time comes twice."""
-    scene, length = (
-        theory.scene,
-        theory.static.half_length / COLUMNS[not theory.scene.indenter.per_width],
-    )
+    """Return the ends of the steps, short ones after each change of the drive, whose time comes twice."""
+    scene = theory.scene
+    length = theory.static.half_length / COLUMNS[not scene.indenter.per_width]
     longest = end / FEWEST_STEPS
     if theory.motion.highest_speed:
         longest = min(longest, PASSED * length / theory.motion.highest_speed)
@@ -275,7 +283,7 @@ def instants(theory: Theory, end: float) -> Array:
 def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, dict[str, Array]]:
     """Return times, and each curve as an array (times, rules), of simulations up to a time in s.
 
-    A step is a Newton step or two of a trapezoidal rule, from the rates before it.
+    A step is one Newton step of the trapezoidal rule, from the rates before it.
     """
     scene, static, motion, times = theory.scene, theory.static, theory.motion, instants(theory, end)
     reach, drive, held, M = WINDOW * static.half_length, scene.drive, scene.held, scene.support.mass
@@ -305,23 +313,22 @@ def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, 
         elements.relax(last, near)
 
         def at(h: float) -> tuple[Array, Array, Pressed]:
-            sunk = depth + h * ((1.0 - LATE) * before + LATE * rate)  # noqa: B023
-            shift = along + h * ((1.0 - LATE) * before_along + LATE * along_rate)  # noqa: B023
+            sunk = depth + h * ((1.0 - IMPLICIT) * before + IMPLICIT * rate)  # noqa: B023
+            shift = along + h * ((1.0 - IMPLICIT) * before_along + IMPLICIT * along_rate)  # noqa: B023
             state = sunk, rate, base - shift, V - along_rate  # noqa: B023
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
-        for _ in range(NEWTON * (h > 0.0)):
+        if h > 0.0:
             sunk, shift, found = at(h)
             if not held:
-                a = LATE * lift(sunk, rate, found) + (1.0 - LATE) * lifted
-                slope = damper + LATE * h * k_s + found.slope
-                rate = rate - (rate - before - h * a / M) / (1.0 + LATE * h * slope / M)
+                a = IMPLICIT * lift(sunk, rate, found) + (1.0 - IMPLICIT) * lifted
+                slope = damper + IMPLICIT * h * k_s + found.slope
+                rate = rate + h * a / M / (1.0 + IMPLICIT * h * slope / M)
             if k_x:
-                a = LATE * pull(shift, along_rate, found) + (1.0 - LATE) * pulled
-                slope = drive.damping + LATE * h * k_x + found.drag
-                off = along_rate - before_along - h * a / M_x
-                along_rate = along_rate - off / (1.0 + LATE * h * slope / M_x)
+                a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
+                slope = drive.damping + IMPLICIT * h * k_x + found.drag
+                along_rate = along_rate + h * a / M_x / (1.0 + IMPLICIT * h * slope / M_x)
         depth, along, found = at(h)
         elements.keep(now, near, found)
         if not held:
@@ -343,11 +350,56 @@ def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[st
         grid, found = simulate(theory, [Rule(), *rules], float(times[-1]))
     off = [{name: values[:, k] - values[:, 0] for name, values in found.items()}
            for k in range(1, len(rules) + 1)]  # fmt: skip
-    moving = (times >= 0.0) & (times <= max(grid[-1], 0.0) * 2.0)
-    return [
-        {
-            n: moving * np.interp(times, grid, np.nan_to_num(curve, nan=0.0))
-            for n, curve in each.items()
-        }
-        for each in off
-    ]
+    moving = (times >= 0.0) & (times <= 2.0 * grid[-1])
+    return [{n: moving * np.interp(times, grid, np.nan_to_num(curve)) for n, curve in each.items()}
+            for each in off]  # fmt: skip
+
+
+def steady_changes(theory: Theory, rules: Sequence[Rule], speeds: Array) -> list[dict[str, Array]]:
+    """Return by rule what it changes in each curve of steady sliding at speeds (m/s, increasing)."""
+    kinds, V = (
+        [Rule(**{key: getattr(rule, key) for key in STEADY}) for rule in rules],
+        np.abs(speeds),
+    )
+    some = np.unique(np.quantile(V, np.linspace(0.0, 1.0, POINTS), method="nearest"))
+    found = {rule: steady(theory, rule, some) for rule in {Rule(), *kinds}}
+    sign = np.where(speeds < 0.0, -1.0, 1.0)
+    return [{name: np.interp(V, some, np.nan_to_num(values - found[Rule()][name]))
+             * (1.0 if name in EVEN else sign) for name, values in found[rule].items()}
+            for rule in kinds]  # fmt: skip
+
+
+def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
+    """Return the curves of steady sliding by a rule at speeds (m/s)."""
+    scene, static, count = theory.scene, theory.static, speeds.size
+    reach, zero = WINDOW * static.half_length, np.zeros(count)
+    elements = Elements.at_rest(scene, [rule] * count, -reach, reach)
+    x = elements.places
+    elements.surface = np.zeros((count, elements.heights.shape[1], x.size))
+    if scene.foundation.arms:
+        moduli, times = _moduli_and_times(scene)
+        speed = np.maximum(speeds, SLOWEST * static.velocity)[:, None, None]
+        ages = (x - x[:, None]) / speed
+        age = elements.length / (speed * times)
+        passed = np.where(ages < 0.0, 0.0, np.exp(-np.maximum(ages, 0.0) / times))
+        passed = rule.slide_rate * moduli * -np.expm1(-age) / age * passed
+
+    def pressed(depth: Array) -> Pressed:
+        if scene.foundation.arms:  # the stress of each strain that has passed
+            overlap = depth[:, None, None] - elements.heights - 0.5 * x * (x / theory.radius)
+            elements.surface = np.maximum(overlap, 0.0)
+            elements.stress = np.diff(elements.surface, axis=-1, prepend=0.0) @ passed
+        return elements.pressed(0.0, slice(None), depth, zero, zero, speeds)
+
+    low, high = static.depth * np.array([[SHALLOWEST], [DEEPEST]]) * np.ones(count)
+    for _ in range(0 if scene.held else HALVINGS):
+        middle = 0.5 * (low + high)
+        pushed = scene.support.weight - scene.support.spring * (middle - static.depth)
+        light = pressed(middle).normal < pushed
+        low, high = np.where(light, middle, low), np.where(light, high, middle)
+    depth = np.full(count, static.depth) if scene.held else 0.5 * (low + high)
+    found = pressed(depth)
+    mu = found.friction / np.maximum(found.normal, TINY)
+    return {"depth": depth, "normal_force": found.normal, "friction_force": found.friction,
+            "friction_coefficient": mu, "leading_edge": found.left, "trailing_edge": found.right,
+            "peak_pressure": found.peak}  # fmt: skip

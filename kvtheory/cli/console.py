@@ -172,6 +172,8 @@ def print_error(about: str, result: Any) -> None:
     """Print the last line of a result: about the model, then its largest error and what that covers."""
     worst, given = max(result.certificate.relative_error.values()), result.certificate
     click.echo(f"\n{about}; error {given.kind} at {worst:.1e} or less: {given.statement}.")
+    for note in getattr(result, "notes", ()):
+        click.echo(note)
 
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:

@@ -18,7 +18,7 @@ from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import check_output
 
 if TYPE_CHECKING:
-    from kvtheory.derivations.record import Derivation
+    from kvtheory.derivations.engine.record import Derivation
     from kvtheory.derivations.render import Edition
 
 MOST_NAMED = 20

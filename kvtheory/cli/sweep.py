@@ -69,6 +69,7 @@ def sweep(
     from kvtheory.api._sweep import plan_of
     from kvtheory.results import record
     from kvtheory.scene import load_scene
+    from kvtheory.scene.foundations import EXTRAPOLATED
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
@@ -108,6 +109,8 @@ def sweep(
         click.echo(
             'The lines above the table describe it: read it by pandas.read_csv(FILE, comment="#").'
         )
+    if EXTRAPOLATED in result.certificate.statement:
+        click.echo(f"In some scenes V/c is {EXTRAPOLATED}.")
     for failure in result.failures[:SHOWN_FAILURES]:
         point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
         click.echo(f"  {point}: {failure.reason}")

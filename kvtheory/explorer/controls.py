@@ -9,7 +9,7 @@ from typing import Any
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import lacks_scripts
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.foundations import FOUNDATIONS, THERMAL, THIN, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, MEASURED_RANGE, THERMAL, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Run, Scene
 from kvtheory.scene.quantities import Quantity, given, required
@@ -60,7 +60,7 @@ UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
-    hidden = {*THERMAL, *(["modulus"] if cls is Arm else [])}
+    hidden = {*THERMAL, *MEASURED_RANGE, *(["modulus"] if cls is Arm else [])}
     return {name: spec for name, spec in declared(cls).items() if name not in hidden}
 
 

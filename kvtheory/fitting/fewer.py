@@ -49,6 +49,8 @@ MARGIN = 1.5
 as long: c W'/W >= 1/2."""
 EARLY = 0.01
 """w_1 over the tolerance."""
+LATEST = 60.0
+"""Multiple of the longest relaxation time after which nothing is left to compare: e^-60 = 1e-26."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,8 @@ def reduced(
     time = np.array([arm.relaxation_time for arm in foundation.arms])
     moving, early = solve(scene.at(V)), EARLY * rtol
     ages = (moving.trailing_edge - moving.leading_edge) / V
-    data = Slopes.of(size, time, early / MARGIN * float(ages.min()), MARGIN * float(ages.max()))
+    last = min(MARGIN * float(ages.max()), LATEST * float(time.max()))
+    data = Slopes.of(size, time, min(early / MARGIN * float(ages.min()), 0.1 * last), last)
     order = np.argsort(time)
     line = has_bound(scene)
     best = Fewer(scene, 0.0, 0.0 if line else math.nan, 0.0)

@@ -5,7 +5,7 @@ stiffness of the foundation, and the velocities its times (fact F26); many point
 once, as theory takes arrays, and the best ones are refined. The covariance is that of the linear theory at
 the minimum. A direction of the unknowns that the data leave open by more than a factor of two is reported
 by its keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
-much above its minimum as linear theory predicts at two standard errors.
+much above its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t).
 """
 
 import math
@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 from scipy.stats import qmc
 
 from kvtheory.fitting.least_squares import Fit, covariance, descend, slopes
@@ -66,8 +67,8 @@ FAILED = 1e3
 """Residual where theory has no answer."""
 ALIKE = 0.5
 """Correlation of neighbouring residuals of a time series from which they are not scatter."""
-SIGMAS = 2.0
-"""Standard errors at which an interval ends, where errors are elliptic."""
+CONFIDENCE = 0.95
+"""Probability with which an interval holds the true value."""
 NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
 """Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
 rise of the sum of squares there, and the relative change of a diagonal that keeps equations solvable."""
@@ -139,6 +140,15 @@ class Problem:
                     scale = np.maximum(scale, FLOOR * np.abs(values).max())
                 found.append(np.nan_to_num((own[name] - values) / scale, nan=FAILED))
         return found
+
+    def count(self, point: Array) -> float:
+        """Return the number of residuals; those relative to the floor scatter less, and count in part."""
+        count = 0.0
+        for data, own in zip(self.data, self.theory(point[None]), strict=True):
+            for name, values in data.measured.items():
+                share = np.abs(own[name][0] * values) / (FLOOR * np.abs(values).max()) ** 2
+                count += data.size if data.time is not None else np.minimum(share, 1.0).sum()
+        return float(count)
 
     def residuals(self, points: Array) -> Array:
         """Return the residuals of unknowns in rows, times the weights."""
@@ -253,7 +263,8 @@ def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tupl
     if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
         told = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
         raise ValueError(f"{problem.data[0].source}: {told}; check the scene")
-    return problem, Fit(point, r, problem.slopes(point[None], central=True)[0])
+    J = problem.slopes(point[None], central=True)[0]
+    return problem, Fit(point, r, J, problem.count(point))
 
 
 def intervals(problem: Problem, found: Fit) -> Array:
@@ -265,7 +276,9 @@ def intervals(problem: Problem, found: Fit) -> Array:
     size, (low, high) = found.point.size, problem.limits
     errors = np.maximum(np.sqrt(np.diag(found.covariance)), STEP[problem.costly] ** 2)
     least = float(found.residuals @ found.residuals)
-    rise = (SIGMAS * errors) ** 2 / np.diag(covariance(found.slopes))
+    rise = (stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE) * errors) ** 2 / np.diag(
+        covariance(found.slopes)
+    )
     own, side = np.tile(np.arange(size), 2), np.repeat([-1.0, 1.0], size)
     wanted, limits = least + rise[own], side * np.inf
     points = np.tile(found.point, (2 * size, 1))

@@ -105,41 +105,41 @@ def covariance(slopes: Array) -> Array:
 
 
 class Fit(NamedTuple):
-    """The best unknowns, the residuals there, and their slopes."""
+    """The best unknowns, the residuals there, their slopes, and the effective number of residuals."""
 
     point: Array
     residuals: Array
     slopes: Array
-
-    @classmethod
-    def at(cls, residuals: Residuals, point: Array) -> "Fit":
-        """Return the fit at a minimum, with central slopes."""
-        row = point[None]
-        return cls(point, residuals(row)[0], slopes(residuals, row, central=True)[0])
+    effective: float
 
     @property
-    def misfit(self) -> float:
-        """The root mean square of the residuals."""
-        return math.sqrt(float(np.mean(self.residuals**2)))
+    def freedom(self) -> float:
+        """The degrees of freedom, at least 1."""
+        return max(self.effective - self.point.size, 1.0)
 
     @property
     def variance(self) -> float:
         """The variance of a residual, by the degrees of freedom."""
-        free = max(self.residuals.size - self.point.size, 1)
-        return float(self.residuals @ self.residuals) / free
+        return float(self.residuals @ self.residuals) / self.freedom
 
     @property
     def covariance(self) -> Array:
         """The covariance of the unknowns; huge in directions that the data leave open.
 
-        Where they leave none open it allows for scatter that varies (HC3: MacKinnon and White, 1985).
+        Where they leave none open it allows for scatter that varies (HC3: MacKinnon and White, 1985), with
+        standard errors no smaller than for equal scatter: in small samples HC3 varies too much (Angrist and
+        Pischke, 2009, section 8.1).
         """
         inverse = covariance(self.slopes)
+        equal = inverse * self.variance
         if self.open(range(self.point.size)):
-            return inverse * self.variance
+            return equal
         gain = np.einsum("ni,ij->nj", self.slopes, inverse)
         left = np.maximum(1.0 - np.einsum("ni,ni->n", gain, self.slopes), 1.0 / self.residuals.size)
-        return np.asarray(np.einsum("ni,n,nj->ij", gain, (self.residuals / left) ** 2, gain))
+        varying = np.einsum("ni,n,nj->ij", gain, (self.residuals / left) ** 2, gain)
+        least = np.finfo(float).tiny
+        widen = np.sqrt(np.maximum(np.diag(equal) / np.maximum(np.diag(varying), least), 1.0))
+        return np.asarray(varying * np.outer(widen, widen))
 
     def open(self, keys: Sequence[Any]) -> list[list[Any]]:
         """Return the keys of each combination of unknowns that the data leave open."""

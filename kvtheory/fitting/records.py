@@ -31,7 +31,7 @@ HEIGHT = "z_A, z, position, height, Höhe"
 STATIC = {"load": "support.load", "depth": "support.depth"}
 """The keys of a support that are conditions of a row if it has them; on other supports they are measured."""
 MOST_ROWS = 2000
-"""Most rows of a time series that are used, at equal distances: more would hardly sharpen a fit."""
+"""Most rows that are used: more would hardly sharpen a fit."""
 SAME_DRIVE = 0.05
 """Median difference of a column of velocities from the drive of the scene, over its largest velocity, up to
 which they are the same."""
@@ -55,12 +55,27 @@ class Data(NamedTuple):
         return next(iter(self.measured.values())).size
 
     def part(self, step: int) -> "Data":
-        """Return every row of this number; a time series has no other conditions."""
-        cut = {name: values[::step] for name, values in self.measured.items()}
+        """Return one row in `step`: of a time series at equal distances, else at random in each step.
+
+        Loads or directions may take turns from row to row.
+        """
+        rows = np.arange(0, self.size, step)
+        if self.time is None:
+            shift = np.random.default_rng(0).integers(step, size=rows.size)
+            rows = np.minimum(rows + shift, self.size - 1)
+        measured = {name: values[rows] for name, values in self.measured.items()}
         if self.time is not None:
-            return self._replace(measured=cut, time=self.time[::step])
-        rows = {name: values[::step] for name, values in self.conditions.items()}
-        return self._replace(measured=cut, conditions=rows)
+            return self._replace(measured=measured, time=self.time[rows])
+        own = {name: values[rows] for name, values in self.conditions.items()}
+        return self._replace(measured=measured, conditions=own)
+
+    @property
+    def thinned(self) -> "Data":
+        """The data, or if they are many, a part of them and a note."""
+        step = -(-self.size // MOST_ROWS)
+        if step == 1:
+            return self
+        return self._replace(notes=(*self.notes, f"One row in {step} is used.")).part(step)
 
 
 def _needed(found: set[str]) -> bool:
@@ -89,10 +104,10 @@ def read(data: Any, scene: Scene) -> Data:
         del measured["friction_force"]
     found = Data(table.source, conditions, measured, tuple(notes))
     if "time" in table:
-        return _over_time(table, found, scene)
+        return _over_time(table, found, scene).thinned
     if not np.any(conditions["drive.velocity"]):
         raise table.error("drive.velocity", "is zero throughout; friction needs sliding")
-    return found
+    return found.thinned
 
 
 def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Array]]:
@@ -134,7 +149,7 @@ def _measured(table: Table, name: str, scene: Scene) -> Array:
 
 
 def _over_time(table: Table, data: Data, scene: Scene) -> Data:
-    """Return a time series from t = 0 on, of not too many rows; the drive must be that of the scene."""
+    """Return a time series from t = 0 on; the drive must be that of the scene."""
     time, drive = table.si("time", "s")[0], scene.drive
     table.require("time", np.append(True, np.diff(time) > 0.0), "does not follow the time before")
     if "drive.velocity" in table and drive.function is None:
@@ -149,8 +164,5 @@ def _over_time(table: Table, data: Data, scene: Scene) -> Data:
         raise table.error("time", "is before t = 0, where sliding begins, throughout")
     if first:
         notes.append(f"{first} rows before t = 0, where sliding begins, are not used.")
-    step = -(-(time.size - first) // MOST_ROWS)
-    if step > 1:
-        notes.append(f"One row in {step} is used.")
     measured = {name: values[first:] for name, values in data.measured.items()}
-    return data._replace(measured=measured, notes=tuple(notes), time=time[first:]).part(step)
+    return data._replace(measured=measured, notes=tuple(notes), time=time[first:])

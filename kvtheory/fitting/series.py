@@ -45,7 +45,7 @@ SPELLINGS = {
     "trailing_edge": "trailing_edge, x_TE, Hinterkante",
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
 }
-"""How each quantity may be named; a minus sign marks those that point the other way."""
+"""Names of each quantity; a minus sign marks those that point the other way."""
 KNOWN = {
     plain(spelling): (quantity, spelling)
     for quantity, spellings in SPELLINGS.items()
@@ -56,19 +56,18 @@ SHOWN = (
     "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
 )
 MISSPELT = 0.8
-"""Similarity to a known name from which a name counts as misspelt, not as something else."""
+"""Similarity to a known name from which a name counts as misspelt."""
 SHORTEST, FEWEST_POINTS, MOST_ROWS = 8, 5, 2000
-"""Fewest rows that can show a jump, a transient of two time constants and a limit; fewest velocities of a
-curve;
-and about how many rows are kept of longer data, as more would not change a verdict."""
+"""Fewest rows that show a jump, a transient of two time constants and a limit; fewest velocities of a curve;
+and about how many rows of longer data are kept, as more would not change a verdict."""
 BRIEFEST = 1e-30
-"""Shortest span in s: no contact changes in a shorter time, whose powers would underflow."""
+"""Shortest span in s; powers of a shorter one would underflow."""
 MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """Quantities that do not exist in flight: some of their cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""
 READER = Reader(lambda name: KNOWN.get(plain(name), (None, ""))[0], bool, f"{SHOWN}", SPELLINGS)
-"""Reads columns by these names; what is missing, or not finite, is told by `_checked`."""
+"""Reads columns by these names; `_checked` reports what is missing or not finite."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ class Series:
     ignored: tuple[str, ...] = ()
     """Columns of no known name."""
     curve: bool = False
-    """Whether the rows are steady states at velocities, which then stand in the place of the times."""
+    """Whether the rows are steady states at velocities, which then take the place of the times."""
 
     @property
     def time(self) -> Array:
@@ -149,8 +148,7 @@ def _misspelt(heads: Iterable[str]) -> Iterator[str]:
     for head in heads:
         if near := get_close_matches(plain(parts(head)[0]), KNOWN, n=1, cutoff=MISSPELT):
             told = f'column "{head}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
-            known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
-            yield f"{told}; known names are {known}; rename a column that is something else"
+            yield f"{told} Rename a column that is something else"
 
 
 def _si(table: Table, name: str, unit: str) -> Array:

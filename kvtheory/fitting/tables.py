@@ -277,6 +277,8 @@ def _blank(line: str) -> bool:
 
 
 def _split(line: str, separator: str) -> list[str]:
+    if '"' not in line and len(line) < csv.field_size_limit():
+        return [cell.strip() for cell in line.split(separator)]
     quoted = INCH.sub("''", line)
     if quoted.count('"') % 2:
         quoted = quoted.replace('"', "''")

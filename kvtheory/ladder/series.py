@@ -14,11 +14,19 @@ from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.models.strips import held
-from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
+from kvtheory.results import (
+    TRANSIENT_UNITS,
+    Certificate,
+    FewerArms,
+    Simulation,
+    SteadyState,
+    Transient,
+)
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.capabilities import (
     lacks_arms,
+    lacks_closed_form,
     lacks_continuum,
     lacks_kelvin_voigt,
     lacks_paper_model,
@@ -63,6 +71,14 @@ OF_AN_ARM = 0.4
 """Work of one arm of an element, in element updates."""
 DIMENSIONS = {True: 2, False: 3}
 """Number of dimensions refined together: elements, steps, and for a ball strips."""
+MANY_ARMS, SHARE_OF_ARMS, SAFETY_OF_ARMS = 4, 0.1, 2.0
+"""Number of arms from which fewer ones are tried on elements, their share of the tolerance, and the safety
+factor of what they change."""
+SLOWER = np.geomspace(0.03, 1.0, 8)
+"""Velocities, over the largest one, at which fewer arms must give the friction."""
+BY_FEWER_ARMS = (
+    "plus {:g} times the change, in the coarsest run, by {} arms instead of {} (at least {:g} rtol)"
+)
 BEST_OF_ELEMENTS = 1e-6
 """Approximate error of elements with the most updates, from rest; they are not run for less."""
 
@@ -73,11 +89,12 @@ COARSER = (
 
 @dataclass(frozen=True)
 class Models:
-    """The public functions that run the models: `kvtheory.steady`, `transient` and `elements`."""
+    """The public functions: `kvtheory.steady`, `transient`, `elements` and `fewer_arms`."""
 
     steady: Callable[..., SteadyState]
     transient: Callable[..., Transient]
     elements: Callable[..., Simulation]
+    fewer_arms: Callable[..., FewerArms]
 
 
 def rungs(models: Models) -> tuple[Rung, ...]:
@@ -240,9 +257,12 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
         model, line = Model.of(scene), scene.indenter.per_width
         length, measures = 2.0 * model.at_rest.half_length, scales(model.at_rest)
         count, finer, before = ELEMENTS, math.nan, None
+        held, effect, told = scene, dict[str, float](), ""
         while True:
-            result = models.elements(scene, per_length=count / length, at=request.times)
+            result = models.elements(held, per_length=count / length, at=request.times)
             answer = _picked(result, request)
+            if before is None:
+                held, effect, told = _with_fewer_arms(models, scene, request, answer, result)
             if before is not None and request.times is not None:
                 own, errors = answer.certificate, dict(answer.certificate.relative_error)
                 for name in errors.keys() & measures.keys():
@@ -252,17 +272,49 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
                 statement = f"{own.statement}; {COARSER}"
                 own = Certificate(own.kind, statement, errors, AT_REST)
                 answer = answer._replace(certificate=own)
+            if told:
+                answer = _widened(answer, told, effect)
             error = max(answer.certificate.relative_error[name] for name in request.quantities)
             enough = error <= request.rtol and before is not None
             needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)
             finer = min(needed, MOST_FINER[line])
             ratio = finer if before is None else needed  # the first run may be too coarse to tell
-            work = result.element_updates * (1.0 + OF_AN_ARM * len(scene.foundation.arms))
+            work = result.element_updates * (1.0 + OF_AN_ARM * len(held.foundation.arms))
             if enough or work * ratio ** DIMENSIONS[line] > MOST_UPDATES[line]:
                 return answer
             count, before = count * finer, answer
 
     return Offer(BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan, run)
+
+
+def _with_fewer_arms(
+    models: Models, scene: Scene, request: Request, answer: Answer, run: Simulation
+) -> tuple[Scene, dict[str, float], str]:
+    """Return the scene with fewer arms, what that changes in a coarse run, and a statement of it.
+
+    Where it changes too much, or steady sliding costs more than elements, the scene stays.
+    """
+    arms, V = len(scene.foundation.arms), np.abs(run.velocity).max(initial=0.0)
+    if arms < MANY_ARMS or request.times is None or V == 0.0 or lacks_closed_form(scene):
+        return scene, {}, ""
+    least = SHARE_OF_ARMS * request.rtol
+    fewer = models.fewer_arms(scene, velocities=V * SLOWER, rtol=least, proved=False)
+    other = _picked(
+        models.elements(fewer.scene, per_length=run.per_length, at=request.times), request
+    )
+    change, scale = {}, scales(StaticState.of(scene))
+    for name in (name for name in request.quantities if name in scale):
+        apart = np.abs(np.asarray(answer.values[name]) - other.values[name])
+        change[name] = max(
+            SAFETY_OF_ARMS * float(np.nanmax(apart, initial=0.0)) / scale[name], least
+        )
+    if max(change.values(), default=0.0) > SAFETY_OF_ARMS * least:
+        return scene, {}, ""
+    return (
+        fewer.scene,
+        change,
+        BY_FEWER_ARMS.format(SAFETY_OF_ARMS, len(fewer.arms), arms, SHARE_OF_ARMS),
+    )
 
 
 def _series(

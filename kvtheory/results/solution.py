@@ -49,6 +49,11 @@ class Solution(Presented):
         return self.values[name]
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """The notes of the model that was used."""
+        return getattr(self.answer, "notes", ())
+
+    @property
     def choosing_share(self) -> float:
         """Share of the time spent on the choice, including rungs that were run but not used."""
         vain = sum(step.choosing + step.solving for step in self.climb[:-1])

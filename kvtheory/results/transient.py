@@ -18,7 +18,10 @@ class Event(NamedTuple):
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class TimeSeries(Presented):
-    """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN."""
+    """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN.
+
+    A note says if V/c, c the length of the contact, leaves the frequencies of a measured foundation.
+    """
 
     time: Value
     velocity: Value
@@ -34,6 +37,10 @@ class TimeSeries(Presented):
     units: Mapping[str, str] = field(
         default_factory=TRANSIENT_UNITS.copy, repr=False, compare=False
     )
+    notes: tuple[str, ...] = field(default=(), compare=False)
+
+    def __repr__(self) -> str:
+        return "\n".join([super().__repr__(), *self.notes])
 
     @property
     def _title(self) -> str:

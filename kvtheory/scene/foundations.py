@@ -43,6 +43,12 @@ TIMES = "retardation_time", "relaxation_time"
 THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf"
 GAS_CONSTANT = 8.31446261815324
 """R, in J/(mol K), exact."""
+EXTRAPOLATED = (
+    "outside the frequencies at which the foundation was measured, so that its series extrapolates"
+)
+BARELY = 1.001
+"""Factor by which a frequency may be outside the measured ones."""
+MEASURED_RANGE = "lowest_frequency", "highest_frequency"
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
 
@@ -87,6 +93,23 @@ def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
         "foundation.thickness or foundation.poisson_ratio (no K describes an incompressible layer, "
         "poisson_ratio = 0.5), or enlarge the contact; otherwise use a boundary-element code."
     )
+
+
+def extrapolates(foundation: "AnyFoundation", velocity: Any, contact_length: Any) -> str:
+    """Return a note if V/c is outside the frequencies of the measurement, or an empty text; or arrays.
+
+    Times shift by a_T, and so do frequencies: V a_T/c counts.
+    """
+    low, high = foundation.lowest_frequency, foundation.highest_frequency
+    if low is None:
+        return ""
+    f = np.asarray(np.abs(velocity) / np.abs(contact_length) * foundation.shift_factor)
+    outside = (f > 0.0) & ((f < low / BARELY) | (f > high * BARELY))
+    if not outside.any():
+        return ""
+    value = f"= {f:.3g} Hz is" if f.ndim == 0 else f"is, in {outside.sum()} of {f.size} scenes,"
+    shifted = " a_T" if foundation.temperature is not None else ""
+    return f"V{shifted}/c {value} {EXTRAPOLATED} ({np.min(low):.3g} to {np.max(high):.3g} Hz)."
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +161,14 @@ class _Relaxed(Part):
         "J/mol", "E_a of Arrhenius' law, ln a_T = (E_a/R) (1/T - 1/T_ref), instead of wlf",
         default=None, beside=("reference_temperature",), excludes=("wlf",),
     )  # fmt: skip
+    lowest_frequency: Value = quantity(
+        "1/s", "lowest frequency at which the foundation was measured, at the reference temperature",
+        default=None, beside=("highest_frequency",),
+    )  # fmt: skip
+    highest_frequency: Value = quantity(
+        "1/s", "highest frequency at which it was measured; V/c outside is noted, c the contact length",
+        default=None, beside=("lowest_frequency",),
+    )  # fmt: skip
     wlf: WLF | None = None
     arms: ClassVar[Any] = ()
 
@@ -169,6 +200,10 @@ class _Relaxed(Part):
             told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
         problems.report()
+        low, high = self.lowest_frequency, self.highest_frequency
+        if low is not None and np.any(low >= high):
+            told = "expected above foundation.lowest_frequency"
+            raise mistake("foundation.highest_frequency", high, told)
         for i, part in enumerate(held if self.modulus is not None else ()):
             stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
             section = f"foundation.arms[{i - 1}]" if i else "foundation"

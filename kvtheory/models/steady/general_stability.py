@@ -50,8 +50,9 @@ FEW, STRIPS, MORE, MOST = 6, 24, 4, 384
 which these increase until the error is small, and the most. Twice as many give the error."""
 ACCURATE = 1e-8
 """Relative error of a critical stiffness below which the number of strips is not increased."""
-POLISHING, MOVED = 4, 0.1
-"""Newton steps that refine a root for more strips, and the largest change of its logarithm."""
+POLISHING, MOVED, CONVERGING = 4, 0.1, 1e-7
+"""Newton steps that refine a root for more strips, its largest relative change, and the step whose square is
+the error after it."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 """Most Newton steps, tolerance of the relative step, and relative distance of roots taken as equal."""
 ANGLES, RADII = 9, 5
@@ -291,6 +292,7 @@ Value = Callable[..., Complex]
 """The function whose zeros are the rates, in the strips of a contact."""
 
 
+@np.errstate(all="ignore")
 def _rates(
     given: Contact, fine: Contact, finer: Contact, spring: float | None
 ) -> tuple[Complex, Array]:
@@ -308,31 +310,30 @@ def _rates(
         h = NEARBY * s
         return (value(s + h, fine) - value(s - h, fine)) / (2.0 * h)
 
-    with np.errstate(all="ignore"):
-        s = _newton(given, value, own)
-        for _ in range(POLISHING):
-            s = s - value(s, fine) / slope(s)
-        s = s[np.isfinite(s)]
-        k, across, size = fine.stiffness(s)
-        if spring is None:
-            size = np.abs(s * s) * given.scene.support.mass + np.abs(across)
-        else:
-            size = np.abs(across) * (spring + np.abs(k) + size)
-        f = value(s, fine)
-        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(s, finer) - f)
-        error = off / np.abs(slope(s) * s) + ROUNDING
-    upper = s.imag > SAME * np.abs(s)
-    s, error = np.append(s, s[upper].conj()), np.append(error, error[upper])
-    order = np.lexsort((s.imag, -s.real))
-    s, error = s[order], error[order]
+    s = _newton(given, value, own)
+    s = np.append(s, s[s.imag > SAME * np.abs(s)].conj())
+    s = s[np.lexsort((s.imag, -s.real))]
+    missed = False
     if s.size:
         last = s[min(degree, len(s)) - 1].real
         left = s.real[s.real < last - SAME * abs(last)]
         line = 0.5 * (last + left[0]) if left.size else 1.05 * last
-        if _count(value, line, degree, own) != np.count_nonzero(s.real > line):
-            error = np.full_like(error, np.inf)
+        missed = _count(value, line, degree, own) != np.count_nonzero(s.real > line)
+    s = first = s[:degree]
+    for _ in range(POLISHING):
+        s = s - value(s, fine) / slope(s)
+    k, across, size = fine.stiffness(s)
+    if spring is None:
+        size = np.abs(s * s) * given.scene.support.mass + np.abs(across)
+    else:
+        size = np.abs(across) * (spring + np.abs(k) + size)
+    f = value(s, fine)
+    off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(s, finer) - f)
+    error = off / np.abs(slope(s) * s) + ROUNDING
+    astray = missed | ~(np.abs(s - first) < MOVED * np.abs(first))
+    order = np.lexsort((s.imag, -s.real))
     found, errors = np.full(degree, np.nan, complex), np.full(degree, np.inf)
-    found[: s.size], errors[: s.size] = s[:degree], error[:degree]
+    found[: s.size], errors[: s.size] = s[order], np.where(astray, np.inf, error)[order]
     return found, errors
 
 
@@ -371,15 +372,14 @@ def _count(value: Value, line: float, degree: int, own: Array) -> int:
     logs = np.append(np.log(own), np.log(abs(line)))
     omega = np.exp(np.linspace(logs.min() - 7.0, logs.max() + 9.0, 2000))
     omega = np.insert(omega, 0, 0.0)
-    with np.errstate(all="ignore"):
-        f = value(line + 1j * omega)
-        for _ in range(REFINEMENTS):
-            (at,) = np.nonzero(np.abs(np.angle(f[1:] / f[:-1])) > TURN)
-            if not at.size:
-                break
-            middle = 0.5 * (omega[at] + omega[at + 1])
-            f = np.insert(f, at + 1, value(line + 1j * middle))
-            omega = np.insert(omega, at + 1, middle)
+    f = value(line + 1j * omega)
+    for _ in range(REFINEMENTS):
+        (at,) = np.nonzero(np.abs(np.angle(f[1:] / f[:-1])) > TURN)
+        if not at.size:
+            break
+        middle = 0.5 * (omega[at] + omega[at + 1])
+        f = np.insert(f, at + 1, value(line + 1j * middle))
+        omega = np.insert(omega, at + 1, middle)
     turned = np.angle(f[1:] / f[:-1]).sum()
     return round(0.5 * degree - turned / np.pi) if np.isfinite(turned) else -1
 
@@ -409,7 +409,7 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
 
     @cache
     def signed(log: float) -> float:
-        each = found(np.array([log]), STRIPS, PER_DECADE)
+        each = found(np.array([log]), FEW, PER_DECADE)
         if not each.row.size:
             return -FAR
         distance = float(np.min(np.abs(np.log(each.stiffness / spring))))
@@ -421,22 +421,22 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     if not change.size:
         return np.nan, np.nan
     bracket = float(grid[change[0]]), float(grid[change[0] + 1])
-    if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # with more strips it left the cell
+    if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # on a finer grid it left the cell
         bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
     onset = brentq(signed, *bracket, xtol=1e-15)
-    for _ in range(POLISHING):  # in more strips than those of `signed`
-        near = SmallMotions(there(onset + NEARBY * np.array([-1.0, 1.0])))
+    for _ in range(POLISHING):  # in more strips than `signed` has
+        near = SmallMotions(there(onset + NEARBY * np.array([-1.0, 0.0, 1.0])))
         each, distance = near.crossings, np.log(near.crossings.stiffness / spring)
         nearest = [
             min(np.flatnonzero(each.row == side), key=lambda i: abs(distance[i]), default=-1)
-            for side in (0, 1)
+            for side in range(3)
         ]
-        off = distance[nearest] if distance.size else np.zeros(2)
-        rise = (off[1] - off[0]) / (2.0 * NEARBY)
+        off = distance[nearest] if distance.size else np.zeros(3)
+        rise = (off[2] - off[0]) / (2.0 * NEARBY)
         if min(nearest) < 0 or rise == 0.0:
             return 10.0**onset, np.inf
-        miss, error = off.mean() / rise, each.error[nearest[1]] / abs(rise * np.log(10.0))
-        if len(near.fine.c) <= STRIPS or abs(miss) <= NEARBY * ACCURATE:
-            break
+        miss, doubt = off[1] / rise, each.error[nearest[1]] / abs(rise)
         onset -= miss
-    return 10.0**onset, error + ROUNDING * (1.0 + abs(onset))
+        if abs(miss) <= CONVERGING:
+            break
+    return 10.0**onset, np.log(10.0) * (doubt + miss * miss) + ROUNDING * (1.0 + abs(onset))

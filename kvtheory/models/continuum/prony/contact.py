@@ -40,15 +40,18 @@ DEPTHS, SLIDES, STRESSES, FORCES, MOMENTS, OWN = 0, 1, 2, 4, 5, 6
 STIFFNESS, TIME, FALL, SHARE = range(4)
 """Columns of an arm: k_i, T_i, rate and share of a free mode."""
 
-PEELING, TOUCHING = 0, 1
-"""States of an edge."""
+PEELING, TOUCHING, FREE = 0, 1, 2
+"""States of an edge; both are free in flight."""
 SIDES = (-1.0, 1.0)
 NEVER = -1
-"""Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest."""
+"""Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest, or free
+ground between two places that was never touched."""
 
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
 
+PROBE, GOLDEN = 1e-3, 0.3819660112501051
+"""Share of a segment within which the pressure is compared with that at its end; golden section."""
 FARTHEST = 0.1
 """How far an edge is continued beyond the end of a segment."""
 
@@ -173,29 +176,89 @@ def edge_at(
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`. NaN if the secant
     method does not converge.
     """
-    side = run.now.sides[k]
-    if side.segment == NEVER:
+    side, touches = run.now.sides[k], run.now.sides[k].state == TOUCHING
+    if side.segment == NEVER or (touches and run.segments[side.segment].step == NEVER):
         for i in over(len(run.arms)):
             run.here[i, STRESSES] = 0.0
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
     segment = run.segments[side.segment]
-    backward = segment.edge == k
-    far = segment.a if backward else segment.b
-    if segment.step == NEVER:
-        return _search(run, k, s, d, Y, xi, NEVER, xi, math.nan, math.nan)
+    at_rest = segment.step == NEVER
+    far, near = segment.a if segment.edge == k else segment.b, side.near
     if far == math.inf:
         return _search(run, k, s, d, Y, xi, index, sigma, math.nan, math.nan)
-    at_far = step_of(run, segment.edge, index, far)
-    f, xi = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
+    at_far, x = NEVER, xi
+    if at_rest:
+        far, near = segment.X_b + Y, segment.X_a + Y
+        if k == 1:
+            far, near = near, far
+    else:
+        at_far, x = step_of(run, segment.edge, index, far), sigma
+    f, _ = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
+    if f < 0.0 and side.state == PEELING:
+        inside = _inside(run, k, s, d, Y, at_far, far, f)
+        if inside != far:
+            far, f = inside, 0.0
     if f >= 0.0:
-        return _search(run, k, s, d, Y, xi, index, sigma, far, side.near)
+        return _search(run, k, s, d, Y, xi, NEVER if at_rest else index, x, far, near)
     # beyond the end of the segment: continued as if all elements there had passed with the last one
+    _, xi = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
     slope, beyond = 2.0 * xi, SIDES[k]
     if side.state == PEELING:
         beyond = -SIDES[k]
         for i in over(len(run.arms)):
             slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
     return xi + beyond * min(abs(f / slope), FARTHEST), at_far, far
+
+
+def at_far_end(run: Run, k: int, s: float, d: float, Y: float) -> float:
+    """Return p, or the gap if the edge touches, where the segment of an edge ends; `here` has A_i and B_i."""
+    side, never = run.now.sides[k], math.inf
+    if side.segment == NEVER:
+        return never
+    segment, touches = run.segments[side.segment], side.state == TOUCHING
+    far, X = (segment.a, segment.X_a) if segment.edge == k else (segment.b, segment.X_b)
+    if far == math.inf:
+        return never
+    if segment.step == NEVER:
+        if touches:
+            return (X + Y) * (X + Y) - d
+        return pressed(run, s, d, Y, X + Y, segment.edge, NEVER, 0.0)[0]
+    index = step_of(run, segment.edge, segment.step, far)
+    return _margin(run, side.state, s, d, Y, segment.edge, index, far)[0]
+
+
+def _inside(
+    run: Run, k: int, s: float, d: float, Y: float, index: int, far: float, f: float
+) -> float:
+    """Return an element in contact if the other edge passed the far end, where p < 0, else that end.
+
+    The pressure falls outward from the far end if it was this edge that passed.
+    """
+    side, at_rest = run.now.sides[k], index == NEVER
+    edge, low, high, best = run.segments[side.segment].edge, far, side.sigma, f
+    if at_rest:
+        high = side.xi - evaluate(run.pieces[run.now.piece], run.now.s)[0] + run.now.x + Y
+    x = far + PROBE * (high - far)
+    for turn in range(ITERATIONS):
+        if not at_rest:
+            index = step_of(run, edge, index, x)
+        p, _ = pressed(run, s, d, Y, x, edge, index, x)
+        if p > 0.0:
+            return x
+        if turn == 0:
+            if p <= f:
+                return far
+            at, best = x, p
+        elif p > best:
+            low, high = (at, high) if (x > at) == (high > low) else (low, at)
+            at, best = x, p
+        elif (x > at) == (high > low):
+            high = x
+        else:
+            low = x
+        wide = abs(high - at) > abs(at - low)
+        x = at + GOLDEN * ((high if wide else low) - at)
+    return far
 
 
 def _margin(

@@ -8,6 +8,7 @@ from kvtheory.models.continuum.prony.contact import (
     DEPTHS,
     EDGES,
     FORCES,
+    FREE,
     MOMENTS,
     NEVER,
     PEELING,
@@ -58,6 +59,8 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         row[ALONG_RATE] = value(rows[ALONG], theta)
         row[NORMAL_FORCE], row[FRICTION_FORCE] = forces(l, r, d, first, second)
         row[LEFT_STATE], row[RIGHT_STATE] = step.sides[0].state, step.sides[1].state
+        if step.sides[0].state == FREE:
+            row[LEFT] = row[RIGHT] = math.nan
         row[PEAK_PRESSURE] = 0.0
         if peaks:
             present(run, index, theta)
@@ -189,17 +192,20 @@ def surface(run: Run, s: float, state: Any, xi: float) -> float:
     index, X = step_at(run, s), xi - state[TRAVEL]
     if state[LEFT] <= xi <= state[RIGHT]:
         return float(state[DEPTH] - xi * xi)
-    side = run.steps[index].sides[0 if xi < state[LEFT] else 1]
-    number = side.own if side.state == PEELING else side.segment
-    while number != NEVER:
-        segment = run.segments[number]
-        sigma = instant_of(run, number, s, X)
-        if not math.isnan(sigma):
-            gap, _ = free(
-                run, s, state[DEPTH], state[TRAVEL], segment.edge, step_at(run, sigma), sigma
-            )
-            return gap + state[DEPTH] - xi * xi
-        number = segment.next
+    for k in range(2):
+        side = run.steps[index].sides[k]
+        if side.state != FREE and (xi < state[LEFT]) != (k == 0):
+            continue
+        number = side.own if side.state == PEELING else side.segment
+        while number != NEVER:
+            segment = run.segments[number]
+            sigma = math.nan if segment.step == NEVER else instant_of(run, number, s, X)
+            if not math.isnan(sigma):
+                gap, _ = free(
+                    run, s, state[DEPTH], state[TRAVEL], segment.edge, step_at(run, sigma), sigma
+                )
+                return gap + state[DEPTH] - xi * xi
+            number = segment.next
     return 0.0
 
 

@@ -34,13 +34,14 @@ STEP = r_._record(
 """Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
 have a kink there; where the contact's segments are in `chain`, and their number; both sides at its start."""
 NOW = r_._record(
-    s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", piece="i8", steps="i8", segments="i8",
+    s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
     chain="i8", first="i8", count="i8", toggles="i8", rejected="i8", evaluations="i8",
     kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
 )  # fmt: skip
-"""Time, d, d', x, x', length of the next step, piece of the drive, numbers of steps, segments and entries in
-`chain`; the contact there; the changes at this instant, numbers of rejected steps and evaluations; whether
-the histories of the edges have a kink here, and whether the last step continues smoothly; both sides."""
+"""Time, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
+steps, segments and entries in `chain`; the contact there; the changes at this instant, numbers of rejected
+steps and evaluations; whether the histories of the edges have a kink here, and whether the last step
+continues smoothly; both sides."""
 GIVEN = r_._record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
     first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
@@ -139,7 +140,8 @@ def as_arrays(run: Run) -> Run:
 def _rest(run: Run) -> None:
     """Set the contact at rest: both edges touch, and write segments at both ends of it."""
     now = run.now
-    now.d, now.span, now.segments, now.chain, now.count = 1.0, math.inf, 3, 3, 3
+    now.d, now.segments, now.chain, now.count = 1.0, 3, 3, 3
+    now.span = now.limit = math.inf
     for k, edge, step, a, b in (
         (0, 0, 0, -1.0, -1.0),
         (1, 1, NEVER, -1.0, 1.0),

@@ -75,18 +75,25 @@ def push(run: Run, k: int) -> None:
 
 def cut(run: Run, k: int, number: int) -> int:
     """Return a copy of a segment that ends where the edge in it is now."""
-    now, side = run.now, run.now.sides[k]
+    side = run.now.sides[k]
     if number == NEVER:
         return NEVER
-    old, new = run.segments[number], run.segments[now.segments]
-    new.edge, new.step, new.next = old.edge, old.step, old.next
-    new.a, new.b, new.X_a, new.X_b = old.a, old.b, old.X_a, old.X_b
-    if old.edge == k:
+    found = copy(run, number, int(run.segments[number].next))
+    new = run.segments[found]
+    if new.edge == k:
         new.b, new.X_b = side.sigma, here(run, k)
     else:
         new.a, new.X_a = side.sigma, here(run, k)
-    now.segments += 1
-    return int(now.segments - 1)
+    return found
+
+
+def copy(run: Run, number: int, outward: int) -> int:
+    """Return a copy of a segment with another one next to it outward."""
+    old, new = run.segments[number], run.segments[run.now.segments]
+    new.edge, new.step, new.next = old.edge, old.step, outward
+    new.a, new.b, new.X_a, new.X_b = old.a, old.b, old.X_a, old.X_b
+    run.now.segments += 1
+    return int(run.now.segments - 1)
 
 
 def aim(run: Run, k: int, number: int) -> None:

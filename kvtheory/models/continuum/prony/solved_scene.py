@@ -19,7 +19,7 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTEST,
 )
 from kvtheory.models.continuum.prony import evaluation as e_
-from kvtheory.models.continuum.prony.contact import PEELING, TOUCHING
+from kvtheory.models.continuum.prony.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solved_scene import ScaledMotion, end_of, scaled_drive
@@ -38,7 +38,7 @@ COLUMNS = {
     "peak_pressure": e_.PEAK_PRESSURE,
 }  # fmt: skip
 """Column of each quantity in the states that is there as it is."""
-STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching"}
+STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 ROUNDING = 4e-15
 """Rounding of the moments, relative to the largest accumulator: it is large on arms that hardly relax."""
 STATEMENT = (
@@ -91,10 +91,13 @@ class SolvedPronyScene(ScaledMotion):
         s, steps, found = self.motion.natural, self.motion.steps, []
         for k, name in enumerate(("left", "right")):
             states = steps["sides"]["state"][:, k]
-            turns = np.flatnonzero(np.diff(states, prepend=TOUCHING))
-            for start, state in zip(steps["start"][turns], states[turns], strict=True):
-                verb = "touches" if state == TOUCHING else "peels"
-                found.append(Event(float(start) * self.units.time, f"{name} edge {verb}"))
+            before = np.append(TOUCHING, states[:-1])
+            for start, old, new in zip(steps["start"], before, states, strict=True):
+                kind = f"{name} edge {'touches' if new == TOUCHING else 'peels'}"
+                if FREE in (old, new):
+                    kind = "take-off" if new == FREE else "landing"
+                if old != new and (FREE not in (old, new) or k == 0):  # both edges fly
+                    found.append(Event(float(start) * self.units.time, kind))
         whole = self.motion.states(s, peaks=False)
         for name, at in (("normal", e_.NORMAL_FORCE), ("friction", e_.FRICTION_FORCE)):
             k = int(np.argmax(np.abs(whole[at])))
@@ -144,7 +147,7 @@ def transient(
 ) -> Transient:  # fmt: skip
     """Solve a scene whose foundation is a Prony series; `kvtheory.transient` documents it.
 
-    ValueError if the indenter takes off.
+    ValueError if no consistent state of the edges is found, or the contact is not one interval.
     """
     units = own_units(scene)
     drive = scaled_drive(scene, units)
@@ -177,7 +180,7 @@ def transient(
         why, s = error.args
         at = f"{why} at t = {s * units.time:.6g} s"
         raise ValueError(
-            f"the transient on a Prony series is followed while the indenter is in contact: {at}"
+            f"the transient on a Prony series is followed as long as the contact is one interval: {at}"
         ) from None
     fine = SolvedPronyScene(motion, drive, units, end_of(scene) / units.time)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
@@ -199,7 +202,10 @@ def transient(
 def certificate(
     fine: SolvedPronyScene, other: Trajectory | None, s: Array, rtol: float, scene: Scene, why: str
 ) -> Certificate:
-    """Return the certificate of the states at scaled times, from a solution with a tighter tolerance."""
+    """Return the certificate of the states at scaled times, from a solution with a tighter tolerance.
+
+    Where only one of them flies, the contact of the other is narrow: its width is the error of an edge.
+    """
     here = fine.scaled_series(fine.motion.states(s), s)
     if other is None:
         errors = dict.fromkeys(here, math.inf)
@@ -208,10 +214,14 @@ def certificate(
     rounding = ROUNDING * float(
         np.abs(fine.motion.run.arms[:, :1] * fine.motion.run.state[:, :2]).sum()
     )
-    errors = {"time": 0.0}
+    errors, widths = {"time": 0.0}, np.zeros_like(s)
+    for each in (here, there):
+        widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
     for name, values in here.items():
-        apart = float(np.max(np.abs(values - there[name]), initial=0.0))
-        least = FLOOR * rtol * (1.0 + float(np.max(np.abs(values), initial=0.0)))
+        flies, other_flies = np.isnan(values), np.isnan(there[name])
+        off = np.where(flies == other_flies, np.nan_to_num(np.abs(values - there[name])), widths)
+        apart = float(np.max(off, initial=0.0))
+        least = FLOOR * rtol * (1.0 + float(np.max(np.abs(np.nan_to_num(values)), initial=0.0)))
         errors[name] = max(MARGIN * apart, least) + rounding
     own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}

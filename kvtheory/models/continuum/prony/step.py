@@ -14,6 +14,7 @@ from kvtheory.models.continuum.prony.contact import (
     DEPTHS,
     EDGES,
     FORCES,
+    FREE,
     MOMENTS,
     PEELING,
     RATE,
@@ -37,6 +38,10 @@ CHANGE, MOVE, RESIDUAL, BEFORE, IMAGE, BACK = range(6)
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
 may be the last if it does not fall any more."""
+
+EDGE_SHARE, TINY = 0.03, 1e-12
+"""Largest error of an edge as a share of the width. Relative to the tolerance it is weighted by the width,
+for the pressure vanishes at an edge."""
 
 Run = Any
 
@@ -240,6 +245,8 @@ def evaluate_stages(run: Run, free: int) -> bool:
     run.now.evaluations += run.given.stages
     if not place(run, free):
         return False
+    if run.now.sides[0].state == FREE:
+        return True
     touching = run.now.sides[0].state != PEELING
     first = (
         0 if touching else 1
@@ -257,7 +264,7 @@ def place(run: Run, free: int) -> bool:
     """Evaluate the motion at the stages, and the accumulators; return whether the depth is positive."""
     now, given, n, change = run.now, run.given, run.given.stages, run.vectors[CHANGE]
     span, stages, source = run.steps[now.steps].span, run.stages, run.sources
-    other = stages[ROWS:]
+    other, flies = stages[ROWS:], now.sides[0].state == FREE
     for j in range(n):
         node = span * run.method[OTHER, 0, j]
         d, x = now.d + node * now.v, now.x + node * now.w
@@ -271,7 +278,7 @@ def place(run: Run, free: int) -> bool:
         Y, number, _ = evaluate(run.pieces[now.piece], other[MOMENT, j])
         other[DEPTH, j], other[OFFSET, j] = d, x
         other[WAY, j], other[SPEED, j] = Y - x, number - stages[ALONG, j]
-        if not 0.0 < d < math.inf:
+        if not (d > 0.0 or flies) or not abs(d) < math.inf:
             return False
     interpolate(run, RATE, now.v)
     interpolate(run, ALONG, now.w)
@@ -405,13 +412,16 @@ def size_of(run: Run) -> float:
     now, given, largest, moving = run.now, run.given, 0.0, 0.0
     rate = interpolate(run, RATE, now.v) / (1.0 + abs(now.v))
     along = interpolate(run, ALONG, now.w) / (1.0 + abs(now.w))
+    width = now.sides[1].xi - now.sides[0].xi
     for k in range(2):
         largest = max(largest, interpolate(run, EDGES + k, now.sides[k].xi))
         moving = max(moving, abs(now.sides[k].xi))
+    largest *= min(1.0, max(width, given.rtol / (EDGE_SHARE * max(width, TINY))))
     remembered = first = second = 0.0
     for i in over(len(run.arms)):
         compressed = interpolate_arm(run, i, DEPTHS) + moving * interpolate_arm(run, i, SLIDES)
         remembered += total(run.arms[i, STIFF] * compressed)
         first += total(interpolate_arm(run, i, FORCES))
         second += total(interpolate_arm(run, i, MOMENTS))
-    return max(rate, along, largest, remembered, first, second) / given.rtol
+    narrow = min(1.0, width)  # what they remember of a narrow contact matters less
+    return max(rate, along, largest, remembered, narrow * first, narrow * second) / given.rtol

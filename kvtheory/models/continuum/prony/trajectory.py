@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory import compilation
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.prony import contact, evaluation, segments, step, walk
+from kvtheory.models.continuum.prony import contact, evaluation, hops, segments, step, walk
 from kvtheory.models.continuum.prony.records import STEP, Run, as_arrays, begin, with_more_room
 from kvtheory.models.continuum.run import Spring, StepControl, readable, structured
 from kvtheory.results.errors import TransientError
@@ -20,19 +20,16 @@ from kvtheory.scene.base_motion import BaseMotion
 
 Array = NDArray[np.float64]
 
-STEP_LIMIT = 5_000
+STEP_LIMIT = 20_000
 ATTEMPTS = 100
 """Attempted steps between two reports of progress."""
 WORTHWHILE, LOADABLE = 5_000, 300
 """Interpreted steps after which compiling pays, half a minute once per installation, and after which loading
 kernels that are compiled does, a second."""
-NARROW = 0.1
-"""Width of a contact that is closing: it narrows as the root of the time that is left."""
 SUBDIVISIONS = 4
 """Points shown for each step."""
 REFUSED = {
     walk.STUCK: "no consistent state of the edges is found",
-    walk.CLOSES: "the indenter takes off",
     walk.PARTS: "the contact is not one interval",
 }
 """Why a motion is not solved."""
@@ -46,7 +43,9 @@ class Tally:
 
 def kernel() -> Any:
     """Return the compiled entry of the kernels; it needs numba."""
-    return compiled.kernel(evaluation.perform, (b_, r_, contact, step, segments, walk, evaluation))
+    return compiled.kernel(
+        evaluation.perform, (b_, r_, contact, step, segments, hops, walk, evaluation)
+    )
 
 
 def worthwhile() -> bool:
@@ -116,7 +115,7 @@ def solve(
     Raises
     ------
     ValueError
-        If the indenter takes off, or no consistent state of the edges is found.
+        If no consistent state of the edges is found, or the contact is not one interval.
     TransientError
         If too many steps are needed.
 
@@ -136,9 +135,7 @@ def solve(
         before, left = left, max_steps - now.steps - now.rejected
         Tally.steps += before - left if interpreted else 0
         if status in REFUSED:
-            edges = [r_.value(r_.value(run.now[0], "sides")[k], "xi") for k in range(2)]
-            closes = edges[1] - edges[0] < NARROW and status == walk.STUCK
-            raise ValueError(REFUSED[walk.CLOSES if closes else status], now.s)
+            raise ValueError(REFUSED[status], now.s)
         if status == walk.FULL:
             run = with_more_room(run)
         if left <= 0 and status != walk.DONE:

@@ -7,6 +7,7 @@ from kvtheory.models.continuum.prony.contact import (
     ALONG,
     DEPTHS,
     EDGES,
+    FREE,
     NEVER,
     OWN,
     PEELING,
@@ -14,6 +15,7 @@ from kvtheory.models.continuum.prony.contact import (
     SIDES,
     SLIDES,
     STRESSES,
+    at_far_end,
     edge_at,
     free,
     integral,
@@ -26,6 +28,18 @@ from kvtheory.models.continuum.prony.contact import (
     value,
 )
 from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
+from kvtheory.models.continuum.prony.hops import (
+    close,
+    closed,
+    closes,
+    flies,
+    fly,
+    land,
+    least_gap,
+    open_contact,
+    time_left,
+    touches_at,
+)
 from kvtheory.models.continuum.prony.segments import cross, split, turn
 from kvtheory.models.continuum.prony.step import (
     DEPTH,
@@ -51,6 +65,8 @@ right length."""
 BISECTIONS = 60
 ALLOWED, ROUNDING = 1e-3, 1e-13
 """Share of the tolerance, and least violation, that an event needs."""
+LATE = 0.9
+"""Share of a step before which an event, rather than the error, sets the length of the next attempt."""
 PROBES = 3
 """Instants per stage at which events are looked for."""
 TOGGLES = 12
@@ -60,13 +76,19 @@ DEEPEST, LEAST, WATCHED = 100.0, 1e-8, 8
 """Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; the least
 tolerance there, which allows for rounding; segments of free ground that are watched on each side."""
 
-DONE, PAUSED, FULL, STUCK, CLOSES, PARTS = range(6)
+APPROACH = 0.85
+"""Largest share of the time until the contact closes that a step takes."""
+RELIEF = 0.25
+"""How far the ground may slide in a step of the flight above it, in units of a_0."""
+
+DONE, PAUSED, FULL, STUCK, PARTS = range(5)
 """How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
-of zero, or no consistent state of the edges; where the contact closes; where it is no interval any more."""
+of zero, or no consistent state of the edges; where the contact is no interval any more."""
 
 Monitors = tuple[float, float, float, float, float]
 """Event functions, which stay positive until an event: the width, the state and the ground of the left edge,
 and of the right one."""
+NOTHING = (math.inf, math.inf, math.inf, math.inf, math.inf)
 Run = Any
 
 
@@ -87,7 +109,7 @@ def walk(run: Run, attempts: int) -> int:
             if until < end:
                 _next_piece(run)
             continue
-        status = _advance(run, until)
+        status = _next_step(run, until)
         if status != DONE:
             return status
     return PAUSED
@@ -96,7 +118,8 @@ def walk(run: Run, attempts: int) -> int:
 def _has_room(run: Run) -> bool:
     """Whether one more step is certain to fit, with its events."""
     now = run.now
-    fits = now.steps + 1 < len(run.steps) and now.segments + 8 < len(run.segments)
+    copied = now.segments if flies(run) else 0
+    fits = now.steps + 2 < len(run.steps) and now.segments + copied + 8 < len(run.segments)
     return fits and now.chain + 8 * (now.count + 8) < len(run.chain)
 
 
@@ -122,9 +145,10 @@ def _next_piece(run: Run) -> None:
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = min(now.span, _first(run))
-        for k in range(2):
-            split(run, k)
-        _jump(run)
+        if not flies(run):
+            for k in range(2):
+                split(run, k)
+            _jump(run)
 
 
 def _jump(run: Run) -> None:
@@ -149,33 +173,52 @@ def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: f
     return float((-rise if state == PEELING else rise) / terms + allowed)
 
 
-def monitors(run: Run, theta: float) -> Monitors:
-    """Return the event functions at a share of the step."""
+def monitors(run: Run, theta: float, exact: bool) -> Monitors:
+    """Return the event functions at a share of the step; in flight the gap is in the place of the width.
+
+    Where an edge passes the end of its segment within the step, its polynomial has a kink to follow, but p,
+    or the gap, at this end has none: with `exact` it is the event function.
+    """
     now, index = run.now, run.now.steps
     rows = run.rows[index]
-    _, v, Y, number, _ = motion(run, index, now.s + theta * run.steps[index].span)
-    l_state, l_ground = _watch(run, 0, theta, v, Y, number)
-    r_state, r_ground = _watch(run, 1, theta, v, Y, number)
+    s = now.s + theta * run.steps[index].span
+    d, v, Y, number, _ = motion(run, index, s)
+    if flies(run):
+        gap = least_gap(run, s, d, Y)[0] + closed(run) * closed(run)
+        return gap, math.inf, math.inf, math.inf, math.inf
+    if exact:
+        for i in over(len(run.arms)):
+            for row in (DEPTHS, SLIDES):
+                run.here[i, row] = past(run, index, i, row, theta)
+        l_ground, r_ground = at_far_end(run, 0, s, d, Y), at_far_end(run, 1, s, d, Y)
+    else:
+        l_ground = _ahead(run, 0, value(rows[EDGES], theta), Y)
+        r_ground = _ahead(run, 1, value(rows[EDGES + 1], theta), Y)
+    l_state, r_state = _keeps(run, 0, theta, v, number), _keeps(run, 1, theta, v, number)
     width = value(rows[EDGES + 1], theta) - value(rows[EDGES], theta)
     return width, l_state, l_ground, r_state, r_ground
 
 
-def _watch(
-    run: Run, k: int, theta: float, v: float, Y: float, number: float
-) -> tuple[float, float]:
-    """Return whether an edge may keep its state, and how far it is from the end of its segment."""
-    side, index, relaxing = run.now.sides[k], run.now.steps, 0.0
+def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
+    """Return a number that is positive as long as an edge may keep its state."""
+    index, relaxing = run.now.steps, 0.0
     for i in over(len(run.arms)):
         relaxing += total(past(run, index, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
-    xi, ground = value(run.rows[index, EDGES + k], theta), math.inf
-    if side.segment != NEVER:
-        segment = run.segments[side.segment]
-        inward = SIDES[k] if side.state == PEELING else -SIDES[k]
-        if segment.edge == k:
-            ground = inward * (xi - Y - segment.X_a) + ROUNDING * (1.0 + abs(Y))
-        elif segment.b < math.inf:
-            ground = inward * (xi - Y - segment.X_b) + ROUNDING * (1.0 + abs(Y))
-    return _slack(run, side.state, xi, v, number, relaxing), ground
+    xi = value(run.rows[index, EDGES + k], theta)
+    return _slack(run, run.now.sides[k].state, xi, v, number, relaxing)
+
+
+def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
+    """Return how far an edge is from the end of its segment."""
+    side = run.now.sides[k]
+    if side.segment == NEVER:
+        return math.inf
+    segment = run.segments[side.segment]
+    if segment.edge != k and segment.b == math.inf:
+        return math.inf
+    inward = SIDES[k] if side.state == PEELING else -SIDES[k]
+    end = segment.X_a if segment.edge == k else segment.X_b
+    return float(inward * (xi - Y - end) + ROUNDING * (1.0 + abs(Y)))
 
 
 def _smallest(values: Monitors) -> float:
@@ -187,11 +230,15 @@ def _event(run: Run) -> tuple[float, Monitors]:
     count, low = PROBES * run.given.stages, 0.0
     for m in range(1, count + 1):
         high = m / count
-        violated = monitors(run, high)
+        violated = monitors(run, high, False)
         if _smallest(violated) < 0.0:
+            precise = monitors(run, high, True)
+            exact = _smallest(precise) < 0.0 and not flies(run)
+            if exact:
+                low, violated = 0.0, precise
             for _ in range(BISECTIONS):
                 middle = 0.5 * (low + high)
-                values = monitors(run, middle)
+                values = monitors(run, middle, exact)
                 if _smallest(values) < 0.0:
                     high, violated = middle, values
                 else:
@@ -201,36 +248,120 @@ def _event(run: Run) -> tuple[float, Monitors]:
     return math.inf, violated
 
 
-def _advance(run: Run, until: float) -> int:
+def _next_step(run: Run, until: float) -> int:
+    """Try one step, in contact or in flight, or close the contact."""
+    if flies(run):
+        return _fly(run, until)
+    left, shortest = time_left(run), SHORTEST * run.given.end
+    if closes(run, left, shortest):
+        return _close(run, min(max(left, 4.0 * shortest), until - run.now.s), until)
+    return _advance(run, until, APPROACH * left)
+
+
+def _advance(run: Run, until: float, longest: float) -> int:
     """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
-    now, n, shortest = run.now, run.given.stages, SHORTEST * run.given.end
-    span, whole = min(now.span, run.given.longest), until - now.s
-    if span > (1.0 - 0.1 * OVERRUN) * whole:
-        span = whole
+    now, shortest = run.now, SHORTEST * run.given.end
+    span = _length(run, until, min(longest, now.limit))
     if not span > shortest:
         return STUCK
-    prepare(run, span)
-    size = size_of(run) if solve(run) else math.inf
-    if not size <= 1.0:
-        now.rejected += 1
-        factor = max(SHRINK, SAFETY * math.pow(size, -1.0 / n)) if size < math.inf else FAILED
-        now.span = factor * span
-        return DONE
-    theta, violated = _event(run)
+    size, limited = _attempt(run, span), now.limit < math.inf
+    now.limit = math.inf
+    theta, violated = _event(run) if size < math.inf else (math.inf, NOTHING)
+    if size > 1.0 and not theta < LATE:
+        return _reject(run, span, size)
     if theta * span <= shortest:
         now.rejected += 1
         return _change(run, violated)
     if theta < 1.0 - OVERRUN and (1.0 - theta) * span > NEAR * run.given.end:
         now.rejected += 1
-        now.span = theta * (1.0 + 0.5 * OVERRUN) * span
+        now.limit = theta * (1.0 + 0.5 * OVERRUN) * span
         return DONE
-    now.span = span * min(run.given.grow, SAFETY * math.pow(max(size, TINY), -1.0 / n))
+    longer = _longer(run, span, size)
+    now.span = max(now.span, longer) if limited else longer
     _commit(run, span, until, min(theta, 1.0))
+    return _after(run, theta, violated)
+
+
+def _after(run: Run, theta: float, violated: Monitors) -> int:
+    """Check the contact after a step, and handle its event."""
     interval = _one_interval(run)
-    now.steps, now.toggles = now.steps + 1, 0
-    if interval and theta <= 1.0:
-        return _change(run, violated)
-    return DONE if interval else PARTS
+    run.now.steps, run.now.toggles = run.now.steps + 1, 0
+    if not interval:
+        return PARTS
+    return _change(run, violated) if theta <= 1.0 else DONE
+
+
+def _length(run: Run, until: float, longest: float) -> float:
+    """Return the length of the next step, at most `longest`; one that almost ends at `until` does."""
+    now = run.now
+    span, whole = min(now.span, run.given.longest, longest), until - now.s
+    return float(whole if span > (1.0 - 0.1 * OVERRUN) * whole else span)
+
+
+def _attempt(run: Run, span: float) -> float:
+    """Try a step; return its error relative to the tolerance, infinite if it is not solved."""
+    prepare(run, span)
+    return float(size_of(run) if solve(run) else math.inf)
+
+
+def _reject(run: Run, span: float, size: float) -> int:
+    """Reject a step whose error is too large; the next one is shorter."""
+    run.now.rejected += 1
+    shorter = FAILED
+    if size < math.inf:
+        shorter = max(SHRINK, SAFETY * math.pow(size, -1.0 / run.given.stages))
+    run.now.span = shorter * span
+    return DONE
+
+
+def _longer(run: Run, span: float, size: float) -> float:
+    """Return the length of the step after one with an error `size`."""
+    factor = SAFETY * math.pow(max(size, TINY), -1.0 / run.given.stages)
+    return float(span * min(run.given.grow, factor))
+
+
+def _close(run: Run, span: float, until: float) -> int:
+    """Take the step in which the contact closes, and begin a flight."""
+    if not close(run, span):
+        return STUCK
+    _commit(run, span, until, 1.0)
+    run.now.steps, run.now.toggles = run.now.steps + 1, 0
+    fly(run)
+    run.now.span = _first(run)
+    return DONE
+
+
+def _fly(run: Run, until: float) -> int:
+    """Try one step in flight; accept it up to the landing."""
+    now, shortest = run.now, SHORTEST * run.given.end
+    _, drive, slope = b_.evaluate(run.pieces[now.piece], now.s)
+    slides = RELIEF / (abs(drive - now.w) + math.sqrt(RELIEF * abs(slope)) + TINY)
+    span = _length(run, until, max(slides, -0.5 * now.d / (abs(now.v) + 1e-3)))
+    if not span > shortest:
+        return STUCK
+    size = _attempt(run, span)
+    if not size <= 1.0:
+        return _reject(run, span, size)
+    theta, _ = _event(run)
+    side, number, x, touches = 0, NEVER, 0.0, theta
+    if theta <= 1.0:
+        s = now.s + theta * span
+        d, _, Y, _, _ = motion(run, now.steps, s)
+        _, side, number, x = least_gap(run, s, d, Y)
+        touches = touches_at(run, theta, number, x)
+    now.span = _longer(run, span, size)
+    if touches * span > shortest:
+        _commit(run, span, until, min(touches, 1.0))
+        now.steps += 1
+    if theta > 1.0:
+        return DONE
+    now.span = max((theta - touches) * span, 4.0 * shortest)
+    land(run, side, number, x)
+    if not open_contact(run, now.span):
+        return STUCK
+    _commit(run, now.span, until, 1.0)
+    now.steps += 1
+    return DONE
 
 
 def _change(run: Run, violated: Monitors) -> int:
@@ -238,14 +369,14 @@ def _change(run: Run, violated: Monitors) -> int:
     now = run.now
     now.toggles += 1
     if violated[0] < 0.0:
-        return CLOSES
+        return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
     if now.toggles > TOGGLES:
         return STUCK
     for k in range(2):
         if violated[2 * k + 2] < 0.0:
             cross(run, k)
             if now.count == 0:
-                return CLOSES
+                return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
         elif violated[2 * k + 1] < 0.0:
             turn(run, k)
     return DONE
@@ -280,7 +411,7 @@ def _one_interval(run: Run) -> bool:
         number, count = side.own if side.state == PEELING else side.segment, 0
         while number != NEVER and count < WATCHED:
             segment = run.segments[number]
-            for half in range(3):
+            for half in range(3 if segment.step != NEVER else 0):
                 x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
                 index = step_of(run, segment.edge, segment.step, x)
                 gap, xi = free(run, now.s, now.d, Y, segment.edge, index, x)
@@ -312,7 +443,7 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
         side, before = now.sides[k], now.sides[k].sigma
         index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
         side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
-        if not whole and side.segment != NEVER:
+        if not whole and side.segment != NEVER and side.state != FREE:
             for i in over(len(run.arms)):
                 for row in (DEPTHS, SLIDES):
                     run.here[i, row] = run.state[i, row]

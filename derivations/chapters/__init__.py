@@ -1,0 +1,1 @@
+"""The chapters; `catalogue` lists them in reading order."""

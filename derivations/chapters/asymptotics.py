@@ -1,0 +1,192 @@
+"""The asymptotes of low and high velocity with their next order, and where they meet (Eqs. 40-50).
+
+The paper estimates load and friction by integrals over the limiting contact. Each integral is
+evaluated here as given, and compared with the exact load and with the friction force of F21.
+"""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import constant, symbol
+from ..engine.step import Proof
+from . import friction_identity
+from .model import C, K, R, V, delta, h, x
+from .steady import F, W, a, l, l_r, mu, q
+
+load_excess = symbol("W_e", "elastic part of the load", "N/m", latex=r"W_{\mathrm{e}}", real=True)
+V_star = symbol(
+    "V_star",
+    "crossing velocity, where the two asymptotes meet",
+    "m/s",
+    latex="V^{*}",
+    source="eq47",
+)
+alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
+
+
+third = sp.Rational(1, 3)
+low_load = 2 * alpha * sp.sqrt(R) * K * delta ** sp.Rational(3, 2)
+low_friction = 2 * alpha * C * V * delta ** sp.Rational(3, 2) / sp.sqrt(R)
+low_coefficient = C * V / (R * K)
+high_load = C * V * delta
+high_friction = alpha * C * V * delta ** sp.Rational(3, 2) / sp.sqrt(R)
+high_coefficient = alpha * sp.sqrt(delta / R)
+high_coefficient_dead_weight = alpha * sp.sqrt(W / (R * C * V))
+critical_fixed = alpha * K * sp.sqrt(R * delta) / C
+critical_dead_weight = alpha ** (2 * third) * (R * K**2 * W) ** third / C
+
+LOW_LOAD = r"2 \alpha R^{1/2} K \delta^{3/2}"
+LOW_FRICTION = r"2 \alpha R^{-1/2} C V \delta^{3/2}"
+HIGH_FRICTION = r"\alpha R^{-1/2} C V \delta^{3/2}"
+HIGH_FIXED = r"\alpha \sqrt{\frac{\delta}{R}}"
+HIGH_DEAD_WEIGHT = r"\alpha \sqrt{\frac{W}{R C V}}"
+CRITICAL_FIXED = r"\frac{\alpha K \sqrt{R \delta}}{C}"
+CRITICAL_DEAD_WEIGHT = r"\frac{\alpha^{2/3} \sqrt[3]{R K^2 W}}{C}"
+
+_SHAPE = x**2 / (2 * R)
+_compression = delta - h(x)
+_rate = -h(x).diff(x) * V
+_low, _high = (q, 1), (q, 0)
+_small = (V_star / V) ** sp.Rational(3, 2)
+result = Chapter("Asymptotes")
+
+
+def _recall_exact(proof: Proof) -> None:
+    """Let half length, velocity, load and friction be expressions in q."""
+    proof.recall("eq28")
+    proof.recall("scaling", l, l_r, V)
+    proof.recall("load")
+    proof.recall("F21-steady", (F, friction_identity.FRICTION))
+
+
+def _recall_coefficient(proof: Proof) -> None:
+    _recall_exact(proof)
+    proof.recall("eq37")
+
+
+def _estimate(
+    proof: Proof, force: sp.Symbol, integrand: sp.Expr, integral: str, low: bool, leading: sp.Expr,
+    shown: str,
+) -> None:  # fmt: skip
+    """Evaluate the integral of the paper, and compare it with the exact force."""
+    proof.recall("eq3")
+    _recall_exact(proof)
+    over = (x, -a, a if low else sp.S.Zero)
+    inner = sp.Poly(integrand.subs(h(x), _SHAPE).doit(), x)
+    reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
+    proof.integral(sp.Integral(integrand, over), integrand, over, inner.integrate(x).as_expr(), reason,
+                   value=leading, left=integral, right=shown)  # fmt: skip
+    point, small = (_low, l_r / a) if low else (_high, a / l_r)
+    if force == F:
+        spring = low_load if low else low_load / 2
+        reason = f"what the spring carries: {'all' if low else 'half'} of the load at rest"
+        proof.define(load_excess, W - C * V * delta, "F21 needs the load without the damper's part")
+        proof.leading_order(load_excess, spring, *point, reason, eps=small)
+        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
+    proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
+
+
+_Case = tuple[int, str, sp.Symbol, sp.Expr, str, sp.Expr, str]
+
+
+def _estimates(low: bool, cases: tuple[_Case, ...]) -> None:
+    """Add the estimates of the paper for low or high velocity."""
+    for number, force_name, force, integrand, integral, leading, shown in cases:
+        result(
+            f"eq{number}", title=f"{force_name} at {'low' if low else 'high'} velocity",
+            text=r"Here $\alpha = 2\sqrt{2}/3$; the remainder is that of the exact force.",
+            notation={"u": _compression, r"\dot{u}": _rate},
+            force=force, integrand=integrand, integral=integral, low=low, leading=leading, shown=shown,
+        )(_estimate)  # fmt: skip
+
+
+_estimates(True, (
+    (40, "Load", W, K * _compression, r"\int_{-a}^{a} K u \, \mathrm{d}x", low_load, LOW_LOAD),
+    (41, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{a} -h' C \dot{u} \, \mathrm{d}x",
+     low_friction, LOW_FRICTION),
+))  # fmt: skip
+
+
+@result("eq42")
+def _low_coefficient(proof: Proof) -> None:
+    r"""Friction coefficient at low velocity.
+
+    The asymptotes $\mathrm{L}_{1\mathrm{-FI}}$ and $\mathrm{L}_{1\mathrm{-MI}}$ are the same: neither depth
+    nor load enters.
+    """
+    _recall_coefficient(proof)
+    proof.equal(sp.UnevaluatedExpr(low_friction / low_load), low_coefficient, "Eqs. (40) and (41)",
+                left=rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}")  # fmt: skip
+    proof.leading_order(mu, low_coefficient, *_low, "exact $F/W$", eps=l_r / a)
+
+
+_estimates(False, (
+    (43, "Load", W, C * _rate, r"\int_{-a}^{0} C \dot{u} \, \mathrm{d}x", high_load, r"C V \delta"),
+    (44, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{0} -h' C \dot{u} \, \mathrm{d}x",
+     high_friction, HIGH_FRICTION),
+))  # fmt: skip
+
+
+@result("eq45")
+def _high_coefficient(proof: Proof) -> None:
+    """Friction coefficient at high velocity, fixed indenter."""
+    _recall_coefficient(proof)
+    proof.equal(sp.UnevaluatedExpr(high_friction / high_load), high_coefficient, "Eqs. (43) and (44)",
+                left=rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", right=HIGH_FIXED)  # fmt: skip
+    proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r, right=HIGH_FIXED)
+
+
+@result("eq46")
+def _high_dead_weight(proof: Proof) -> None:
+    """Friction coefficient at high velocity, dead weight.
+
+    The velocity $V^{*}$ is that of Eq. (48); the load $W$ is given.
+    """
+    _recall_coefficient(proof)
+    proof.define(V_star, critical_dead_weight, "Eq. (48)", right=CRITICAL_DEAD_WEIGHT)
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "exact $F/W$ at the load $W$",
+                        eps=_small, right=HIGH_DEAD_WEIGHT)  # fmt: skip
+
+
+@result("eq47", uses=("eq42", "eq45"))
+def _critical_fixed(proof: Proof) -> None:
+    """Critical velocity, fixed indenter."""
+    proof.define(V, V_star, "the two asymptotes meet")
+    reason = "Eq. (42) equals Eq. (45)"
+    gap = low_coefficient - high_coefficient
+    proof.root(gap, V_star, critical_fixed, reason, right=CRITICAL_FIXED)
+
+
+@result("eq48", uses=("eq42", "eq46"))
+def _critical_dead_weight(proof: Proof) -> None:
+    """Critical velocity, dead weight."""
+    proof.define(V, V_star, "the two asymptotes meet")
+    reason = "Eq. (42) equals Eq. (46)"
+    gap = low_coefficient - high_coefficient_dead_weight
+    proof.root(gap, V_star, critical_dead_weight, reason, right=CRITICAL_DEAD_WEIGHT)
+
+
+@result("eq49")
+def _lift(proof: Proof) -> None:
+    """Vertical lift.
+
+    At a given load the depth falls as $V^{-1}$ once $V$ is far above $V^{*}$ of Eq. (48).
+    """
+    _recall_exact(proof)
+    proof.recall("eq48")
+    reason = "Eq. (43) solved for the depth at the load $W$"
+    proof.leading_order(delta, W / (C * V), *_high, reason, eps=_small)
+
+
+@result("eq50")
+def _vanishing_friction(proof: Proof) -> None:
+    r"""Friction vanishes at high velocity, dead weight.
+
+    With the load held, $\mu \to 0$ for $V/V^{*} \to \infty$, as $(V^{*}/V)^{1/2}$.
+    """
+    _recall_coefficient(proof)
+    proof.recall("eq48")
+    limit = C * V_star / (R * K) * (V_star / V) ** sp.Rational(1, 2)
+    shown = r"\frac{C V^{*}}{R K} \sqrt{\frac{V^{*}}{V}}"
+    reason = r"tends to 0 as $V/V^{*} \to \infty$"
+    proof.leading_order(mu, limit, *_high, reason, eps=_small, right=shown)

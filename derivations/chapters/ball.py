@@ -1,0 +1,426 @@
+r"""Steady sliding of a ball on independent elements: theorem F20.
+
+The strips along x do not know of each other: each is a parabola of depth delta - y**2/(2 R'), and the ball is
+their sum. Lengths along x are scaled by the half length a, those across by the half width a sqrt(R'/R), so
+that another radius across only scales y. ``theta`` is arctan(1/l), ``T`` and ``D`` are integrals of positive
+functions, by which every result is a sum without cancellation.
+"""
+
+from collections.abc import Mapping
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .steady import l
+from .theorems import kappa, lam
+
+s = symbol("s", r"scaled time, $t/\tau$", source="scaled-pressure")
+aside = symbol(
+    "y_b",
+    r"place of a strip of a ball over the half width $a \sqrt{R_{\mathrm{y}}/R}$",
+    latex=r"\tilde \zeta",
+    source="coordinate",
+)
+letter(r"R_{\mathrm{y}}", "radius of a ball across the sliding direction", "m", source="")
+ball_angle = symbol("theta_b", r"$\arctan(1/l)$", latex=r"\tilde \theta")
+ball_load = symbol(
+    "w_b", r"scaled load of a ball, $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$", latex=r"\tilde w"
+)
+ball_mean = symbol("g_b", r"$(\pi + \tilde T)/4$", latex=r"\tilde g")
+ball_rest = symbol("K_b", r"$\frac{2}{15} - l^2 \tilde D$", latex=r"\tilde K")
+ball_kept = symbol("M_b", r"$\tilde D - \tilde N$", latex=r"\tilde M")
+ball_lost = symbol("N_b", r"half of $- l \frac{d \tilde D}{d l}$", latex=r"\tilde N")
+ball_tail = symbol("T_b", "what the load of a ball has beside its limits", latex=r"\tilde T")
+ball_loss = symbol("D_b", "integral by which a ball leaves energy behind", latex=r"\tilde D")
+ball_depth = symbol("I_b", "integral of the depths of the strips", latex=r"\tilde I")
+ball_friction = symbol(
+    "phi_b",
+    r"scaled friction force of a ball, $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$",
+    latex=r"\tilde \varphi",
+)
+ball_coefficient = symbol(
+    "m_b", r"scaled friction coefficient of a ball, $\mu R/a$", latex=r"\tilde m"
+)
+ball_share = symbol(
+    "eta_b",
+    "fraction of the power dissipated inside the contact of a ball",
+    latex=r"\tilde \eta",
+    real=True,
+)
+ball_scaled = symbol("f_b", "scaled load of a ball that has been lifted", latex=r"\tilde f")
+ball_scaled_s = symbol("f_b_s", latex=r"\tilde f'")
+ball_scaled_ss = symbol("f_b_ss", latex=r"\tilde f''")
+ball_cross = symbol(
+    "l_b", "scaled crossing velocity of a ball at a given depth", latex=r"\tilde l^{*}"
+)
+ball_lam_cross = symbol(
+    "lambda_b", "scaled crossing velocity of a ball at a given load", latex=r"\tilde \lambda^{*}"
+)
+ball_slip = symbol(
+    "E_b",
+    "slope of the friction coefficient of a ball at a given load, scaled",
+    latex=r"\tilde E",
+    real=True,
+)
+ball_l1 = symbol(
+    "e_b_L1",
+    "relative error of the low asymptote, ball",
+    latex=r"\tilde e_{\mathrm{L1}}",
+    real=True,
+)
+ball_l2 = symbol(
+    "e_b_L2",
+    "relative error of the high asymptote, ball",
+    latex=r"\tilde e_{\mathrm{L2}}",
+    real=True,
+)
+ball_load_low = symbol(
+    "e_b_W_low",
+    "relative error of the load at rest, ball",
+    latex=r"\tilde e_{W\!,\,V\to0}",
+    real=True,
+)
+ball_load_high = symbol(
+    "e_b_W_high",
+    "relative error of the load at high velocity, ball",
+    latex=r"\tilde e_{W\!,\,V\to\infty}",
+    real=True,
+)
+ball_friction_low = symbol(
+    "e_b_F_low",
+    "relative error of the friction force at low velocity, ball",
+    latex=r"\tilde e_{F\!,\,V\to0}",
+    real=True,
+)
+ball_friction_high = symbol(
+    "e_b_F_high",
+    "relative error of the friction force at high velocity, ball",
+    latex=r"\tilde e_{F\!,\,V\to\infty}",
+    real=True,
+)
+
+SECTION = "Ball"
+
+y, theta, T, D = aside, ball_angle, ball_tail, ball_loss
+w, phi, m = ball_load, ball_friction, ball_coefficient
+PI = sp.pi
+ANGLE = sp.atan(1 / l)
+EDGE = sp.sqrt(1 + l**2 - y**2)
+"""(x_TE + l_r)/a of a strip."""
+TAIL = 2 * (1 + l**2) ** 2 * theta - 2 * l**3 - sp.Rational(10, 3) * l
+LOSS = (sp.Rational(2, 3) - l * T / 2) / (1 + l**2)
+LOAD = (PI + sp.Rational(16, 3) * l + T) / 4
+FRICTION = l * (PI + T) / 4
+COEFFICIENT = l * (PI + T) / (PI + sp.Rational(16, 3) * l + T)
+REST = sp.Rational(2, 15) - l**2 * (sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta)
+HIGH = 3 * PI / 16
+UNIT = (y, 0, 1)
+
+result = Chapter(SECTION)
+
+
+def _angle(proof: Proof) -> None:
+    proof.define(theta, ANGLE, r"half the angle of the contact as seen from $-l_{\mathrm{r}}$")
+
+
+def known(proof: Proof, at: Mapping[sp.Symbol, sp.Expr] | None = None) -> None:
+    """Recall the tail of the load, perhaps at another l."""
+    proof.define(theta, ANGLE.subs(at or {}), "half the angle of the contact, F20-tail")
+    proof.recall("F20-tail", at=at)
+
+
+def _sums(proof: Proof) -> None:
+    """State what every later theorem uses."""
+    known(proof)
+    proof.recall("F20-load")
+
+
+@result("F20-tail")
+def _tail(proof: Proof) -> None:
+    r"""Ball: the closed form without cancellation.
+
+    For $l \gg 1$ the terms of $\tilde T$ grow as $l^3$ and cancel; the integral does not. It falls with $l$,
+    from $\pi$ at $l = 0$ to zero.
+    """
+    _angle(proof)
+    positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
+    primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
+    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=TAIL)
+    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
+    proof.done(T, TAIL)
+
+
+@result("F20-load", uses=("F21-load",))
+def _load(proof: Proof) -> None:
+    r"""Ball: load.
+
+    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length $a
+    \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde \zeta^2)^{3/2} +
+    (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of the contact at rest,
+    ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on which the pressure
+    vanishes.
+    """
+    width = 1 - y**2
+    strip = sp.Rational(4, 3) * (width ** sp.Rational(3, 2) + EDGE**3 - l**3)
+    primitive = sp.Rational(4, 3) * (
+        y * (5 - 2 * y**2) * sp.sqrt(width) / 8
+        + sp.Rational(3, 8) * sp.asin(y)
+        + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8
+        + sp.Rational(3, 8) * (1 + l**2) ** 2 * sp.atan(y / EDGE)
+        - l**3 * y
+    )
+    whole = sp.Integral(strip, UNIT)
+    known(proof)
+    proof.integral(whole, strip, UNIT, primitive, "F21-load of each strip, both sides", value=LOAD)
+    proof.define(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
+
+
+@result("F20-loss", uses=("F20-load",))
+def _loss(proof: Proof) -> None:
+    r"""Ball: what leaves the contact.
+
+    $\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde \zeta^2 > l^2$.
+    """
+    positive = y**2 * (1 - y**2) / (l**2 + y**2)
+    primitive = -(y**3) / 3 + (1 + l**2) * y - l * (1 + l**2) * sp.atan(y / l)
+    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta
+    known(proof)
+    proof.integral(D, positive, UNIT, primitive, "of a positive function", value=closed)
+    proof.equal(D, LOSS, "from the same tail")
+    proof.equal(sp.Derivative(T, l), -8 * D, "so the tail falls")
+    proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity", eps=1 / l)
+    proof.done(D, LOSS)
+
+
+@result("F20", uses=("F20-load", "F21-steady"))
+def _friction(proof: Proof) -> None:
+    r"""Ball: friction.
+
+    The forces of a ball: $W = \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R}
+    \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l =
+    V \tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at all at a
+    given depth. In both limits a line contact with the same $R$, of the half length $\frac{9 \pi}{32} a$ and
+    as wide as $\frac{4}{3} (\frac{32}{9 \pi})^2 a \sqrt{R_{\mathrm{y}}/R}$ has the same forces, by F1.
+    """
+    _sums(proof)
+    depth = ball_depth
+    proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
+    proof.define(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$")
+    proof.equal(
+        l * (w - l * depth), phi, r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
+    )
+    proof.equal(phi / w, COEFFICIENT, "friction coefficient")
+    proof.define(m, COEFFICIENT, r"$\mu R/a$")
+
+
+@result("F20-energy", uses=("energy-any-shape", "F20-loss"))
+def _energy(proof: Proof) -> None:
+    r"""Ball: energy dissipated inside the contact.
+
+    Of the power $F V$ the surface behind a strip takes $\frac{K}{2} V u_{\mathrm{TE}}^2$ per unit width,
+    $u_{\mathrm{TE}} = \frac{l_{\mathrm{r}}}{R} x_{\mathrm{TE}}$. The fraction inside the contact is 1 in both
+    limits.
+    """
+    primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
+    known(proof)
+    proof.recall("F20-loss")
+    left_behind = (EDGE - l) ** 2
+    proof.integral(sp.Integral(left_behind, UNIT), left_behind, UNIT, primitive,
+                   r"$u_{\mathrm{TE}}^2$ of each strip, in units of $(l_{\mathrm{r}} a/R)^2$",
+                   value=D)  # fmt: skip
+    proof.recall("F20", phi)
+    share = 1 - 8 * l * D / (PI + T)
+    proof.define(ball_share, share, "fraction inside")
+    proof.equal((1 - ball_share) * phi, 2 * l**2 * D, r"the rest of $F V$ relaxes behind")
+    proof.done(ball_share, share)
+
+
+@result("F20-low", uses=("F20",))
+def _limits(proof: Proof) -> None:
+    r"""Ball: low velocity.
+
+    $\mu \to \frac{C V}{K R}$, which is Eq. (42): neither load nor shape across matter. At rest $W = \pi K R
+    \delta^2 \sqrt{R_{\mathrm{y}}/R}$.
+    """
+    _sums(proof)
+    proof.recall("F20")
+    near = {"variable": l, "point": 0, "eps": l}
+    proof.leading_order(w, PI / 2, reason="load at rest", **near)
+    proof.leading_order(m, l, reason="friction coefficient: that of the cylinder", **near)
+
+
+@result("F20-high", uses=("F20",))
+def _high(proof: Proof) -> None:
+    r"""Ball: high velocity.
+
+    At a given load $W = \frac{4}{3} C V \delta a \sqrt{R_{\mathrm{y}}/R}$ makes $a^3 \sim 1/V$: the friction
+    coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$.
+    """
+    _sums(proof)
+    proof.recall("F20")
+    far = {"variable": l, "point": sp.oo, "eps": 1 / l}
+    proof.leading_order(w, sp.Rational(4, 3) * l, reason=r"$W \to C V$ times the mean depth", **far)
+    proof.leading_order(m, HIGH, reason=r"$\mu \to \frac{3 \pi}{16} \frac{a}{R}$", **far)
+
+
+@result("F20-balance", uses=("F20-load", "F20-loss"))
+def _balance(proof: Proof) -> None:
+    r"""Ball: one depth for a weight.
+
+    On a spring of support number $\kappa$ the balance is $\tilde f + \kappa (s^2 - 1) = 1$. As $d \ln \tilde
+    f/d \ln s$ is above 3 and below 4, there is one depth, and its relative error is less than that of the
+    load.
+    """
+    angle, tail = sp.atan(s / lam), TAIL.subs({l: lam / s})
+    whole = 2 * s**4 * LOAD / PI
+    scaled = s**3 * (s * (1 + T / PI) / 2 + 8 * lam / (3 * PI))
+    slope = 4 * s**2 * (PI * s**2 / 2 + s * lam + (s**2 + lam**2) * theta) / PI
+    curve = 8 * s**2 * (PI * s**2 + 2 * s * lam + (2 * s**2 + lam**2) * theta) / PI
+    proof.define(l, lam / s, r"$\lambda = V \tau/a_0$, $s = a/a_0$")
+    known(proof, {l: lam / s})
+    proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R_{\mathrm{y}}/R}$")
+    proof.equal(ball_scaled, scaled, "a sum of positive terms")
+    proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
+    of_s = scaled.subs(T, tail).subs(theta, angle)
+    proof.equal(s * sp.diff(of_s, s), ball_scaled_s, "a deeper ball carries more",
+                left=r"s \frac{\partial \tilde f}{\partial s}")  # fmt: skip
+    proof.define(ball_scaled_ss, curve, r"$d^2 \tilde f/d (\ln s)^2$")
+    of_slope = slope.subs(theta, angle)
+    proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "once more",
+                left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
+    proof.recall("F20-loss", at={l: lam / s})
+    gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI
+    proof.equal(ball_scaled_s - 3 * ball_scaled, gain, "more than the damper alone")
+    number = lam / s
+    less = 4 * s**3 * lam * (2 * number**2 / 3 + number * T / 2) / (1 + number**2) / PI
+    proof.equal(4 * ball_scaled - ball_scaled_s, less, "less than the spring alone")
+    for form in (gain, less):
+        proof.holds(form, ">", 0, "all terms are positive")
+    balance = ball_scaled + kappa * (s**2 - 1) - 1
+    proof.crossing(balance, (s, 0, sp.oo), "exactly once", slope=ball_scaled_s / s + 2 * kappa * s)
+    proof.done(ball_scaled, scaled)
+
+
+@result("F20-crossing", uses=("F20-low", "F20-high"))
+def _crossing(proof: Proof) -> None:
+    r"""Ball: crossing velocity.
+
+    The asymptotes $\mu = V \tau/R$ and $\mu = \frac{3 \pi}{16} \frac{a}{R}$ meet at $V^{*} \tau = \frac{3
+    \pi}{16} a$ for a given depth; at a given load ($\kappa = 0$) or on a spring at $V^{*} \tau = \tilde
+    \lambda^{*} a_0$.
+    """
+    proof.define(ball_cross, HIGH, r"$l = \tilde m$ of high velocity, at a given depth")
+    held = HIGH * (2 * (1 + kappa)) ** sp.Rational(1, 4)
+    lifted = 3 * PI * (1 + kappa) / (8 * lam)
+    reason = r"$\lambda = \frac{3 \pi}{16} s$ with $s^3 = \frac{3 \pi (1 + \kappa)}{8 \lambda}$"
+    proof.root(lam**3 - HIGH**3 * lifted, lam, held, reason, name=ball_lam_cross)
+
+
+@result("F20-peak", uses=("F20", "F20-loss"))
+def _slip(proof: Proof) -> None:
+    r"""Ball: friction maximum of a dead weight.
+
+    At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient
+    rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high
+    velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is $l =
+    1.842345$, beside the $\sqrt{3}$ of a cylinder (F3).
+    """
+    tail = TAIL.subs(theta, ANGLE)
+    load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
+    known(proof)
+    proof.recall("F20-loss")
+    proof.define(w, LOAD, "F20-load")
+    proof.define(phi, FRICTION, "F20")
+    gain = l * (sp.Rational(4, 3) - 2 * D)
+    proof.equal(l * sp.diff(load, l), gain, "a faster ball carries more",
+                left=r"l \frac{d \tilde w}{d l}")  # fmt: skip
+    proof.equal(l * sp.diff(friction, l), phi - 2 * l**2 * D, "and rubs more",
+                left=r"l \frac{d \tilde \varphi}{d l}")  # fmt: skip
+    slip = (1 - 8 * l * D / (PI + T)) * w - sp.Rational(5, 4) * gain
+    proof.define(ball_slip, slip, "has the sign of the slope of the friction coefficient")
+    proof.equal(phi * slip, (phi - 2 * l**2 * D) * w - sp.Rational(5, 4) * gain * phi,
+                r"$\tilde \varphi \tilde w \frac{d}{d \ln l} \ln (\tilde \varphi \tilde w^{-5/4})$, for "
+                r"$\mu = F/W$ and $F \sim a^5 \tilde \varphi$")  # fmt: skip
+    proof.done(ball_slip, slip)
+
+
+@result("F20-unique", uses=("F20-peak",))
+def _unique(proof: Proof) -> None:
+    r"""Ball: one friction maximum.
+
+    With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from infinity to
+    $- \frac{1}{3}$, it has one root, $l = 1.842345$ within $10^{-6}$: a ball under a dead weight has one
+    friction maximum.
+    """
+    arc, whole = sp.atan(y / l), 1 + l**2
+    rest, kept, lost, g = ball_rest, ball_kept, ball_lost, ball_mean
+    square, wide = y**2 * (1 - y**2), l**2 + y**2
+    lose = y**3 / 3 - whole * y + l * whole * arc
+    forget = l * (-l * y + (1 + 3 * l**2) * arc / 2 - l * whole * y / (2 * wide))
+    known(proof)
+    proof.integral(rest, y**2 * square / wide, UNIT, y**3 / 3 - y**5 / 5 + l**2 * lose,
+                   r"$\frac{2}{15} - l^2 \tilde D$", value=REST)  # fmt: skip
+    for name, form, primitive, what in (
+        (lost, l**2 * square / wide**2, forget, r"$-\frac{l}{2}$ times the slope of $\tilde D$"),
+        (kept, y**2 * square / wide**2, -lose - forget, "what remains"),
+    ):
+        proof.integral(name, form, UNIT, primitive, what)
+    proof.recall("F20-loss")
+    proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$")
+    shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
+    slip = (1 - 2 * l * D / g) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
+    proof.equal(slip / l, shape, r"$\tilde E/l$ of F20-peak")
+    size = (
+        g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * rest
+        + l * g * (2 * D + lost) + sp.Rational(16, 3) * l**2 * (kept + l * D**2 / g)
+    )  # fmt: skip
+    fall = -(l**2) * g * sp.Derivative(shape, l)
+    proof.equal(fall, size, "how steeply it falls; no term but one is negative")
+    size = size.subs(g, (PI + T) / 4)
+    proof.holds(size, ">", 0, r"it is outweighed: $\frac{\pi^2}{16} > \frac{16}{45}$")
+    for place, sign in zip(PEAK, "><", strict=True):
+        proof.holds(sp.Subs(shape, l, place), sign, 0, "beside the root")
+    proof.crossing(shape, (l, 0, sp.oo), "exactly once", slope=-size / (l**2 * (PI + T) / 4))
+
+
+PEAK = sp.Rational(1842344, 10**6), sp.Rational(1842346, 10**6)
+"""Between these l the friction coefficient of a dead weight is greatest."""
+
+
+def _error(
+    proof: Proof, name: sp.Symbol, ratio: sp.Expr, error: sp.Expr, slope: sp.Expr, sign: str
+) -> None:
+    """Prove the error of an asymptote, and that it grows with l or falls."""
+    proof.define(name, ratio - 1, "asymptote over the truth, less one")
+    proof.equal(name, error, "without cancellation")
+    known(proof)
+    proof.recall("F20-loss")
+    if slope.has(ball_rest):
+        proof.recall("F20-unique", ball_rest)
+    proof.equal(sp.Derivative(error, l), slope, "its slope")
+    proof.holds(slope, sign, 0, "of one sign")
+    proof.done(name, error)
+
+
+_g, _whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
+_slower = 2 * (2 * l**2 / 3 + l * T / 2) / (1 + l**2)
+"""4/3 - 2 D, by which the load grows with l."""
+for _label, _title, _name, _ratio, _form, _growth, _sign in (
+    ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * _g),
+     sp.Rational(4, 3) * (_g + 2 * l * D) / _g**2, ">"),
+    ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT, HIGH / l - T / (PI + T),
+     (8 * PI * (sp.Rational(2, 15) - ball_rest) / (PI + T) ** 2 - HIGH) / l**2, "<"),
+    ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
+     -(sp.Rational(16, 3) * l - (PI - T)) / _whole, -8 * PI * _slower / _whole**2, "<"),
+    ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
+     -(PI + T) / _whole, (8 * D * _whole + 4 * (PI + T) * _slower) / _whole**2, ">"),
+    ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
+     PI / 2 * l / FRICTION, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
+    ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
+     PI / 4 * l / FRICTION, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
+):  # fmt: skip
+    result(f"F20-error-{_label}", title=f"Ball: relative error, {_title}", text="It is monotonic in $l$.",
+           uses=("F20",), name=_name, ratio=_ratio, error=_form, slope=_growth,
+           sign=_sign)(_error)  # fmt: skip

@@ -1,0 +1,218 @@
+r"""The error of the parabola h = x**2/(2 R) for a true circle h = R - sqrt(R**2 - x**2).
+
+With eps = (a/R)**2, where a = sqrt(2 R delta) belongs to the parabola, each quantity of steady sliding
+is that of the parabola times 1 + c eps + O(eps**2). Shape and edges are analytic in eps, so that the
+coefficients c follow from the first terms of the pressure and of the moving edges. What a circle of any depth
+dissipates inside its contact has a closed form, by which the explorer computes its friction.
+"""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .model import R, delta, x
+from .steady import a, l, q
+from .theorems import (
+    FRICTION_COEFFICIENT,
+    NUMBER,
+    RATIO,
+    UNIT,
+    A,
+    B,
+    f,
+    f_s,
+    phi,
+    s,
+    w,
+    xi,
+)
+
+eps = symbol("epsilon", "$(a/R)^2$ of a true circle", latex=r"\varepsilon", printed=r"\gamma")
+W_1 = symbol("W_1", "first-order change of the scaled load by the circle", real=True)
+F_1 = symbol("F_1", "first-order change of the scaled friction force by the circle", real=True)
+c_w = symbol("c_W", "coefficient of the circle in the load", real=True)
+c_f = symbol("c_F", "coefficient of the circle in the friction force", real=True)
+c_mu = symbol("c_mu", "coefficient of the circle in the friction coefficient", real=True)
+c_delta_load = symbol(
+    "c_delta_W",
+    "coefficient of the circle in the depth at given load",
+    latex=r"c_{\delta,W}",
+    real=True,
+)
+c_mu_load = symbol(
+    "c_mu_W",
+    "coefficient of the circle in the friction coefficient at given load",
+    latex=r"c_{\mu,W}",
+    real=True,
+)
+letter(r"\hat h", "height of a true circle over $R$")
+tilt = symbol("slope", latex=r"\hat h'")
+letter(r"\hat v", "slope of a true circle")
+circle_number = symbol("v_c", r"$l_{\mathrm{r}}/R$ of a true circle", latex=r"\hat l")
+turning = symbol("s_c", "$-x/R$ at the peak pressure of a true circle", latex=r"\hat s")
+turning_angle = symbol("angle", r"angle that gives $\hat s$", latex=r"\hat \theta")
+slope_square = symbol(
+    "slope_square", "integral of $h'^2$ over a contact, over $R$", latex=r"\hat S", real=True
+)
+letter(r"\hat t", r"shift of the trailing edge of a circle, over $\gamma a$")
+letter("m_l", "logarithmic slope of $m$ over $l$")
+
+
+CONTACT = (xi, -1, q)
+PARABOLA = 1 - xi**2 - 2 * l * xi
+"""p/(K delta) of the parabola at x = xi a."""
+CORRECTION = -(xi**4) / 4 - l * xi**3
+"""The addition by the fourth-order term of the circle, per eps."""
+_shift = sp.Symbol("t", real=True)
+EDGE = sp.Rational(1, 8)
+"""The leading edge of the circle is at xi = -1 + eps/8 + O(eps**2)."""
+
+LOAD_COEFFICIENT = -3 * q * (1 + (1 - q) * (1 - 3 * q * (1 - q))) / (20 * A)
+FORCE_COEFFICIENT = 9 * (1 - q * (1 - q) * (1 + q**2)) / (10 * B)
+LOADED_COEFFICIENT = sp.Rational(3, 10) * ((1 + q) * (3 * (1 - q) ** 2 + 2 * q) / B)
+
+result = Chapter("True circle")
+
+
+@result("circle-shape")
+def _shape(proof: Proof) -> None:
+    r"""Shape and leading edge of a true circle.
+
+    Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.
+    """
+    circle = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2))
+    edge = sp.sqrt(1 - eps / 4)
+    proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
+    proof.recall("eq28", delta)
+    proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
+    proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
+    first = eps * xi**4 / 4
+    proof.leading_order(circle - xi**2, first, eps, 0, "the difference to the parabola", eps=eps)
+    reason = (
+        r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
+    )
+    proof.equal((R - delta) ** 2, R**2 - (edge * a) ** 2, reason)
+    proof.leading_order(1 - edge, EDGE * eps, eps, 0, "the leading edge recedes by", eps=eps)
+    proof.done(circle - xi**2, first)
+
+
+@result("circle-fixed", uses=("circle-shape", "F16"))
+def _fixed(proof: Proof) -> None:
+    r"""True circle at given depth.
+
+    Load, friction force and friction coefficient are those of the parabola times $1 + c_W \varepsilon$, $1 +
+    c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to $O(\varepsilon^2)$. The pressure vanishes at the
+    trailing edge, whose shift therefore has no effect to this order; at the leading edge it does not vanish.
+    """
+    proof.recall("scaling", reason=RATIO)
+    change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
+    proof.equal(
+        change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
+    )
+    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
+    proof.sign(
+        sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
+    )
+    proof.notation[r"\hat p"] = sp.Lambda(xi, PARABOLA)
+    leading = PARABOLA.subs(xi, -1)
+    proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
+    proof.recall("F1", w)
+    proof.recall("F1", phi)
+    moved = (xi, -1 + EDGE * eps, q + _shift * eps)
+    slope = xi + eps * xi**3 / 2
+    for total, weight, scale, coefficient, value, name in (
+        (W_1, 1, w, c_w, LOAD_COEFFICIENT, "load"),
+        (F_1, -slope, phi, c_f, FORCE_COEFFICIENT, "friction force"),
+    ):
+        density = sp.expand(weight * (PARABOLA + eps * CORRECTION))
+        primitive = sp.integrate(density, xi)
+        low, high = (sp.Subs(primitive, xi, end) for end in moved[1:])
+        proof.integral(total, density, moved, primitive, _MOVED, value=high - low)
+        per_eps = sp.Subs(sp.Derivative(total / scale, eps), eps, 0)
+        proof.define(
+            coefficient, per_eps, r"the change per $\varepsilon$, over that of the parabola"
+        )
+        proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
+    proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
+    proof.sign(c_f, ">", 0, UNIT, "and has more friction")
+    proof.define(c_mu, c_f - c_w, r"$\mu = F/W$, a sum of positive terms")
+
+
+_MOVED = (
+    r"between the edges of the circle, of which the trailing one is at $q + t \varepsilon$; terms of "
+    r"order $\varepsilon^2$ are left out in the pressure and in the edges"
+)
+
+
+@result("circle-dead-weight")
+def _dead_weight(proof: Proof) -> None:
+    r"""True circle at given load.
+
+    With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and friction coefficient
+    are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + c_{\mu,W} \varepsilon$, up to
+    $O(\varepsilon^2)$: the depth adjusts until the load is the same.
+    """
+    loading = 3 / A
+    slipping = sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT * NUMBER / sp.diff(NUMBER, q)
+    slope = q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B)
+    proof.recall("balance", s * f_s / f)
+    proof.recall("circle-fixed", c_w)
+    proof.recall("circle-fixed", c_f)
+    proof.recall("circle-fixed")
+    proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
+    proof.define(c_delta_load, -c_w / loading, "depth: the load is kept")
+    change = sp.Symbol("m_l", real=True)
+    proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
+    proof.equal(change, slope, "logarithmic slope of $m$")
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, _CHAIN)
+    proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
+
+
+@result("circle-steepness", uses=("energy-any-shape",))
+def _steepness(proof: Proof) -> None:
+    r"""True circle: the square of its slope.
+
+    $\frac{1}{R} \int h'^2\, dx$ from the lowest point to where the slope is $\hat h'$. The integrand is
+    positive; where the slope is small the closed form cancels, and the integral does not.
+    """
+    y = sp.Symbol("y", nonnegative=True)
+    place, size = R * y / sp.sqrt(1 + y**2), (1 + y**2) ** sp.Rational(3, 2)
+    slope = x / sp.sqrt(R**2 - x**2)
+    proof.equal(sp.Derivative(R - sp.sqrt(R**2 - x**2), x), slope, "slope of the circle")
+    proof.equal(slope.subs(x, place), y, r"it is $y$ at $x = R y/\sqrt{1 + y^2}$")
+    proof.equal(sp.Derivative(place, y), R / size, r"how $x$ grows with the slope")
+    closed = sp.asinh(y) - y / sp.sqrt(1 + y**2)
+    value = closed.subs(y, tilt)
+    proof.integral(slope_square, y**2 / size, (y, 0, tilt), closed, _SQUARE, value=value)
+
+
+_SQUARE = "the slope as variable"
+
+
+@result("circle-peak")
+def _peak(proof: Proof) -> None:
+    r"""True circle: peak pressure.
+
+    Ahead of the lowest point the pressure is $p = K [\delta - R (1 - \sqrt{1 - y^2}) + l_{\mathrm{r}}
+    y/\sqrt{1 - y^2}]$ at $x = -R y$. It rises up to $y = \hat s$, and again beyond the other positive root:
+    the peak is there or at the leading edge. For $\hat l > 2/(3 \sqrt{3})$ it rises all the way.
+    """
+    y, root = sp.Symbol("y", positive=True), sp.sqrt(3)
+    proof.where(y < 1, "within the radius")
+    height, slope = 1 - sp.sqrt(1 - y**2), y / sp.sqrt(1 - y**2)
+    rise = circle_number - y * (1 - y**2)
+    proof.equal(sp.Derivative(circle_number * slope - height, y), rise / (1 - y**2) ** sp.Rational(3, 2),
+                r"slope of $p/(K R)$ ahead of the lowest point, at $x = -R y$")  # fmt: skip
+    proof.define(circle_number, 2 * sp.sin(3 * turning_angle) / (3 * root), _NUMBER)
+    proof.define(turning, 2 * sp.sin(turning_angle) / root, "where the slope changes its sign")
+    others = y**2 + turning * y + turning**2 - 1
+    proof.equal(rise, (y - turning) * others, r"$\hat s$ is the smallest positive root")
+    proof.done(turning, 2 * sp.sin(turning_angle) / root)
+
+
+_NUMBER = (
+    r"$\hat l = l_{\mathrm{r}}/R$, if $\hat l \le 2/(3 \sqrt{3})$, with $0 < \hat \theta \le "
+    r"\frac{\pi}{6}$"
+)
+_CHAIN = r"$\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"

@@ -1,0 +1,136 @@
+"""Dissipation of the power of the friction force: theorem F6, and the identity behind it for any shape."""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .model import C, K, R, V, delta, h, x
+from .steady import F, a, l, l_r, q, x_le, x_te
+from .theorems import NUMBER, RATIO, UNIT, B, phi
+
+letter(r"u_{\mathrm{TE}}", "compression at the trailing edge", "m")
+F_elastic = symbol(
+    "F_elastic", "elastic part of the friction force", "N/m", latex=r"F_{\mathrm{e}}", real=True
+)
+F_viscous = symbol(
+    "F_viscous", "viscous part of the friction force", "N/m", latex=r"F_{\mathrm{v}}", real=True
+)
+eta = symbol("eta", "part of the power $F V$ that is dissipated inside the contact")
+
+
+_shape = h(x)
+_slope = sp.Derivative(_shape, x)
+_contact = (x, x_le, x_te)
+_STORED = sp.Integral(-K * (delta - _shape) * _slope, _contact)
+_INSIDE = sp.Integral(K * l_r * _slope**2, _contact)
+_ASSUMPTIONS = (
+    r"Any shape $h$ whose slope may jump, in contact on one interval at whose leading edge $u = \delta - "
+    "h$ vanishes."
+)
+
+_TWO_LOSSES = (
+    r"K \left(\frac{u_{\mathrm{TE}}^2}{2} + l_{\mathrm{r}} "
+    r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}} h'(x)^2 \, dx\right)"
+)
+_BEHIND = r"\frac{1}{V} \int_{x_{\mathrm{TE}}}^{\infty} C \dot{u}^2 \, dx"
+
+result = Chapter("Energy")
+
+
+@result("energy-split")
+def _split(proof: Proof) -> None:
+    r"""Friction force: an elastic and a viscous part.
+
+    Any shape $h$ whose slope may jump, in contact on one interval at whose leading edge $u = \delta - h$
+    vanishes.
+    """
+    whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
+    proof.recall("eq29", C)
+    proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
+    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
+    proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
+    proof.define(F, F_elastic + F_viscous, "the friction force")
+
+
+@result("energy-behind", uses=("eq25", "eq29"))
+def _relaxation(proof: Proof) -> None:
+    r"""Energy lost behind the contact.
+
+    Per distance slid: the surface that leaves the contact with $u = u_{\mathrm{TE}}$ relaxes freely, $u =
+    u_{\mathrm{TE}} e^{-(x - x_{\mathrm{TE}})/l_{\mathrm{r}}}$ (Eqs. 25, 29).
+    """
+    u_te = delta - h(x_te)
+    surface = u_te * sp.exp(-(x - x_te) / l_r)
+    proof.notation |= {
+        "V": V, "C": K * l_r / V, r"\dot{u}": V * sp.diff(surface, x), r"u_{\mathrm{TE}}": u_te,
+    }  # fmt: skip
+    integrand = K * l_r * sp.diff(surface, x) ** 2
+    behind = sp.Integral(integrand, (x, x_te, sp.oo))
+    proof.integral(
+        *(behind, integrand, (x, x_te, sp.oo), -K * surface**2 / 2),
+        r"$C \dot{u}^2/V$ behind the contact: all that was stored at the trailing edge",
+        value=K * u_te**2 / 2,
+        left=_BEHIND,
+        right=r"\frac{K}{2} u_{\mathrm{TE}}^2",
+    )
+
+
+@result("energy-any-shape", text=_ASSUMPTIONS, uses=("energy-behind",))
+def _any_shape(proof: Proof) -> None:
+    """Friction force of any shape is dissipation.
+
+    The first term is the power lost in the surface that relaxes behind the contact, the second the power lost
+    inside it, both over $V$.
+    """
+    result = K * (delta - h(x_te)) ** 2 / 2 + _INSIDE
+    difference = K * (delta - h(x_te)) ** 2 / 2 - K * (delta - h(x_le)) ** 2 / 2
+    proof.recall("energy-split")
+    proof.recall("energy-split", F_viscous)
+    # u is continuous and piecewise smooth, so that kinks of the shape change nothing here.
+    elastic = -K * (delta - _shape) * _slope
+    stored = K * (delta - _shape) ** 2 / 2
+    proof.integral(F_elastic, elastic, _contact, stored, "$u u' = (u^2/2)'$", value=difference)
+    proof.define(h(x_le), delta, r"$u(x_{\mathrm{LE}}) = 0$")
+    proof.notation[r"u_{\mathrm{TE}}"] = delta - h(x_te)
+    proof.equal(
+        *(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$"),
+        right=_TWO_LOSSES,
+    )
+
+
+@result("F6", uses=("energy-any-shape", "F1"))
+def _parabola(proof: Proof) -> None:
+    r"""Energy dissipated inside the contact.
+
+    The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola is 1 in both
+    limits and never below 4/5, which is reached at $l_{\mathrm{r}} = \frac{3}{4} a$.
+    """
+    fraction = 4 * (q**2 - q + 1) / B
+    dissipation = K * l_r * (x / R) ** 2
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.recall("eq28", delta)
+    proof.recall("scaling", reason=RATIO)
+    proof.recall("F1", phi)
+    proof.recall("F1", F)
+    proof.integral(
+        *(F_viscous, dissipation, (x, -a, q * a), K * l_r * x**3 / (3 * R**2)),
+        "inside the contact",
+        value=K * l_r * a**3 * (1 + q**3) / (3 * R**2),
+    )
+    proof.equal(
+        F - F_viscous,
+        K * (delta - (q * a) ** 2 / (2 * R)) ** 2 / 2,
+        r"behind: $K u_{\mathrm{TE}}^2/2$",
+    )
+    proof.define(eta, F_viscous / F, "by definition")
+    proof.equal(eta, fraction, "fraction inside")
+    proof.sign(eta, ">=", sp.Rational(4, 5), UNIT, "never less than four fifths")
+    proof.equal(
+        eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), r"least at $q = \frac{1}{2}$"
+    )
+    half = NUMBER.subs(q, sp.Rational(1, 2))
+    proof.notation["l"] = sp.Lambda(q, NUMBER)
+    proof.equal(half, sp.Rational(3, 4), "the retardation length there", left="l(1/2)")
+    proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")
+    proof.done(eta, fraction)

@@ -1,0 +1,36 @@
+"""There is no second contact behind the trailing edge of steady sliding (Eq. 27)."""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter
+from ..engine.step import Proof
+from .model import R, delta
+from .steady import SECTION, l_r, x_te
+
+letter(r"x_{\mathrm{b}}", "distance behind the trailing edge", "m")
+result = Chapter(SECTION)
+
+
+@result("one-contact", uses=("eq25", "eq29"))
+def _one_contact(proof: Proof) -> None:
+    """No second contact.
+
+    Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a parabola.
+    Both leave the edge with the same slope, and then separate.
+    """
+    proof.recall("eq28")
+    proof.recall("eq27")
+    y, part = sp.symbols("y zeta", positive=True)
+    indenter, left = delta - (x_te + y) ** 2 / (2 * R), l_r * x_te / R
+    proof.equal(delta - x_te**2 / (2 * R), left, "the compression at the trailing edge")
+    proof.equal(indenter, left * (1 - y / l_r) - y**2 / (2 * R),
+                r"the indenter behind it, at $x = x_{\mathrm{TE}} + y$")  # fmt: skip
+    over = (part, 0, y / l_r)
+    above = sp.Integral(1 - sp.exp(-part), over)
+    proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
+                   "an exponential above its tangent", value=sp.exp(-y / l_r) - 1 + y / l_r)  # fmt: skip
+    gap = left * sp.exp(-y / l_r) - indenter
+    proof.equal(gap, y**2 / (2 * R) + left * above, "the gap between indenter and free surface")
+    proof.holds(y**2 / (2 * R) + left * above, ">=", y**2 / (2 * R), "never again in contact")
+    proof.done(gap, y**2 / (2 * R) + left * above)

@@ -1,0 +1,263 @@
+r"""The errors of the asymptotes of a power law: exact relative errors, stable in both limits (F19).
+
+Every error is asymptote/exact - 1 in terms of l, q and Q. The factors that vanish at rest are the peeled
+parts 1 - q and 1 - Q and the bend l - (1 - q), which have forms without cancellation.
+"""
+
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.codegen.cfunctions import expm1, log1p
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof, tex
+from .power_law import (
+    FRICTION_FORCE,
+    HIGH_COEFFICIENT,
+    LOAD,
+    LOW_SLOPE,
+    SECTION,
+    Q,
+    excess,
+    in_q,
+    n,
+    y,
+    z,
+)
+from .power_law_weight import AT_REST
+from .steady import l, q
+
+gap_edge = symbol("gap_q", latex=r"\bar q")
+gap_slope = symbol("gap_Q", "$1 - Q$", latex=r"\bar Q")
+bend = symbol("bend", "$l - (1 - q)$, the difference of $l$ and $1 - q$", latex="b_n", real=True)
+letter(r"\phi_2", r"$\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators")
+phi_rise = symbol("phi_rise", r"$\phi_2$ at a positive argument", latex=r"\phi_{2,+}")
+phi_fall = symbol("phi_fall", r"$\phi_2$ at a negative argument", latex=r"\phi_{2,-}")
+psi = symbol("psi", r"logarithmic slope of $\varphi_n$ over $l$")
+omega = symbol("omega", "logarithmic slope of $w_n$ over $l$")
+letter(r"\varrho", r"$1 - \psi$, positive because $\varphi_n/l$ falls")
+blunt = symbol(
+    "blunt",
+    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that vanishes for a wedge",
+    latex=r"D_{\mathrm{b}}",
+)
+damped = symbol("damped", r"$(2 n - 1) \varphi_n/(n^2 l)$", latex=r"D_{\mathrm{d}}")
+sharp = symbol(
+    "sharp",
+    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that remains for a wedge",
+    latex=r"D_{\mathrm{s}}",
+)
+tip = symbol("tip", "$n (n + 1) (w_n - l)$", latex=r"D_{\mathrm{t}}")
+whole = symbol("whole", "$(n + 1) w_n/n$", latex=r"D_{\mathrm{w}}")
+e_n_l1 = symbol(
+    "e_L1_n",
+    "relative error of the asymptote for low velocity, power law",
+    latex=r"e_{\mathrm{L1},n}",
+    real=True,
+)
+e_n_l2 = symbol(
+    "e_L2_n",
+    "relative error of the asymptote for high velocity, power law",
+    latex=r"e_{\mathrm{L2},n}",
+    real=True,
+)
+e_n_load_low = symbol(
+    "e_W_low_n",
+    "relative error of the load for low velocity, power law",
+    latex=r"e_{W\!,\,V\to0,n}",
+    real=True,
+)
+e_n_load_high = symbol(
+    "e_W_high_n",
+    "relative error of the load for high velocity, power law",
+    latex=r"e_{W\!,\,V\to\infty,n}",
+    real=True,
+)
+e_n_friction_low = symbol(
+    "e_F_low_n",
+    "relative error of the friction force for low velocity, power law",
+    latex=r"e_{F\!,\,V\to0,n}",
+    real=True,
+)
+e_n_friction_high = symbol(
+    "e_F_high_n",
+    "relative error of the friction force for high velocity, power law",
+    latex=r"e_{F\!,\,V\to\infty,n}",
+    real=True,
+)
+e_n_depth_high = symbol(
+    "e_depth_high_n",
+    "relative error of the depth for high velocity, power law",
+    latex=r"e_{\delta,\,V\to\infty,n}",
+    real=True,
+)
+letter("j", "counter", source="counter")
+
+_SHORT = {
+    damped: 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2,
+    whole: 1 + q + l + l**2 * Q,
+    tip: n**2 + q * (n**2 - 1 + q * Q),
+    blunt: (n - 1) * (2 * n**2 - 1 + 2 * (n + 1) * q * (n + Q)) / (2 * n**2 * (n + 1)),
+    sharp: q**2 * Q * (2 * n / (n + 1) + Q) / (2 * n**2),
+}
+"""Shorthands: (2 n - 1) phi_n/(n**2 l), (n + 1) w_n/n, n (n + 1) (w_n - l), and the two parts of the
+error for high velocity, of which a wedge has the second only."""
+
+
+@dataclass(frozen=True)
+class Asymptote:
+    """An asymptote over the exact value, and the form of its error."""
+
+    label: str
+    title: str
+    symbol: sp.Symbol
+    ratio: sp.Expr
+    form: sp.Expr
+    limit: str
+    """What it tends to, in words."""
+
+
+ASYMPTOTES = (
+    Asymptote(
+        *("L1", "friction coefficient at low velocity", e_n_l1),
+        LOW_SLOPE * l * LOAD / FRICTION_FORCE,
+        (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / damped,
+        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
+    ),
+    Asymptote(
+        *("L2", "friction coefficient at high velocity", e_n_l2),
+        HIGH_COEFFICIENT * LOAD / FRICTION_FORCE,
+        (blunt + sharp) / (l * damped),
+        r"$\frac{(n - 1)(2 n^2 - 1)}{2 n^2 (n + 1)}\, l^{-1}$ at high velocity; no term is negative",
+    ),
+    Asymptote(
+        *("load-low", "load at low velocity", e_n_load_low),
+        AT_REST / LOAD,
+        -(l**2 * Q + bend) / whole,
+        r"$-\frac{n + 1}{4}\, l^2$ at low velocity",
+    ),
+    Asymptote(
+        *("load-high", "load at high velocity", e_n_load_high),
+        l / LOAD,
+        -tip / (n**2 * whole),
+        r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity",
+    ),
+    Asymptote(
+        *("friction-low", "friction force at low velocity", e_n_friction_low),
+        2 * n * HIGH_COEFFICIENT * l / (n * FRICTION_FORCE),
+        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / damped,
+        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
+    ),
+    Asymptote(
+        *("friction-high", "friction force at high velocity", e_n_friction_high),
+        HIGH_COEFFICIENT * l / FRICTION_FORCE,
+        -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / damped,
+        r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity",
+    ),
+    Asymptote(
+        *("depth-high", "depth at high velocity, dead weight", e_n_depth_high),
+        LOAD / l,
+        tip / (n * (n + 1) * l),
+        r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity",
+    ),
+)
+
+result = Chapter(SECTION)
+
+
+@result("F19-peeled", uses=("F19-edge",))
+def _peeled(proof: Proof) -> None:
+    r"""Power law: the peeled parts.
+
+    For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the functions
+    $\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$.
+    """
+    logarithm = log1p(-z)
+    edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
+    proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
+    for power in (edge, slope):
+        proof.notation[rf"\operatorname{{expm1}} {_brace(power)}"] = power
+    proof.define(
+        logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
+    )
+    for power in (edge, slope):
+        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments",
+                     left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
+    in_q(proof)
+    proof.define(z, 1 - q**n, "$z = n l Q$")
+    proof.define(gap_edge, 1 - q, "the peeled part of the outlet side")
+    proof.equal(
+        gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
+    )
+    proof.define(gap_slope, 1 - Q, "the decrease of the slope there")
+    proof.equal(gap_slope, -slope, "without a difference",
+                right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
+
+
+def _brace(power: sp.Expr) -> str:
+    shown = tex(power.args[0].subs(log1p(-z), sp.Symbol("LOG")))
+    return r"\left(" + shown.replace("LOG", r"\operatorname{log1p}(-z)") + r"\right)"
+
+
+@result("F19-bend", uses=("F19-edge",))
+def _bend(proof: Proof) -> None:
+    r"""Power law: the bend of the trailing edge.
+
+    With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > 0$, and $y =
+    -\ln q$.
+    """
+    form = (n - 1) * y**2 * ((n - 1) * phi_rise + phi_fall) / n
+    in_q(proof)
+    proof.define(q, sp.exp(-y), r"$y = -\ln q$")
+    proof.define(phi_rise, (sp.exp((n - 1) * y) - 1 - (n - 1) * y) / ((n - 1) * y) ** 2,
+                 r"$\phi_2((n - 1) y)$")  # fmt: skip
+    proof.define(phi_fall, (sp.exp(-y) - 1 + y) / y**2, r"$\phi_2(-y)$")
+    proof.define(bend, l - (1 - q), "the difference of $l$ and $1 - q$")
+    proof.equal(bend, form, "without a difference")
+
+
+def _error(proof: Proof, asymptote: Asymptote) -> None:
+    in_q(proof)
+    for part, difference, label in (
+        (gap_edge, 1 - q, "F19-peeled"), (gap_slope, 1 - Q, "F19-peeled"), (bend, l - (1 - q), "F19-bend"),
+    ):  # fmt: skip
+        if asymptote.form.has(part):
+            proof.recall(label, (part, difference))
+    for part, sum_of in _SHORT.items():
+        if asymptote.form.has(part):
+            proof.define(part, sum_of, "a shorthand")
+    proof.define(asymptote.symbol, asymptote.ratio - 1, "asymptote over exact value")
+    proof.equal(asymptote.symbol, asymptote.form, "in this form exact also where it is small")
+
+
+for _each in ASYMPTOTES:
+    result(
+        f"F19-error-{_each.label}", title=f"Power law: error of the {_each.title}",
+        text=f"The asymptote over the exact value is 1 plus this error, which tends to {_each.limit}.",
+        uses=("F19-load", "F19-friction"), asymptote=_each,
+    )(_error)  # fmt: skip
+
+
+@result("F19-error-monotonic", uses=("F19-monotonic", "F19-balance"))
+def _monotonic(proof: Proof) -> None:
+    r"""Power law: the errors are monotonic.
+
+    At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, $\varphi_n/l$ and
+    $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ (F19-balance), under a spring
+    between that and 0: the error of the asymptote for low velocity grows with the velocity (for $n > 2$
+    the spring only reduces a positive term).
+
+    Argued: The asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} (w_n/l)^{1 -
+    1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance on a half-line of
+    velocities.
+    """
+    rest = sp.Symbol("varrho", positive=True)
+    proof.define(psi, 1 - rest, r"$d \ln \varphi_n/d \ln l < 1$, because $\varphi_n/l$ falls")
+    sinking = -omega / (n + 1)
+    slope = (2 - n) * sinking + 1 - (psi - omega)
+    form = rest + (n + excess) * omega / (n + 1)
+    proof.define(n, 1 + excess, r"$n > 1$")
+    proof.equal(slope, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
+    proof.holds(form, ">", 0, r"$\omega = d \ln w_n/d \ln l > 0$")
+    proof.done(slope, form)

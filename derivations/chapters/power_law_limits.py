@@ -1,0 +1,112 @@
+r"""A power law at a given depth over velocity: monotonicity, both limits, and their crossing (F19)."""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .power_law import (
+    FRICTION_COEFFICIENT,
+    FRICTION_FORCE,
+    HIGH_COEFFICIENT,
+    LOAD,
+    LOW_SLOPE,
+    NUMBER,
+    SECTION,
+    SLOPE_POWER,
+    SQUARES,
+    Q,
+    excess,
+    in_q,
+    n,
+    z,
+)
+from .steady import l, q
+
+letter(r"\bar z", "$1 - q^n$")
+w_rest = symbol("w_rest", "scaled load of a power law at rest", latex="w_{n,0}")
+m_low = symbol("m_low", "its coefficient at low velocity", latex="m_{n,0}'")
+m_high = symbol("m_high", "its limit at high velocity", latex=r"m_{n,\infty}")
+l_cross = symbol("l_cross", "scaled retardation length where the asymptotes meet", latex="l^{*}")
+
+result = Chapter(SECTION)
+
+
+@result("F19-monotonic", uses=("F19-load", "F19-friction"))
+def _monotonic(proof: Proof) -> None:
+    r"""Power law: forces grow with velocity.
+
+    At a given depth load, friction force and friction coefficient grow with the velocity, while $w_n/l$,
+    $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$.
+    """
+    in_q(proof)
+    state = {l: NUMBER, Q: SLOPE_POWER}
+    load, friction = (form.subs(state) for form in (LOAD, FRICTION_FORCE))
+
+    def rate(form: sp.Expr) -> sp.Expr:
+        return sp.diff(form, q) / sp.diff(NUMBER, q)
+
+    proof.notation |= {"w_n": load, r"\varphi_n": friction}
+    proof.notation |= {"w_n'": rate(load), r"\varphi_n'": rate(friction)}
+    load_rate, friction_rate = n * l * Q, n**2 * SQUARES
+    proof.equal(rate(load), load_rate, "the load grows", left="w_n'")
+    proof.equal(rate(friction), friction_rate, "and so does friction", left=r"\varphi_n'")
+    rest = n * (1 + q + l * q * Q) / (n + 1)
+    proof.equal(LOAD - l * load_rate, rest, "$w_n/l$ falls: positive",
+                left="w_n - l w_n'")  # fmt: skip
+    less = n**2 * l**2 * Q**2 / 2
+    proof.equal(FRICTION_FORCE - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
+                left=r"\varphi_n - l \varphi_n'")  # fmt: skip
+    z, double = n * l * Q, n + excess
+    growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
+    growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
+    gain = friction_rate * LOAD - FRICTION_FORCE * load_rate
+    proof.equal(
+        *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
+        left=r"2 (n + 1) (2 n - 1) (w_n \varphi_n' - \varphi_n w_n')",
+    )
+    proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive")
+    proof.done(LOAD - l * load_rate, rest)
+
+
+@result("F19-low", uses=("F19-load", "F19-friction"))
+def _low(proof: Proof) -> None:
+    r"""Power law: low velocity.
+
+    At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K \delta a$ and
+    $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$.
+    """
+    rest = {q: 1, Q: 1, l: 0}
+    ratio = sp.cancel(FRICTION_COEFFICIENT / l)
+    proof.define(w_rest, LOAD.subs(rest), "load at rest")
+    proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
+    proof.define(m_low, ratio.subs(rest), "friction coefficient per $l$")
+    proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
+
+
+@result("F19-high", uses=("F19-load", "F19-friction"))
+def _high(proof: Proof) -> None:
+    r"""Power law: high velocity.
+
+    For $l \to \infty$ the edge goes to the tip, $q \to 0$ and $Q \to 0$ with $n l Q \to 1$: $W \to C V
+    \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$.
+    """
+    proof.define(l, z / (n * Q), "$n l Q = 1 - q^n = z$")
+    fast = {q: 0, Q: 0, z: 1}
+    share = n * ((1 + q) * n * Q / z + 1 + z / n) / (n + 1)
+    damper = n**2 * (SQUARES + z * Q / (2 * n))
+    proof.equal(LOAD / l, share, "load per $l$")
+    proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
+    proof.equal(share.subs(fast), sp.S.One, "the damper carries the total load")
+    proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
+    proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
+
+
+@result("F19-crossing", uses=("F19-low", "F19-high"))
+def _crossing(proof: Proof) -> None:
+    """Power law: crossing of the asymptotes.
+
+    At a given depth; for $n = 2$ this is Eq. (47).
+    """
+    proof.root(LOW_SLOPE * l - HIGH_COEFFICIENT, l, n / (n + 1), "the asymptotes meet")
+    proof.define(l_cross, n / (n + 1), r"$V^{*} \tau/a$")

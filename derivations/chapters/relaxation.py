@@ -1,0 +1,333 @@
+r"""Steady sliding on a foundation with any relaxation function: theorem F17 without arms, and corollaries.
+
+G(t) is positive, does not rise, and has an integral from t = 0; nothing else is assumed. Where the
+chapter before this one adds up arms, this one integrates by parts. Beside it: the surface that the standard
+linear solid leaves behind, and the one interval of contact on every Prony series.
+"""
+
+import sympy as sp
+
+from ..engine.algebra import antiderivative
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, letter, symbol
+from ..engine.step import Proof, tex
+from .model import K, R
+from .steady import a, x_te
+from .viscoelastic import (
+    MOMENTS,
+    SECTION,
+    UNIT,
+    B,
+    D,
+    E,
+    P,
+    Q,
+    contact_length,
+    excess_share,
+    from_trailing,
+    moment_ahead,
+    moment_bulge,
+    moment_twist,
+    spring_share,
+)
+
+arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
+memory = function("G_v", positive=True)
+behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
+edge_distance = symbol(
+    "y_v", "distance back from there, or behind the trailing edge", "m", latex=r"\breve y"
+)
+letter(r"\breve G_4", r"integral of $\breve G_3$ over the contact", "N m")
+fading = function(
+    "H_v",
+    "rate of decrease of the relaxation function",
+    "Pa/m²",
+    printed=r"\breve H",
+    nonnegative=True,
+)
+other_trailing = symbol("v_v", r"as $\breve w$, of another position", latex=r"\breve v")
+felt = symbol("J_v", "part of a double integral", latex=r"\breve J", real=True)
+shift = symbol("h_v", r"$\breve a - 1$", latex=r"\breve h", real=True)
+left_behind = symbol("u_v", "compression of the free surface", "m", latex=r"\breve u")
+arm_ratio = symbol(
+    "beta_v", "stiffness of the one arm over that of the spring", latex=r"\breve \beta"
+)
+parting = symbol(
+    "sigma_v", "angle between indenter and surface behind the contact", latex=r"\breve \sigma"
+)
+slope_free = symbol("s_vf", "slope of the free surface", latex=r"\breve \chi_0", real=True)
+pressed = symbol(
+    "g_v", "depth of the indenter below the undisturbed surface", "m", latex=r"\breve g", real=True
+)
+damper_1 = symbol(
+    "u_v1", "extension of the dashpot of an arm", "m", latex=r"\breve u_1", nonnegative=True
+)
+damper_2 = symbol("u_v2", "that of another arm", "m", latex=r"\breve u_2", nonnegative=True)
+spring_1 = symbol("K_v1", "stiffness of one arm per unit area", "N/m³", latex="K_1")
+spring_2 = symbol("K_v2", "stiffness of another arm per unit area", "N/m³", latex="K_2")
+share_1 = symbol(
+    "gamma_v1",
+    "share of an arm in the glassy stiffness",
+    latex=r"\breve \gamma_1",
+    nonnegative=True,
+)
+share_2 = symbol("gamma_v2", "share of another arm", latex=r"\breve \gamma_2", nonnegative=True)
+on_off = symbol(
+    "theta_v",
+    "weight of the indenter relative to the free surface",
+    latex=r"\breve \theta",
+    nonnegative=True,
+)
+spare_1 = symbol(
+    "omega_v1", "remainder of a bound, not negative", latex=r"\breve \omega_1", nonnegative=True
+)
+spare_2 = symbol("omega_v2", "the same of another", latex=r"\breve \omega_2", nonnegative=True)
+repeated = tuple(function(f"G_v{n}", nonnegative=True) for n in range(1, 5))
+
+y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length
+G, (G_1, G_2, G_3, G_4) = memory, repeated
+PRESSURE = sp.Lambda(y, (a * G_1(y) - G_2(y)) / R)
+LOAD = (a * G_2(c) - G_3(c)) / R
+WORK = ((a - c) * (a * G_2(c) - G_3(c)) + a * G_3(c) - G_4(c)) / R**2
+
+result = Chapter(SECTION)
+
+
+def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
+    """Name repeated integrals of the relaxation function over the distance back."""
+    for integral, part in zip(repeated[:count], (G, *repeated)[:count], strict=True):
+        proof.define(sp.Derivative(integral(place), place), part(place), "a repeated integral")
+        proof.define(integral(0), sp.S.Zero, "from the leading edge on")
+
+
+@result("F17-any")
+def _pressure(proof: Proof) -> None:
+    r"""Any relaxation function: the pressure.
+
+    An element at the distance $\breve X$ behind the leading edge was compressed at the rate $(a - \breve X +
+    \breve y)/R$ when it was $\breve y$ ahead of its present position; $\breve G(\breve y) = G(\breve y/V)$,
+    and $\breve G_1$ to $\breve G_4$ are its repeated integrals. $G$ need not be a sum of arms.
+    """
+    name_integrals(proof, 2)
+    rate = (a - X + y) / R
+    value = PRESSURE(X)
+    whole = sp.Integral(G(y) * rate, (y, 0, X))
+    proof.integral(whole, G(y) * rate, (y, 0, X), rate * G_1(y) - G_2(y) / R,
+                   r"by parts; this is the pressure $p(\breve X)$", value=value)  # fmt: skip
+
+
+@result("F17-concave", uses=("F17-any",))
+def _concave(proof: Proof) -> None:
+    r"""Any relaxation function: one trailing edge.
+
+    The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is concave:
+    it vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$.
+
+    Argued: Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$.
+    """
+    name_integrals(proof, 2)
+    first = (a * G(y) - G_1(y)) / R
+    proof.equal(sp.Derivative(PRESSURE(y), y), first, "slope of the pressure")
+    proof.define(sp.Derivative(G(y), y), -fading(y), "G does not increase")
+    second = -(a * fading(y) + G(y)) / R
+    proof.equal(sp.Derivative(first, y), second, "and its slope")
+    proof.holds(second, "<", 0, "the pressure is concave")
+    proof.done(sp.Derivative(first, y), second)
+
+
+@result("F17-forces", uses=("F17-any",))
+def _forces(proof: Proof) -> None:
+    r"""Any relaxation function: load and friction force.
+
+    With $a = \breve G_2/\breve G_1$ at $\breve c$ everything is explicit in the length $\breve c$ of the
+    contact. As $p = \int G u'$, the friction force is the quadratic form $\int p\, u' = \int \int G(\breve X
+    - \breve y)\, u'(\breve y)\, u'(\breve X)$ over $\breve y < \breve X$.
+    """
+    name_integrals(proof, 4)
+    over = (y, 0, c)
+    load = sp.Integral(PRESSURE(y), over)
+    primitive = (a * G_2(y) - G_3(y)) / R
+    proof.integral(load, PRESSURE(y), over, primitive, "this is the load $W$", value=LOAD)
+    rate = (a - y) / R
+    work = sp.Integral(rate * PRESSURE(y), over)
+    whole = rate * primitive + (a * G_3(y) - G_4(y)) / R**2
+    proof.integral(work, rate * PRESSURE(y), over, whole, "the work of the pressure, which is $F$",
+                   value=WORK)  # fmt: skip
+
+
+@result("F17-parts", uses=("F17-forces", "F17-load", "F17"))
+def _moments(proof: Proof) -> None:
+    """Any relaxation function: the moments by parts.
+
+    The moments of F17-moments, applied to the whole relaxation function: load and friction force are those of
+    F17-load and F17, whether or not $G$ is a sum of arms. (F17-sign shows that the moments are positive.)
+    """
+    name_integrals(proof, 4)
+    parts = (G_1(y), G_2(y), G_3(y), G_4(y))
+    for name in (moment_ahead, moment_bulge, moment_twist):
+        weight = sp.expand(MOMENTS[name][0].subs(w, y / c)) / c
+        primitive = sum((-1) ** n * sp.diff(weight, y, n) * part for n, part in enumerate(parts))
+        ends = [sp.diff(weight, y, n).subs(y, c) * part.subs(y, c) for n, part in enumerate(parts)]
+        value = sum((-1) ** n * end for n, end in enumerate(ends))
+        proof.integral(
+            name, weight * G(y), (y, 0, c), primitive, "by parts", value=sp.expand(value)
+        )
+    proof.define(a, G_2(c) / G_1(c), "F17-concave: no pressure at the trailing edge")
+    proof.define(excess_share, a / c - sp.Rational(1, 2), "the excess over half of the contact")
+    e, load, work = excess_share, LOAD, WORK
+    proof.equal(load, c**3 / R * (moment_bulge + e * moment_ahead), "the load of F17-load")
+    form = c**4 / R**2 * (moment_twist + e**2 * moment_ahead)
+    proof.equal(work, form, "the friction force of F17")
+
+
+@result("F17-sign", uses=("F17-parts",))
+def _positive(proof: Proof) -> None:
+    r"""Any relaxation function: friction is positive.
+
+    Each moment is a multiple of $\breve G$ at the trailing edge and an integral of its fall $\breve H$, both
+    with factors that are not negative. Where $G$ does not rise, $F = (\breve c^4/R^2)(\breve E + \breve
+    \eta^2 \breve P)$ with $\breve \eta = \breve B/\breve A$ is therefore positive unless $G$ is constant:
+    convexity of $G$ is not needed. A springpot, infinite at $\breve w = 0$, gives no boundary term there,
+    because $\breve w\, G$ vanishes.
+    """
+    proof.define(sp.Derivative(G(w), w), -fading(w), "the relaxation function does not rise")
+    for name in (P, Q, D, B, E):
+        weight = (1 - 2 * w) / 2 if name == B else MOMENTS[name][0]
+        gained = sp.factor(antiderivative(weight, w))
+        inside, end = weight * G(w) - gained * fading(w), gained.subs(w, 1) * G(1)
+        proof.integral(sp.Integral(inside, UNIT), inside, UNIT, gained * G(w), rf"${tex(name)}$ by parts",
+                       value=end)  # fmt: skip
+        proof.holds(sp.Integral(gained * fading(w), UNIT), ">=", 0, "not negative in the contact")
+    proof.done(sp.Integral(inside, UNIT), end)
+
+
+@result("F17-stored", uses=("F17-energy",))
+def _stored(proof: Proof) -> None:
+    r"""Any relaxation function: energy behind the contact.
+
+    Half of the square of this is the energy stored in the spring of an arm (F17-energy), $\frac{1}{2}
+    \int \int e^{-\breve z (\breve w + \breve w')} u' u'$.
+
+    Argued: Added up over arms it is $\frac{1}{2} \int \int G(\breve w + \breve w')\, u'(\breve w)\,
+    u'(\breve w')$ for every $G$ that is a sum or an integral of arms (Bernstein: that is completely
+    monotone), the springpot among them. It is lost while the surface relaxes behind the contact; the rest
+    of $F$ is lost inside it. For other relaxation functions $G$ alone does not determine the stored
+    energy.
+    """
+    from .viscoelastic import PRESSURE as ARM
+    from .viscoelastic import b, z
+    from .viscoelastic import y as at
+
+    held = sp.Integral(sp.exp(-z * w) * (b - 1 + w), UNIT)
+    primitive = -sp.exp(-z * w) * ((b - 1 + w) / z + 1 / z**2)
+    proof.integral(held, sp.exp(-z * w) * (b - 1 + w), UNIT, primitive,
+                   "stress of an arm at the trailing edge", value=ARM.subs(at, 1))  # fmt: skip
+
+
+@result("F17-stored-springpot", uses=("F17-stored",))
+def _stored_springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: energy behind the contact.
+
+    With $u' \sim \breve h + \breve w$, $\breve h = a/\breve c - 1$, and $G \sim \breve w^{\breve \nu - 1}$:
+    twice the energy of the springpot at the trailing edge, in the units of F17-springpot.
+    """
+    nu, h, v = spring_share, shift, other_trailing
+    both = w + v
+    parts = (h + v) * both**nu / nu - both ** (nu + 1) / (nu * (nu + 1))
+    once = parts.subs(v, 1) - parts.subs(v, 0)
+    proof.integral(felt, both ** (nu - 1) * (h + v), (v, 0, 1), parts, "by parts", value=once)
+    outer = sp.Integral((h + w) * felt, UNIT)
+
+    def part(base: sp.Expr, power: sp.Expr) -> sp.Expr:
+        """Integrate (h + w) base**power over w."""
+        whole = base ** (power + 1) / (power + 1)
+        return (h + w) * whole - base ** (power + 2) / ((power + 1) * (power + 2))
+
+    near = part(1 + w, nu + 1) - part(w, nu + 1)
+    primitive = ((h + 1) * part(1 + w, nu) - h * part(w, nu) - near / (nu + 1)) / nu
+    two = 2**nu
+    none, mixed, square = (
+        2 * (two - 1) / (nu * (nu + 1)),
+        (2 * two - 1) / ((1 + nu) * (2 + nu)),
+        2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)),
+    )
+    value = square + 2 * h * mixed + h**2 * none
+    proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
+
+
+@result("F17-surface", uses=("F17-concave",))
+def _surface(proof: Proof) -> None:
+    r"""Standard linear solid: the surface behind the contact.
+
+    A spring $K$ in parallel with one arm of $K_1 = \breve \beta K$ leaves the contact with the compression
+    $\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve y/((1 + \breve \beta)
+    l_i)}$: the free surface relaxes with the time $(1 + \breve \beta) \tau_i$, which is $\tau = C/K$ for
+    $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin-Voigt,
+    and does not touch again.
+    """
+    rate = slope_free
+    u, stretch = left_behind, (1 + arm_ratio) * l
+    free = K * arm_ratio * rate + K * rate + K * u / l
+    proof.root(free, rate, -u / stretch,
+               r"the slope of the free surface, where the arm carries $-K \breve u$: "
+               r"$-K \breve \chi_0 = K_1 \breve \chi_0 + K \breve u/l_i$")  # fmt: skip
+    proof.define(
+        x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this"
+    )
+    leaving = -K * (1 + arm_ratio) * x_te / R + K * u / l
+    proof.equal(leaving, -K * (1 + arm_ratio) * parting,
+                "slope of the pressure at the end of the contact, negative by F17-concave")  # fmt: skip
+    part = sp.Symbol("zeta", positive=True)
+    over = (part, 0, y / stretch)
+    above = sp.Integral(1 - sp.exp(-part), over)
+    proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
+                   "an exponential above its tangent",
+                   value=sp.exp(-y / stretch) - 1 + y / stretch)  # fmt: skip
+    indenter = u - x_te * y / R - y**2 / (2 * R)
+    gap = u * sp.exp(-y / stretch) - indenter
+    form = y**2 / (2 * R) + parting * y + u * above
+    proof.equal(gap, form, "the gap between indenter and free surface")
+    proof.holds(form, ">=", y**2 / (2 * R), "never again in contact")
+    proof.done(gap, form)
+
+
+@result("F17-interval")
+def _interval(proof: Proof) -> None:
+    r"""Prony series: the contact is one interval.
+
+    The dashpot of an arm follows $\tau_i\, \mathrm{d}\breve u_1/\mathrm{d}t = \breve u - \breve u_1$; the
+    surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + \breve
+    \gamma_2 \breve u_2$. Shown with two arms; nothing depends on their number.
+
+    Argued: The larger of two is the upper bound of all mixtures with weights $\breve \theta$ and $1 -
+    \breve \theta$, so that by the comparison theorem of cooperative systems (Kamke) each extension is the
+    upper bound, over all histories $\breve \theta(t)$, of the solution of a linear system: an integral of
+    the past of $\breve g$ with weights that are not negative and add up to $1 - \breve \omega_1$, at most
+    1. Along the foundation $\breve g$ is one parabola, displaced from instant to instant, so that the
+    height of the indenter over the free surface is a lower bound of concave functions, and concave. An
+    element is in contact where it is not negative, which is one interval, for any drive and any motion:
+    two edges describe the contact on every Prony series, as F9 says for Kelvin-Voigt.
+    """
+    u, stiff = left_behind, K + spring_1 + spring_2
+    pressure = K * u + spring_1 * (u - damper_1) + spring_2 * (u - damper_2)
+    proof.define(share_1, spring_1 / stiff, "share of an arm in the glassy stiffness")
+    proof.define(share_2, spring_2 / stiff, "likewise")
+    free = share_1 * damper_1 + share_2 * damper_2
+    proof.equal(pressure, stiff * (u - free), r"the pressure: a free surface is at this mean")
+    proof.where(on_off < 1, "free for 0; for 1, in contact, what follows is 0")
+    drive = on_off * pressed + (1 - on_off) * free
+    proof.equal(sp.Derivative(drive, damper_2), (1 - on_off) * share_2,
+                "no dashpot reduces the extension of another: the system is cooperative")  # fmt: skip
+    proof.holds((1 - on_off) * share_2, ">=", 0, "so that larger drives give larger extensions")
+    ones = on_off + (1 - on_off) * (share_1 + share_2) - 1
+    proof.equal(ones, -(1 - on_off) * K / stiff, "with all extensions and the indenter at 1")
+    proof.holds(
+        -(1 - on_off) * K / stiff, "<", 0, "they fall: the weights of the past add up to less"
+    )
+    weights = share_1 * (1 - spare_1) + share_2 * (1 - spare_2)
+    bend = -K / stiff - share_1 * spare_1 - share_2 * spare_2
+    proof.equal(
+        -1 + weights, bend, "second derivative along the foundation, over that of the indenter"
+    )
+    proof.holds(bend, "<", 0, "concave")
+    proof.done(-1 + weights, bend)

@@ -1,0 +1,329 @@
+r"""Small motions of an indenter that slides on any Prony series, held by a spring (F24); temperature (F25).
+
+As in F17 everything is linear in the relaxation function, so that one arm is enough: G = K_i e^(-t/tau_i).
+To first order the edges do not matter, since the pressure vanishes at both.
+"""
+
+import sympy as sp
+
+from ..engine.algebra import antiderivative
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, symbol
+from ..engine.step import Proof
+from .groups import k_s
+from .model import M, R, V, delta, t, x
+from .relaxation import behind, edge_distance
+from .spring_drive import C_x, M_x, k_x, small
+from .viscoelastic import arm_number, contact_length, excess_share, half_share, place, springpot
+
+strained = function("x_u", real=True)
+kernels = tuple(
+    symbol(
+        f"phi_r{n}", rf"$\int_0^1 e^{{-\tilde z v}} (1 - v)^{n - 1}/{n - 1}!\, dv$",
+        latex=rf"\tilde \phi_{n}", source="F24-kernels",
+    )
+    for n in range(1, 5)
+)  # fmt: skip
+kernels_still = tuple(
+    symbol(
+        f"psi_r{n}", rf"$\tilde \phi_{n}$ at $\breve z$", latex=rf"\tilde \psi_{n}", source="F24-kernels"
+    )
+    for n in range(1, 5)
+)  # fmt: skip
+swing_rate = symbol(
+    "s_r", "rate of a small motion; complex where it oscillates", "1/s", latex=r"\tilde s"
+)
+time_back = symbol("t_r", "time back", "s", latex=r"\tilde t")
+delta_swing = symbol(
+    "delta_r", "change of the depth, at the time 0", "m", latex=r"\tilde \delta", real=True
+)
+x_swing = symbol(
+    "X_r", "displacement of the indenter, at the time 0", "m", latex=r"\tilde X", real=True
+)
+rate_number = symbol("sigma_r", r"$\tilde s \breve c/V$", latex=r"\tilde \sigma")
+shifted_number = symbol("z_r", r"$\breve z + \tilde \sigma$", latex=r"\tilde z")
+age = symbol("v_r", r"time back, in units of $\breve c/V$", latex=r"\tilde v")
+fading_depth = symbol(
+    "alpha_r",
+    "change of an arm's pressure with the depth, over $K_i$",
+    latex=r"\tilde \alpha",
+    real=True,
+)
+fading_drag = symbol(
+    "beta_r",
+    r"that with the displacement, in units of $K_i \breve c/R$",
+    latex=r"\tilde \beta",
+    real=True,
+)
+normal_per_depth = symbol(
+    "f_zd", r"change of $F_z$ of an arm with the depth, over $K_i \breve c$", latex=r"f_{z\delta}"
+)
+rubbing_per_depth = symbol(
+    "f_xd", r"that of $F_x$, over $K_i \breve c^2/R$", latex=r"f_{x\delta}", real=True
+)
+normal_per_drag = symbol(
+    "f_zX",
+    r"change of $F_z$ with the displacement, over $K_i \breve c^2/R$",
+    latex="f_{zX}",
+    real=True,
+)
+rubbing_per_drag = symbol(
+    "f_xX", r"that of $F_x$, over $K_i \breve c^3/R^2$", latex="f_{xX}", real=True
+)
+total_normal_per_depth = symbol(
+    "F_zd", "change of $F_z$ with the depth", "N/m²", latex=r"F_{z\delta}"
+)
+total_rubbing_per_depth = symbol(
+    "F_xd", "change of $F_x$ with the depth", "N/m²", latex=r"F_{x\delta}", real=True
+)
+total_normal_per_drag = symbol(
+    "F_zX", "change of $F_z$ with the displacement", "N/m²", latex="F_{zX}", real=True
+)
+total_rubbing_per_drag = symbol(
+    "F_xX", "change of $F_x$ with the displacement", "N/m²", latex="F_{xX}", real=True
+)
+shift_factor = symbol("a_T", "shift factor of all times by temperature", source="")
+stiffer = symbol("b_T", "factor of all moduli by temperature", source="")
+memory_warm = function("G_T", "relaxation function at another temperature", "N/m³", real=True)
+memory_cold = function(
+    "G",
+    "relaxation function at the reference temperature",
+    "N/m³",
+    printed=r"G_{\mathrm{r}}",
+    source="",
+    real=True,
+)
+temperature = symbol("T", "temperature", "K", source="")
+T_ref = symbol(
+    "T_r", "temperature at which the times were measured", "K", latex=r"T_{\mathrm{r}}", source=""
+)
+wlf_1 = symbol("C_1", "first coefficient of Williams, Landel and Ferry", source="")
+wlf_2 = symbol("C_2", "second coefficient of Williams, Landel and Ferry", "K", source="")
+activation = symbol("E_A", "activation energy", "J/mol", latex=r"E_{\mathrm{A}}", source="")
+gas_constant = symbol(
+    "R_g", "gas constant", "J/(mol K)", latex=r"R_{\mathrm{g}}", source="constant"
+)
+
+result = Chapter("A drive with a spring on rubber")
+
+z, y, b, e, c = arm_number, place, half_share, excess_share, contact_length
+sigma, m, v, s = rate_number, shifted_number, age, swing_rate
+HALF = sp.Rational(1, 2)
+ALPHA = (sigma + z * sp.exp(-m * y)) / m
+"""Pressure of an arm for a change of depth, in units of K_i; the next one for a displacement, in K_i c/R."""
+BETA = (
+    (y - b) * sigma / m - 1 / z + z / m**2
+    + (b + 1 / z) * sp.exp(-z * y) - (b + 1 / m) * z / m * sp.exp(-m * y)
+)  # fmt: skip
+
+
+@result("F24-compression")
+def _compression(proof: Proof) -> None:
+    r"""Rubber: compression in small motions.
+
+    The depth is $\delta + \check \theta \tilde \delta e^{\tilde s t}$, and the indenter is at $\check
+    \theta \tilde X e^{\tilde s t}$. The element that is now at $x$ was $\tilde t$ ago where the
+    foundation and the indenter had then taken it, and was compressed by $\delta - x^2/2R$ of that place
+    and that depth.
+
+    Argued: All that follows is analytic in $\tilde s$: what is proved where it is positive holds in the
+    complex plane.
+    """
+    place_then = x - V * time_back + small * x_swing * (sp.exp(s * t) - sp.exp(s * (t - time_back)))
+    then = delta + small * delta_swing * sp.exp(s * (t - time_back)) - place_then**2 / (2 * R)
+    first = sp.Subs(sp.Derivative(then, small), small, 0)
+    fall = sp.exp(-s * time_back)
+    result = delta_swing * fall - (x - V * time_back) / R * x_swing * (1 - fall)
+    proof.equal(first, result * sp.exp(s * t), r"the terms of first order in $\check \theta$")
+
+
+def _numbers(proof: Proof) -> None:
+    proof.define(
+        m, z + sigma, r"the decay of the arm and the rate $\tilde \sigma = \tilde s \breve c/V$"
+    )
+
+
+@result("F24-arm", uses=("F24-compression",))
+def _arm(proof: Proof) -> None:
+    r"""Rubber: pressure of an arm in small motions.
+
+    The pressure of an arm is $K_i [u(0) - \int_0^{\breve x} \breve z e^{-\breve z \tilde v}\, u(\tilde v)\,
+    d\tilde v]$, with the time $\tilde v\, \breve c/V$ back. Since $u$ vanishes where an element enters, the
+    change of that time is of second order. With the compression of F24-compression the pressure changes by
+    $K_i (\tilde \alpha \tilde \delta + \tilde \beta \tilde X \breve c/R) e^{\tilde s t}$.
+    """
+    _numbers(proof)
+    followed = z * sp.exp(-z * v) * sp.exp(-sigma * v)
+    lost = proof.integral(sp.Integral(followed, (v, 0, y)), followed, (v, 0, y),
+                          -z * sp.exp(-m * v) / m, "what the arm has forgotten of it",
+                          value=z * (1 - sp.exp(-m * y)) / m)  # fmt: skip
+    proof.define(fading_depth, 1 - lost, "the pressure for a change of depth")
+    proof.equal(fading_depth, ALPHA, "its value")
+    dragged = z * sp.exp(-z * v) * (y - b - v) * (1 - sp.exp(-sigma * v))
+    primitive = -(y - b - v - 1 / z) * sp.exp(-z * v) + z / m * (y - b - v - 1 / m) * sp.exp(-m * v)
+    proof.integral(fading_drag, dragged, (v, 0, y), primitive,
+                   "the pressure for a displacement", value=BETA)  # fmt: skip
+
+
+@result("F24-kernels")
+def _kernels(proof: Proof) -> None:
+    r"""Rubber: four functions of one argument.
+
+    The functions of exponential integrators, at $-\tilde z$ ($\tilde \phi_1$ to $\tilde \phi_4$) and at
+    $-\breve z$ ($\tilde \psi_1$ to $\tilde \psi_4$). The integrals lose no digits at small arguments, the
+    recurrence none at large ones.
+    """
+    for number, found in ((m, kernels), (z, kernels_still)):
+        before = None
+        for n, kernel in enumerate(found, 1):
+            weight = (1 - v) ** (n - 1) / sp.factorial(n - 1)
+            integrand = weight * sp.exp(-number * v)
+            primitive = antiderivative(integrand, v)
+            known = 1 / sp.factorial(n - 1)
+            value = (1 - sp.exp(-number)) / number if before is None else (known - before) / number
+            proof.integral(kernel, integrand, (v, 0, 1), primitive,
+                           "an exponential" if before is None else "by parts: from the one before",
+                           value=value)  # fmt: skip
+            before = kernel
+    proof.done(kernels[3], (sp.Rational(1, 6) - kernels[2]) / m)
+
+
+def _recalled(proof: Proof) -> None:
+    """Let the kernels stand for their values."""
+    _numbers(proof)
+    proof.recall("F24-kernels", *kernels, *kernels_still)
+    proof.define(b, HALF + e, "F17-edge")
+
+
+_1, _2, _3, _4 = kernels
+_S1, _S2, _S3, _S4 = kernels_still
+FORCES = {
+    normal_per_depth: _1 + sigma * _2,
+    rubbing_per_depth: _2 + sigma * _3 - (HALF - e) * (_1 + sigma * _2),
+    normal_per_drag: z * (_S3 - _3 - (HALF + e) * (_S2 - _2)),
+    rubbing_per_drag: -z * (_S3 - _3 - (_S4 - _4) - (sp.Rational(1, 4) - e**2) * (_S2 - _2)),
+}
+"""Changes of both forces of an arm, in units of K_i c, K_i c^2/R, K_i c^2/R and K_i c^3/R^2."""
+
+
+@result("F24-forces", uses=("F24-arm",))
+def _forces(proof: Proof) -> None:
+    r"""Rubber: forces of an arm in small motions.
+
+    In units of $K_i \breve c$, $K_i \breve c^2/R$, again $K_i \breve c^2/R$ and $K_i \breve c^3/R^2$. The
+    spring $K$ is an arm with $\breve z = 0$: it adds $1$, $\breve \eta$, $0$ and $0$. A ball is the sum of
+    its strips.
+    """
+    _recalled(proof)
+    proof.recall("F24-arm", fading_depth)
+    proof.recall("F24-arm")
+    for name, pressure, form, lever in (
+        (normal_per_depth, fading_depth, ALPHA, 1), (rubbing_per_depth, fading_depth, ALPHA, b - y),
+        (normal_per_drag, fading_drag, BETA, 1), (rubbing_per_drag, fading_drag, BETA, b - y),
+    ):  # fmt: skip
+        primitive = antiderivative(form * lever, y)
+        proof.integral(name, pressure * lever, (y, 0, 1), primitive,
+                       "the pressure" if lever == 1 else "the pressure times the slope",
+                       value=FORCES[name])  # fmt: skip
+
+
+@result("F24", uses=("F24-forces", "eq17", "F22-scaled"))
+def _rates(proof: Proof) -> None:
+    r"""Rates and critical stiffness on rubber.
+
+    With the sums over the spring and all arms the forces change by $F_{z\delta} \tilde \delta + F_{zX} \tilde
+    X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$, times $e^{\tilde s t}$. On the imaginary axis $k_x$
+    is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} F_{x\delta}/(M \tilde s^2 + k_s +
+    F_{z\delta})$, and the critical stiffness is the largest real value that it takes there.
+    """
+    A, B, C, D = (
+        total_normal_per_depth, total_normal_per_drag, total_rubbing_per_depth, total_rubbing_per_drag,
+    )  # fmt: skip
+    up = M * s**2 + k_s + A
+    along = M_x * s**2 + C_x * s + k_x - D
+    across, lengthwise = up * delta_swing + B * x_swing, along * x_swing - C * delta_swing
+    both = (up * along + B * C) * delta_swing
+    proof.equal(along * across - B * lengthwise, both,
+                r"both equations of motion hold: $\tilde X$ is eliminated")  # fmt: skip
+    value = D - M_x * s**2 - C_x * s - B * C / up
+    proof.define(k_x, value, "the stiffness explicit in the rate")
+    proof.equal(up * along + B * C, sp.S.Zero, r"so $\tilde s$ is a rate for this stiffness")
+    proof.done(along * across - B * lengthwise, both)
+
+
+@result("F24-kelvin-voigt", uses=("F24-forces", "F22-forces"))
+def _kelvin_voigt(proof: Proof) -> None:
+    r"""Rubber: a fast arm is a damper.
+
+    For $\breve z \to \infty$ with $K_i \tau_i = C$ the arm and the spring $K$ give the derivatives of F22,
+    lengths in units of $\breve c$ and forces in those of $K \breve c^3/R$: $\hat a = \frac{1}{2} + \breve
+    \eta$, $r = \frac{1}{2} - \breve \eta$, $\lambda = \breve \zeta$. They are approached at first order in
+    $\tau_i$.
+    """
+    _recalled(proof)
+    proof.recall("F24-forces", *FORCES)
+    far = {"variable": z, "point": sp.oo, "eps": 1 / z}
+    limits = {
+        normal_per_depth: 1 + sigma,
+        rubbing_per_depth: HALF + e + e * sigma,
+        normal_per_drag: -e * sigma,
+        rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
+    }
+    for name, limit in limits.items():
+        proof.leading_order(
+            name, limit / z, **far, reason=r"times $K_i \breve z = C V/\breve c$: a damper"
+        )
+    lam = springpot
+    proof.define(
+        e, lam / (2 * (1 + lam)), r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
+    )
+    proof.equal(1 + lam, (HALF - e) + lam + (HALF + e),
+                r"$F_{z\delta}$ at $\tilde s = 0$: $r + \lambda + \hat a$ of F22")  # fmt: skip
+    proof.equal(
+        e + lam * (HALF + e), lam, r"$F_{x\delta}$ at $\tilde s = 0$: $\lambda (r + \hat a)$"
+    )
+    proof.equal(lam * e, lam * (HALF - (HALF - e)),
+                r"$-F_{zX}/\tilde s$ and $F_{x\delta}/\tilde s$")  # fmt: skip
+    proof.equal(3 * (sp.Rational(1, 12) + e**2), (HALF - e) ** 3 + (HALF + e) ** 3,
+                r"$-F_{xX}/\tilde s$: $r^3 + \hat a^3$")  # fmt: skip
+
+
+@result("F25")
+def _temperature(proof: Proof) -> None:
+    r"""Temperature is velocity.
+
+    The pressure at the distance $\breve X$ behind the leading edge is $\int G_T\, \mathrm{d}u$, for every
+    shape and every relaxation function; $x_u(\breve y)$ is the slope of the compression, that of the
+    indenter, or behind the contact of the free surface, where it makes the pressure 0.
+
+    Argued: If temperature multiplies all times by $a_T$ and leaves the moduli, $b_T = 1$, then the steady
+    state at the velocity $V$ is that at the reference temperature and the velocity $V a_T$, for every
+    shape and support. Moduli that change by the factor $b_T$ change the forces by it at the same contact:
+    that is the steady state of the load $W/b_T$.
+    """
+    y, X = edge_distance, behind
+    over, rate = (y, 0, X), strained(y)
+    proof.define(memory_warm((X - y) / V), stiffer * memory_cold((X - y) / (V * shift_factor)),
+                 r"$G_T(t) = b_T G(t/a_T)$: all times and all moduli are shifted alike")  # fmt: skip
+    warm = sp.Integral(memory_warm((X - y) / V) * rate, over)
+    cold = stiffer * sp.Integral(memory_cold((X - y) / (V * shift_factor)) * rate, over)
+    proof.equal(warm, cold, r"the pressure at $V$ is $b_T$ times that at the velocity $V a_T$")
+
+
+@result("F25-activation", uses=("F25",))
+def _wlf(proof: Proof) -> None:
+    r"""Two laws of the shift factor.
+
+    Williams, Landel and Ferry: $\log_{10} a_T = -C_1 (T - T_{\mathrm{r}})/(C_2 + T - T_{\mathrm{r}})$.
+    Arrhenius: $\ln a_T = (E_{\mathrm{A}}/R_{\mathrm{g}})(1/T - 1/T_{\mathrm{r}})$. Both fall where the
+    temperature rises, so that the velocity of the friction maximum rises by $1/a_T$.
+    """
+    T, T_r = temperature, T_ref
+    proof.where(sp.Gt(wlf_2 + T - T_r, 0), "above the pole of the equation")
+    exponent = -sp.log(10) * wlf_1 * (T - T_r) / (wlf_2 + T - T_r)
+    apparent = -gas_constant * T**2 * sp.Derivative(exponent, T)
+    value = sp.log(10) * gas_constant * wlf_1 * wlf_2 * T**2 / (wlf_2 + T - T_r) ** 2
+    proof.equal(apparent, value, "the apparent activation energy of Williams, Landel and Ferry")
+    arrhenius = activation / gas_constant * (1 / T - 1 / T_r)
+    proof.equal(-gas_constant * T**2 * sp.Derivative(arrhenius, T), activation, "that of Arrhenius")
+    proof.done(apparent, value)

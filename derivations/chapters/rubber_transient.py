@@ -1,0 +1,220 @@
+r"""The transient on a Prony series without elements: two accumulators and two moments for each arm (F23).
+
+An element of the foundation is named by xi = x - Y, where Y' = v is the sliding velocity. Everything is
+linear in the relaxation function, so that one arm is enough; the forces of several arms add up.
+"""
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, symbol
+from ..engine.rules import Computed
+from ..engine.step import Proof
+from .model import K, R, delta_t, t
+from .relaxation import spring_1, spring_2
+from .viscoelastic_limits import rates
+
+le_t = function("x_LE", negative=True)
+te_t = function("x_TE", real=True)
+K_i = symbol("K_i", "stiffness of an arm per unit area", "N/m³", source="")
+tau_i = symbol("tau_i", "relaxation time of an arm", "s", source="")
+I_n = (
+    symbol("I_0", "length of the contact", "m", real=True),
+    symbol("I_1", "integral of $x$ over the contact", "m²", real=True),
+    symbol("I_2", "integral of $x^2$ over the contact", "m³", real=True),
+)
+Y_t = function("Y", "distance slid", "m", printed=r"X_{\mathrm{s}}", real=True)(t)
+v_t = function("v", "sliding velocity", "m/s", printed=r"V_{\mathrm{s}}", source="", real=True)(t)
+xi = symbol(
+    "xi",
+    r"element of the foundation, $x - X_{\mathrm{s}}$",
+    "m",
+    latex=r"\xi",
+    printed=r"\tilde \xi",
+    real=True,
+)
+t_1 = symbol("t_1", "present time", "s", real=True)
+t_in = symbol(
+    "t_in", "time at which an element entered the contact", "s", latex=r"t_{\mathrm{in}}", real=True
+)
+alpha_i = function("alpha_i", "what an arm has accumulated of the depth", "m", real=True)
+beta_i = function("beta_i", "what it has accumulated of the distance slid", "m", real=True)
+E_i = symbol("E_i", "share of a stress at entry that an arm still has")
+stress_i = function("s_i", "stress of an arm in an element", "Pa", real=True)
+S_i = function("S_i", "integral of this stress over the contact", "N/m", real=True)(t)
+T_i = function("T_i", "its first moment", "N", real=True)(t)
+glassy = symbol("K_g", "glassy stiffness", "N/m³", latex=r"K_{\mathrm{g}}")
+fading_rate = symbol("rho_r", "rate of the free surface", "1/s", latex=r"\tilde \varrho", real=True)
+
+result = Chapter("Rubber in transient sliding")
+
+RATE = delta_t.diff(t) - v_t * (xi + Y_t) / R
+"""Of the compression of an element in contact."""
+ACCUMULATE = {
+    alpha_i: delta_t.diff(t) - v_t * Y_t / R - alpha_i(t) / tau_i,
+    beta_i: v_t - beta_i(t) / tau_i,
+}
+STRESS = K_i * (
+    alpha_i(t_1) - E_i * alpha_i(t_in) - xi / R * (beta_i(t_1) - E_i * beta_i(t_in))
+)  # fmt: skip
+SLOPE = -K_i / R * (beta_i(t_1) - E_i * beta_i(t_in) + E_i * le_t(t_in))
+"""Of this stress over the elements that have entered."""
+_leaves = stress_i(te_t(t) - Y_t, t) * (te_t(t).diff(t) - v_t)
+MOMENTS = {
+    S_i: -S_i / tau_i + K_i * (delta_t.diff(t) * I_n[0] - v_t * I_n[1] / R) + _leaves,
+    T_i: -T_i / tau_i + v_t * S_i + K_i * (delta_t.diff(t) * I_n[1] - v_t * I_n[2] / R)
+    + te_t(t) * _leaves,
+}  # fmt: skip
+"""How the moments of the stress of an arm over the contact change."""
+
+
+def _slide(proof: Proof) -> None:
+    proof.notation |= {r"x_{\mathrm{LE}}": le_t(t), r"x_{\mathrm{TE}}": te_t(t), "s_i": stress_i}
+    proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element",
+                 left=r"\dot{Y}", right="v")  # fmt: skip
+
+
+@result("F23-stress")
+def _stress(proof: Proof) -> None:
+    r"""Rubber: stress of an element.
+
+    Two accumulators for each arm hold what all its elements remember: at the time $t_1$ an element that
+    entered at $t_{\mathrm{in}}$ has the pressure $p = K u + \sum s_i$, which is 0 at entry. An element that
+    was in contact at the start, in equilibrium, has $t_{\mathrm{in}} = 0$ and $\alpha_i = \beta_i = 0$ there.
+    """
+    _slide(proof)
+    compression = delta_t - (xi + Y_t) ** 2 / (2 * R)
+    proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact",
+                left=r"\frac{d}{dt} \left[\delta - \frac{(\xi + Y)^2}{2 R}\right]",
+                right=_STRAINED)  # fmt: skip
+    for name, right in ((alpha_i, r"\dot{\delta} - \frac{v Y}{R} - \frac{\alpha_i}{\tau_i}"),
+                        (beta_i, r"v - \frac{\beta_i}{\tau_i}")):  # fmt: skip
+        left = rf"\dot{{{sp.latex(sp.Symbol(name.__name__[:-2]))}}}_i"
+        proof.define(name(t).diff(t), ACCUMULATE[name], "an accumulator", left=left, right=right)
+    proof.define(E_i, sp.exp(-(t_1 - t_in) / tau_i), "what is left at $t_1$ of a stress at entry")
+    fades = K_i * sp.exp(-(t_1 - t) / tau_i)
+    over = (t, t_in, t_1)
+    whole, primitive = sp.Integral(fades * RATE, over), fades * (alpha_i(t) - xi / R * beta_i(t))
+    proof.integral(whole, fades * RATE, over, primitive, "stress $s_i$ of the arm", value=STRESS,
+                   left=r"\int_{t_{\mathrm{in}}}^{t_1} K_i e^{-(t_1 - t)/\tau_i} "
+                   rf"\left({_STRAINED}\right) \, dt", right=_SHOWN)  # fmt: skip
+
+
+_STRAINED = r"\dot{\delta} - \frac{(\xi + Y) v}{R}"
+_SHOWN = (
+    r"K_i \left[\alpha_i(t_1) - E_i \alpha_i(t_{\mathrm{in}}) - \frac{\xi}{R} \left(\beta_i(t_1) "
+    r"- E_i \beta_i(t_{\mathrm{in}})\right)\right]"
+)
+
+
+@result("F23", uses=("F23-stress",))
+def _moments(proof: Proof) -> None:
+    r"""Rubber: forces of an arm in a transient.
+
+    The forces are $F_z = K \int u\, \mathrm{d}x + \sum S_i$ and $F_x = -\frac{1}{R} [K \int x u\, \mathrm{d}x
+    + \sum T_i]$: four equations for each arm replace all elements in contact.
+    """
+    _slide(proof)
+    stress, over = stress_i(xi, t), (xi, le_t(t) - Y_t, te_t(t) - Y_t)
+    ends = r"\int_{x_{\mathrm{LE}} - Y}^{x_{\mathrm{TE}} - Y}"
+    proof.define(stress.diff(t), K_i * RATE - stress / tau_i, "the arm is strained, and relaxes",
+                 right=rf"K_i \left[{_STRAINED}\right] - \frac{{s_i(\xi, t)}}{{\tau_i}}")  # fmt: skip
+    proof.define(stress_i(le_t(t) - Y_t, t), sp.S.Zero, "an element enters without stress",
+                 left=r"s_i(x_{\mathrm{LE}} - Y, t)")  # fmt: skip
+    for name, power, density in ((S_i, 0, "s_i"), (T_i, 1, r"(\xi + Y) s_i")):
+        proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact",
+                     left=str(name.func), right=rf"{ends} {density}(\xi, t) \, d\xi")  # fmt: skip
+    for n, (name, density) in enumerate(zip(I_n, ("1", r"(\xi + Y)", r"(\xi + Y)^2"), strict=True)):
+        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "likewise",
+                     right=rf"{ends} {density} \, d\xi")  # fmt: skip
+    for name, right in (
+        (S_i, r"-\frac{S_i}{\tau_i} + K_i \left(\dot{\delta} I_0 - \frac{v I_1}{R}\right) + "),
+        (T_i, r"-\frac{T_i}{\tau_i} + v S_i + K_i \left(\dot{\delta} I_1 - \frac{v I_2}{R}\right) "
+              r"+ x_{\mathrm{TE}} "),
+    ):  # fmt: skip
+        proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge",
+                    left=rf"\dot{{{name.func.__name__[0]}}}_i", right=right + _LEAVES)  # fmt: skip
+    for n, name in enumerate(I_n):
+        value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
+        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "evaluated",
+                       value=value, right=_POWERS[n])  # fmt: skip
+    proof.done(T_i.diff(t), MOMENTS[T_i])
+
+
+_LEAVES = r"s_i(x_{\mathrm{TE}} - Y, t) \left(\dot{x}_{\mathrm{TE}} - v\right)"
+_POWERS = (
+    r"x_{\mathrm{TE}} - x_{\mathrm{LE}}",
+    *(rf"\frac{{x_{{\mathrm{{TE}}}}^{n} - x_{{\mathrm{{LE}}}}^{n}}}{{{n}}}" for n in (2, 3)),
+)
+
+
+@result("F23-edge", uses=("F23-stress",))
+def _edge(proof: Proof) -> None:
+    r"""Rubber: the trailing edge in a transient.
+
+    The pressure vanishes at the trailing edge, in the element $\xi = x_{\mathrm{TE}} - Y$ that entered when
+    $\xi = x_{\mathrm{LE}}(t_{\mathrm{in}}) - Y(t_{\mathrm{in}})$: a delay that depends on the state. The
+    slope of $s_i$ over the elements has the term $E_i x_{\mathrm{LE}}$ only where they have entered, not
+    where they were in contact from the start: $\dot x_{\mathrm{TE}}$ jumps when $t_{\mathrm{in}}$ leaves 0.
+    """
+    entered = {t: t_in}
+    slide = Y_t.subs(entered)
+    for name, law in ((Y_t.func, v_t), *ACCUMULATE.items()):
+        proof.define(name(t_in).diff(t_in), law.subs(entered), "F23-stress")
+    proof.define(
+        delta_t.subs(entered), le_t(t_in) ** 2 / (2 * R), "the ground ahead is undisturbed"
+    )
+    proof.define(xi, le_t(t_in) - slide, "the element that enters then")
+    proof.define(E_i, sp.exp(-(t_1 - t_in) / tau_i), "F23-stress")
+    proof.notation["s_i"] = STRESS
+    slope = SLOPE * sp.Derivative(xi, t_in)
+    proof.equal(sp.Derivative(STRESS, t_in), slope, "from one element that enters to the next",
+                left=r"\frac{d s_i}{d t_{\mathrm{in}}}",
+                right=r"-\frac{K_i}{R} \left[\beta_i(t_1) - E_i \beta_i(t_{\mathrm{in}}) + E_i "
+                r"x_{\mathrm{LE}}(t_{\mathrm{in}})\right] \frac{d \xi}{d t_{\mathrm{in}}}")  # fmt: skip
+
+
+class Determinant(Computed):
+    """The determinant of a matrix, printed with the matrix."""
+
+    def __new__(cls, matrix: sp.Matrix) -> "Determinant":
+        """Keep the matrix as it is."""
+        return sp.Expr.__new__(cls, sp.ImmutableMatrix(matrix))
+
+    def doit(self, **_: object) -> sp.Expr:
+        """Return its value."""
+        return self.args[0].det(method="berkowitz")
+
+    def _latex(self, printer: LatexPrinter) -> str:
+        return rf"\det {printer._print(self.args[0])}"
+
+
+@result("F23-surface")
+def _surface(proof: Proof) -> None:
+    r"""Rubber: the free surface.
+
+    Behind the contact $K u + \sum s_i = 0$ and $\dot s_i = K_i \dot u - s_i/\tau_i$: a linear system,
+    with $\dot u = \sum (s_i/\tau_i)/K_{\mathrm{g}}$. Here it has two arms. An element is met again where
+    the indenter reaches its compression, and continues from its stresses.
+
+    Argued: Its rates are real and negative: the free surface relaxes with as many times as there are
+    arms, each longer than that of its arm.
+    """
+    rho, (r_1, r_2) = fading_rate, rates
+    proof.where(r_2 > r_1, r"rates $1/\tau_i$ of the arms")
+    proof.define(glassy, K + spring_1 + spring_2, "the glassy stiffness")
+    law = Determinant([
+        [rho - r_1 + spring_1 * r_1 / glassy, spring_1 * r_2 / glassy],
+        [spring_2 * r_1 / glassy, rho - r_2 + spring_2 * r_2 / glassy],
+    ])  # fmt: skip
+    form = (
+        K * (rho - r_1) * (rho - r_2)
+        + spring_1 * rho * (rho - r_2)
+        + spring_2 * rho * (rho - r_1)
+    ) / glassy  # fmt: skip
+    proof.equal(law, form, r"it vanishes where $s_i \sim e^{-\varrho t}$")
+    for place, sign, where in ((0, ">", "at 0"), (r_1, "<", "at the slower rate"),
+                               (r_2, ">", "at the faster one: two roots in between")):  # fmt: skip
+        proof.holds(form.subs(rho, place), sign, 0, where)
+    proof.done(law, form)

@@ -1,0 +1,261 @@
+"""Where steady sliding with a spring in the drive is stable (F22): the critical stiffness in closed form."""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import symbol
+from ..engine.step import Proof
+from .spring_drive import COUPLING, LONGITUDINAL, SECTION, damper, eps_x, kappa_x
+from .steady import l, q
+from .theorems import kappa
+from .transient_edges import right
+from .transient_motion import a
+from .transient_rates import QUADRATIC, sigma, steady_sliding
+from .transient_scaling import eps
+
+B_z = symbol("B_z", "damping of the contact across the foundation, scaled")
+B_x = symbol("B_x", "damping of the contact along the foundation, scaled")
+damper_share = symbol("n_x", "damper over the damping of the contact", nonnegative=True)
+T_z = symbol("T_z", r"time of inertia across, over $\tau$", latex=r"\vartheta_z")
+T_x = symbol("T_x", r"time of inertia along, over $\tau$", latex=r"\vartheta_x")
+S_z = symbol("S_z", r"rate of stiffness across, times $\tau$", latex=r"\varrho_z")
+S_x = symbol("S_x", r"rate of stiffness along, times $\tau$", latex=r"\varrho_x")
+support_rate = symbol(
+    "S_s",
+    r"part of $\varrho_z$ due to the suspension",
+    latex=r"\varrho_{\mathrm{s}}",
+    nonnegative=True,
+)
+S_c = symbol("S_c", r"rate of the coupling, times $\tau$", latex=r"\varrho_{\mathrm{c}}")
+coupling = symbol("g_c", "strength of the coupling of both motions", latex=r"\check g")
+uncoupled = symbol("h_c", r"$1 - \check g$", latex=r"\check h")
+rise = symbol("e_c", "what has the sign of $dF/dV$ with the damper", latex=r"\check e", real=True)
+own_rise = symbol(
+    "e_0", "the same of a dead weight without a damper", latex=r"\check e_0", real=True
+)
+hurwitz = symbol("H_c", "determinant of Hurwitz", latex=r"\check H", real=True)
+Omega = symbol("Omega", r"square of the frequency at onset, times $\tau^2$", latex=r"\Omega")
+Omega_plus = symbol("Omega_p", "the larger of two", latex=r"\Omega_{+}", real=True)
+Omega_minus = symbol("Omega_m", "the smaller of two", latex=r"\Omega_{-}", real=True)
+bias = symbol(
+    "m_c", r"$\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$", latex=r"\check m", real=True
+)
+onset_square = symbol(
+    "D_c",
+    r"discriminant of the quadratic in $\Omega$, over $\vartheta_z^{4}$",
+    latex=r"\check D",
+    real=True,
+)
+spread = symbol("s_c", "its root", latex=r"\check w", nonnegative=True)
+onset_sum = symbol("n_c", r"$\check m - 2 \vartheta_z \check e$", latex=r"\check n", real=True)
+lag_plus = symbol("p_p", r"$\varrho_z - \vartheta_z \Omega_{+}$", latex=r"\check p_{+}")
+constant = tuple(
+    symbol(f"c_h{n}", "coefficient of a quadratic factor", latex=rf"\check c_{n}", real=True)
+    for n in (1, 2)
+)
+linear = tuple(
+    symbol(f"b_h{n}", "coefficient of a quadratic factor", latex=rf"\check b_{n}") for n in (1, 2)
+)
+
+PEELED = (1 - q) ** 2 + q
+"""1 - q + q**2, without a difference of nearly equal numbers."""
+DEAD_WEIGHT_RISE = (1 + q) * (4 * q - 1 - q**2) / (4 * q * PEELED)
+RISE = (own_rise + damper_share * (1 + q) / (2 * q)) / (1 + damper_share) + support_rate
+ACROSS, ALONG = (T * sigma**2 + sigma + S for T, S in ((T_z, S_z), (T_x, S_x)))
+SCALED = ACROSS * ALONG - coupling * sigma * (sigma + S_c)
+"""The quartic over both dampings."""
+COEFFICIENTS = (
+    S_z * S_x,
+    S_x + rise,
+    T_z * S_x + uncoupled + S_z * T_x,
+    T_z + T_x,
+    T_z * T_x,
+)
+"""Of the scaled quartic, from the constant one on."""
+_a0, _a1, _a2, _a3, _a4 = COEFFICIENTS
+HURWITZ = _a1 * (_a2 * _a3 - _a1 * _a4) - _a3**2 * _a0
+REST = T_z**2 * S_x + T_x**2 * S_z + uncoupled * (T_z + T_x) + T_z * T_x * coupling * S_c
+SQUARE = bias**2 - 4 * uncoupled * T_z * rise
+ONSET = T_z**2 * Omega**2 + (bias - 2 * T_z * rise) * Omega + S_z * rise
+"""Vanishes for the square of the frequency at onset."""
+AT_ONSET = Omega * (T_x + (S_c - lag_plus) / (Omega + S_c * lag_plus))
+
+result = Chapter(SECTION)
+
+
+@result("hurwitz")
+def _quadratics(proof: Proof) -> None:
+    r"""Rates of a quartic: the condition of Routh and Hurwitz.
+
+    Where the coefficients of the quartic and the determinant are positive, so are $\check b_1 \check b_2$
+    and $\check b_1 + \check b_2$, hence both factors; and by the constant and the linear coefficient
+    $\check c_1$ and $\check c_2$.
+
+    Argued: Every real quartic has two real quadratic factors, whose roots have negative real parts if and
+    only if their coefficients are positive. The converse is plain: products and sums of positive numbers.
+    """
+    (b_1, b_2), (c_1, c_2) = linear, constant
+    product = (sigma**2 + b_1 * sigma + c_1) * (sigma**2 + b_2 * sigma + c_2)
+    a_3, a_2, a_1, a_0 = b_1 + b_2, c_1 + c_2 + b_1 * b_2, b_1 * c_2 + b_2 * c_1, c_1 * c_2
+    proof.equal(product, sigma**4 + a_3 * sigma**3 + a_2 * sigma**2 + a_1 * sigma + a_0,
+                "two quadratic factors, real")  # fmt: skip
+    proof.equal(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0, b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3),
+                "the determinant of Hurwitz")  # fmt: skip
+    proof.where(sp.Gt(a_0, 0))
+    for total, parts, what in (
+        (c_1 + c_2, c_1**2 + a_0, "two numbers with positive sum and product are positive"),
+        (a_1, b_2 * c_1**2 + b_1 * a_0, "as they are if another sum is, with positive weights"),
+    ):
+        proof.equal(c_1 * total, parts, what)
+        proof.holds(parts, ">", 0, "so the first has the sign of the sum")
+    proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0,
+                      b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))  # fmt: skip
+
+
+@result("F22-numbers", uses=("F22",))
+def _numbers(proof: Proof) -> None:
+    r"""The numbers of the rates.
+
+    With both motions divided by their dampings: $\vartheta$ are times of inertia, $\varrho$ rates of
+    stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how strongly the motions are coupled.
+    $\check h$ and $\check e$ decide about stability; the forms are without differences of nearly equal
+    numbers.
+    """
+    steady_sliding(proof)
+    proof.define(right, a * q)
+    proof.define(B_z, 3 * a * (1 + q) / 4, "the damping of the contact across the foundation")
+    proof.define(B_x, a**3 * (1 + q) * PEELED, "and along it")
+    proof.equal(right**3 + a**3, B_x, "indeed")
+    proof.define(damper_share, damper / B_x)
+    proof.define(T_z, eps / B_z)
+    proof.define(T_x, eps_x / (B_x + damper))
+    proof.define(support_rate, kappa / B_z)
+    proof.define(S_z, (1 + q) / (2 * q) + support_rate)
+    proof.define(S_x, kappa_x / (B_x + damper))
+    proof.define(S_c, (1 + q) / q)
+    proof.define(coupling, 3 * (l * q) ** 2 / ((1 + q) ** 2 * PEELED * (1 + damper_share)))
+    proof.equal(QUADRATIC, B_z * ACROSS, "across")
+    proof.equal(LONGITUDINAL, (B_x + damper) * ALONG, "along")
+    whole, form = QUADRATIC * LONGITUDINAL - COUPLING, B_z * (B_x + damper) * SCALED
+    proof.equal(whole, form, "and both together")
+    own = ((1 + q) ** 2 / (4 * PEELED) + damper_share) / (1 + damper_share)
+    proof.define(uncoupled, own)
+    proof.equal(1 - coupling, uncoupled, "positive: without stiffness nothing would grow")
+    proof.define(own_rise, DEAD_WEIGHT_RISE)
+    proof.define(rise, RISE)
+    proof.equal(S_z - coupling * S_c, rise, "it has the sign of $dF/dV$ (F22-soft)")
+    proof.done(whole, form)
+
+
+def lay_down(proof: Proof) -> None:
+    """Let the coupling and its stiffness be what is left of the dampings and of the stiffness."""
+    proof.define(uncoupled, 1 - coupling)
+    proof.define(rise, S_z - coupling * S_c)
+
+
+@result("F22-routh", uses=("F22-numbers", "hurwitz"))
+def _routh(proof: Proof) -> None:
+    r"""Condition of stability.
+
+    Steady sliding is stable if every coefficient and $\check H$ are positive (Routh and Hurwitz). All
+    coefficients are but for $\varrho_x + \check e$, and that one is where $\check H$ is: $\check H > 0$ is
+    the whole condition.
+    """
+    lay_down(proof)
+    series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
+    proof.equal(SCALED, series, "by powers of the rate")
+    proof.define(hurwitz, HURWITZ, "the determinant of Hurwitz")
+    proof.equal(_a2 * _a3 - _a1 * _a4, REST, "one part of it")
+    proof.holds(REST, ">", 0, r"so $\check H > 0$ says that $\varrho_x + \check e > 0$, too")
+    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    square = (2 * T_z**2 * S_x + (T_z + T_x) * bias - 2 * T_z * T_x * rise) ** 2
+    form = (square - (T_z + T_x) ** 2 * SQUARE) / (4 * T_z**2)
+    proof.equal(
+        hurwitz, form, r"quadratic in $\varrho_x$; its discriminant does not hold $\vartheta_x$"
+    )
+    proof.equal(sp.Subs(hurwitz, S_x, 0), rise * sp.Subs(REST, S_x, 0), "without a spring")
+    proof.done(hurwitz, form)
+
+
+@result("F22-onset", uses=("F22-routh",))
+def _onset(proof: Proof) -> None:
+    r"""Frequency at onset.
+
+    Where stability is lost a rate is imaginary, $\sigma = i \sqrt{\Omega}$. The frequency depends neither on
+    the mass nor on the spring along the foundation: the spring only has to be such that with this mass it
+    gives this frequency, so that the critical stiffness is linear in the mass.
+    """
+    lay_down(proof)
+    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.define(S_x, (T_z + T_x) * Omega - rise, "the imaginary part of the quartic vanishes")
+    real = _a4 * Omega**2 - _a2 * Omega + _a0
+    proof.equal(real, -ONSET, r"its real part does not hold $\vartheta_x$ and $\varrho_x$")
+    lag = S_z - T_z * Omega
+    proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "another form of it",
+                left=r"(\varrho_z - \vartheta_z \Omega)^2 + \check h \Omega - \check g \varrho_{\mathrm{c}} "
+                r"(\varrho_z - \vartheta_z \Omega)")  # fmt: skip
+    proof.done(real, -ONSET)
+
+
+def _frequencies(proof: Proof) -> None:
+    """Let the roots of the quadratic be known."""
+    lay_down(proof)
+    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.where(sp.Gt(SQUARE, 0), "else no frequency is real")
+    proof.define(onset_square, SQUARE)
+    proof.define(spread, sp.sqrt(onset_square))
+    proof.define(onset_sum, bias - 2 * T_z * rise)
+
+
+@result("F22-critical", uses=("F22-routh", "F22-onset"))
+def _critical(proof: Proof) -> None:
+    r"""Critical stiffness.
+
+    $\check H$ vanishes at the stiffnesses of both frequencies. It is positive above the larger one, so
+    the critical stiffness is that of $\Omega_{+}$.
+
+    Argued: Where friction falls, $\check e < 0$, the product of the frequencies is negative: $\Omega_{-}$
+    does not exist, and every softer spring is unstable. Without a positive root steady sliding is stable
+    for every stiffness.
+    """
+    _frequencies(proof)
+    proof.define(Omega_plus, (spread - onset_sum) / (2 * T_z**2))
+    proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2))
+    for each in (Omega_plus, Omega_minus):
+        proof.equal(ONSET.subs(Omega, each), sp.S.Zero, "a root of the quadratic of F22-onset")
+    proof.equal(Omega_plus * Omega_minus, S_z * rise / T_z**2, "their product")
+    high, low = ((T_z + T_x) * each - rise for each in (Omega_plus, Omega_minus))
+    between = (T_z + T_x) * spread / T_z**2
+    proof.equal(high - low, between, r"the stiffness at $\Omega_{+}$ is the larger")
+    proof.holds(between, ">", 0, "all terms are positive")
+    proof.holds(
+        S_z * rise / T_z**2, "<", 0, r"$\Omega_{-}$ does not exist", cases=(sp.Lt(rise, 0),)
+    )
+    proof.define(hurwitz, HURWITZ)
+    proof.equal(hurwitz, T_z**2 * (S_x - high) * (S_x - low), "F22-onset gives both roots")
+
+
+@result("F22-falling", uses=("F22-critical",))
+def _forms(proof: Proof) -> None:
+    r"""The same where friction falls.
+
+    Friction that falls with the velocity has one critical stiffness, below which steady sliding is unstable;
+    here without a difference of nearly equal numbers, however small the inertia. Where $\check n \le 0$,
+    $\Omega_{+}$ of F22-critical has none.
+    """
+    _frequencies(proof)
+    proof.where(sp.Lt(rise, 0), "friction falls")
+    proof.where(sp.Gt(onset_sum, 0))
+    proof.define(Omega, -2 * S_z * rise / (spread + onset_sum), "of positive terms")
+    proof.equal(Omega, (spread - onset_sum) / (2 * T_z**2), r"this is $\Omega_{+}$")
+    proof.define(
+        lag_plus,
+        2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread),
+        "likewise positive",
+    )
+    proof.equal(S_z - T_z * Omega, lag_plus, "it is this difference")
+    proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega, "positive")
+    proof.holds(uncoupled * Omega / lag_plus, ">", 0,
+                r"so $\check p_{+} < \check g \varrho_{\mathrm{c}} < \varrho_{\mathrm{c}}$")  # fmt: skip
+    proof.define(S_x, (T_z + T_x) * Omega - rise)
+    proof.equal(S_x, AT_ONSET, "the critical stiffness")

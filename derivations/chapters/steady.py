@@ -1,0 +1,300 @@
+"""Steady sliding: edges, pressure, load and friction, exactly (Eqs. 26-32 and 34-39)."""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .model import (
+    C,
+    K,
+    R,
+    V,
+    compression_rate,
+    delta,
+    delta_t,
+    depth_rate,
+    h,
+    slope,
+    t,
+    t_0,
+    tau,
+    u_i,
+    x,
+    x_i,
+)
+
+a = symbol("a", r"half length of the stationary contact, $\sqrt{2 R \delta}$", "m")
+l_r = symbol("l_r", r"retardation length, $V \tau$", "m", latex=r"l_{\mathrm{r}}")
+x_le = symbol("x_LE", "leading edge of the contact", "m", latex=r"x_{\mathrm{LE}}", negative=True)
+x_te = symbol(
+    "x_TE", "trailing edge of the contact", "m", latex=r"x_{\mathrm{TE}}", nonnegative=True
+)
+p = symbol("p", "contact pressure", "Pa", real=True)
+W = symbol("W", "load in steady sliding per unit width", "N/m")
+F = symbol("F", "friction force in steady sliding per unit width", "N/m")
+mu = symbol("mu", "friction coefficient, $F/W$")
+l = symbol("l", r"scaled retardation length, $l_{\mathrm{r}}/a$")
+q = symbol(
+    "q", r"scaled trailing edge, $x_{\mathrm{TE}}/a$, from 1 at rest down to 0 at high velocity"
+)
+letter(r"\bar s", "distance ahead of the leading edge, over the half length")
+Lambda = symbol("Lambda", r"scaled velocity of the dead-weight model, $V \tau (K/(R W))^{1/3}$")
+letter("O", "order of a remainder", "that of its argument", source="sign")
+
+half_length = sp.sqrt(2 * R * delta)
+trailing_edge = sp.sqrt(a**2 + l_r**2) - l_r
+pressure = K * (delta - x**2 / (2 * R) - l_r * x / R)
+number = (1 - q**2) / (2 * q)
+"""l_r/a in terms of q = x_TE/a."""
+load = K * delta * a * (1 + q) ** 2 * (q**2 - 2 * q + 3) / (6 * q)
+friction = K * delta * a**2 / R * (1 - q) * (1 + q) ** 2 * (q**2 - q + 4) / (12 * q)
+friction_coefficient = a * (1 - q) * (q**2 - q + 4) / 2 / (R * (q**2 - 2 * q + 3))
+drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
+"""Lambda**3 of the dead-weight indenter."""
+
+_SHAPE = x**2 / (2 * R)
+SECTION = "Steady sliding"
+result = Chapter(SECTION)
+
+
+@result("pressure", after=("eq29",))
+def _pressure(proof: Proof) -> None:
+    """Pressure in the contact.
+
+    Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
+    indenters.
+    """
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    whole = K * (delta - h(x)) - C * V * h(x).diff(x)
+    shown = r"K \left(\delta - h\right) - C V h'"
+    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)", right=shown)
+    proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
+
+
+@result("eq26", after=("eq28",), notation={"p": sp.Lambda(x, pressure)})
+def _leading_edge(proof: Proof) -> None:
+    """Leading edge.
+
+    The leading edge is where the undisturbed surface meets the indenter.
+    """
+    proof.recall("eq28")
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
+    at_edge = pressure.subs(x, -a)
+    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
+    s = sp.Symbol("s", positive=True)
+    reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
+    proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
+    proof.done(x_le, -a)
+
+
+@result("eq27", notation={"p": sp.Lambda(x, pressure)})
+def _trailing_edge(proof: Proof) -> None:
+    """Trailing edge.
+
+    The trailing edge is where the pressure vanishes; it is the only such point of the contact.
+    """
+    proof.recall("eq28")
+    proof.recall("pressure")
+    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
+    ahead = pressure.subs(x, -a)
+    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
+    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
+    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
+               over=(x, -a, sp.oo), name=x_te,
+               right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
+
+
+@result("eq28")
+def _half_length(proof: Proof) -> None:
+    """Half length of the stationary contact."""
+    proof.recall("eq3")
+    reason = "at the edge of a contact at rest $h(a) = \\delta$"
+    proof.root(
+        *(h(x) - delta, x, half_length, reason),
+        over=(x, 0, sp.oo),
+        name=a,
+        right=r"\sqrt{2 R \delta}",
+    )
+    proof.equal(delta, a**2 / (2 * R), "solved for the depth")
+    proof.done(a, half_length)
+
+
+@result("eq29")
+def _retardation_length(proof: Proof) -> None:
+    """Retardation length.
+
+    Behind the contact the surface relaxes within this length.
+    """
+    start = u_i.subs(t, t_0)
+    surface = sp.Lambda(x, start * sp.exp((x_te - x) / (V * tau)))
+    proof.notation |= {"u": surface}
+    proof.define(l_r, V * tau)
+    later = {t: t_0 + (x - x_te) / V}
+    proof.recall("eq25", reason="it left the trailing edge at $t_0$", at=later)
+    result = start * sp.exp(-(x - x_te) / l_r)
+    shown = r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)"
+    reason = r"$l_{\mathrm{r}}$ is its e-folding length"
+    proof.equal(u_i.subs(later), result, reason, left="u(x)", right=shown)
+    proof.recall("eq22")
+    proof.equal(C, K * l_r / V, "with Eq. (22), solved for the damping")
+    proof.done(l_r, V * tau)
+
+
+@result("scaling")
+def _scaled(proof: Proof) -> None:
+    r"""Scaled retardation length and trailing edge.
+
+    With $l = l_{\mathrm{r}}/a$ and $q = x_{\mathrm{TE}}/a$ all of steady sliding is rational in $q$, which
+    runs from 1 at rest to 0 at high velocity.
+    """
+    proof.recall("eq27")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    proof.define(l, l_r / a)
+    proof.define(q, x_te / a)
+    proof.equal(x_te, a * q, "by definition")
+    proof.equal(l_r, a * l, "by definition")
+    proof.equal(l, number, "Eq. (27) solved for $l$; at rest $q = 1$, and $q$ falls to 0")
+    proof.equal(V, K * l_r / C, "Eqs. (22) and (29)")
+    proof.done(l, number)
+
+
+def _limit(proof: Proof, slow: bool, steady: bool) -> None:
+    proof.recall("eq26")
+    _recall_scaled(proof)
+    small = l_r / a
+    if steady:
+        proof.recall("scaling", V)
+        small = C * V / (K * a)
+    limit = a if slow else a**2 / (2 * l_r)
+    if slow:
+        proof.leading_order(x_te, limit, q, 1, r"$q \to 1$: hardly any peeling", eps=small)
+    else:
+        proof.leading_order(x_te, limit, q, 0, r"$q \to 0$: complete peeling", eps=1 / small)
+    proof.pair((x_le, -a), (x_te, limit), "both edges")
+
+
+def _limits(slow_number: int, fast_number: int, who: str, text: str = "") -> None:
+    """Add the edges at low and at high velocity."""
+    for number, slow in ((slow_number, True), (fast_number, False)):
+        velocity, far, ends = ("low", r"\ll", "(-a, a)") if slow else ("high", r"\gg", "(-a, 0)")
+        tend = rf"For $l_{{\mathrm{{r}}}} {far} a$ the edges tend to ${ends}$."
+        title = f"Edges at {velocity} velocity, {who}"
+        result(f"eq{number}", title=title, text=tend + text, slow=slow, steady=bool(text))(_limit)
+
+
+_limits(30, 31, "fixed indenter")
+
+
+@result("eq32")
+def _moving_leading_edge(proof: Proof) -> None:
+    r"""Leading edge of the movable indenter.
+
+    Here $a(t) = \sqrt{2 R \delta(t)}$. The pressure at this edge is positive while $\dot{x}_{\mathrm{LE}} <
+    V$: the edge moves onto undisturbed ground.
+    """
+    half = sp.sqrt(2 * R * delta_t)
+    proof.notation |= {"a": sp.Lambda(t, half), r"\dot{x}_{\mathrm{LE}}": (-half).diff(t)}
+    proof.recall("eq3")
+    reason = "the undisturbed surface meets the indenter, $h = \\delta(t)$"
+    proof.root(delta_t - h(x), x, -half, reason, over=(x, -sp.oo, 0), name=x_le, right="-a(t)")
+    proof.equal(
+        C * (half * V / R + depth_rate),
+        C * half / R * (V - (-half).diff(t)),
+        "Eq. (7): the pressure there",
+        left=r"C \left(\frac{a V}{R} + \dot{\delta}\right)",
+        right=r"\frac{C a}{R} \left(V - \dot{x}_{\mathrm{LE}}\right)",
+    )
+    proof.done(x_le, -half)
+
+
+@result("eq34")
+def _steadiness(proof: Proof) -> None:
+    """Steady sliding."""
+    proof.define(depth_rate, sp.S.Zero, "the depth no longer changes", left=r"\dot{\delta}")
+
+
+@result("eq35")
+def _steady_compression(proof: Proof) -> None:
+    """Compression in steady sliding."""
+    proof.recall("eq6")
+    proof.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
+    proof.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", left="u_i(t)",
+                right=r"-h(x_i) + \delta")  # fmt: skip
+
+
+@result("eq36")
+def _steady_rate(proof: Proof) -> None:
+    """Compression rate in steady sliding."""
+    proof.recall("eq7")
+    proof.recall("eq34")
+    proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)", left=r"\dot{u}_i(t)",
+                right="-h'(x_i) V")  # fmt: skip
+
+
+@result("eq37")
+def _coefficient(proof: Proof) -> None:
+    """Friction coefficient."""
+    proof.define(mu, F / W, "of steady sliding")
+
+
+_limits(
+    38, 39, "steady sliding",
+    r" By Eqs. (34) to (36) this holds for either indenter, with its depth in steady sliding; "
+    r"$l_{\mathrm{r}}/a = C V/(K a)$.",
+)  # fmt: skip
+
+
+def _recall_contact(proof: Proof) -> None:
+    """Let edges and pressure be rational in q."""
+    proof.recall("eq28")
+    proof.recall("eq26")
+    proof.recall("pressure")
+    _recall_scaled(proof)
+
+
+def _recall_scaled(proof: Proof) -> None:
+    proof.recall("scaling", x_te, l_r, l)
+
+
+@result("load")
+def _load(proof: Proof) -> None:
+    """Exact load."""
+    _recall_contact(proof)
+    primitive = K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R))
+    proof.integral(W, p, (x, x_le, x_te), primitive, "Eq. (14) for a dense row", value=load)
+
+
+@result("friction")
+def _friction(proof: Proof) -> None:
+    """Exact friction force."""
+    _recall_contact(proof)
+    primitive = -K / R * (delta * x**2 / 2 - x**4 / (8 * R) - l_r * x**3 / (3 * R))
+    reason = "Eqs. (13) and (15) for a dense row"
+    proof.integral(F, -x / R * p, (x, x_le, x_te), primitive, reason, value=friction)
+
+
+@result("coefficient")
+def _exact_coefficient(proof: Proof) -> None:
+    """Exact friction coefficient."""
+    proof.recall("load")
+    proof.recall("friction")
+    proof.recall("eq37")
+    proof.equal(mu, friction_coefficient, "common factors cancel")
+
+
+@result("drive")
+def _dead_weight(proof: Proof) -> None:
+    """Drive number of the dead-weight indenter."""
+    for label in ("eq28", "eq22", "load"):
+        proof.recall(label)
+    proof.recall("scaling", V, l_r, l)
+    drive = V * tau * (K / (R * W)) ** sp.Rational(1, 3)
+    proof.define(Lambda, drive, right=r"V \tau \left(\frac{K}{R W}\right)^{1/3}")
+    proof.equal(Lambda**3, drive_cubed, "$\\delta$ cancels: one number describes the state")

@@ -1,0 +1,243 @@
+"""Balances that hold in every transient: of momentum and of energy (F14).
+
+In the contact everything is a polynomial of depth, drive and edges. Outside, each element relaxes freely, and
+only two facts are needed: its rate follows from its own compression, and at an edge the surface meets the
+indenter.
+"""
+
+import sympy as sp
+
+from ..engine.book import established
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter
+from ..engine.step import Proof
+from .model import C, F_z, K, t, tau
+from .power_law_weight import a_0
+from .tables import delta_0
+from .theorems import kappa, lam
+from .transient_edges import left, right
+from .transient_memory import OF_TIME, SECTION, compression, depth, material, time, travel
+from .transient_motion import CONTACT, f_friction
+from .transient_scaling import PRESSURE, W_0, d, d_s, d_ss, eps, f_normal, xi
+
+letter("U", "integral of the compression over all elements", "m²")
+letter(r"\bar U", r"scaled integral of the compression, $U/(a_0 \delta_0)$")
+letter(r"E_{\mathrm{s}}", "energy of the surface outside the contact")
+
+_ends = sp.symbols("X_1 X_2", real=True)
+"""A stretch of the foundation outside of which no element was ever pressed."""
+_left, _right = (sp.Function(str(end), real=True)(time) for end in (left, right))
+_IN_TIME = {**OF_TIME, lam: sp.Derivative(travel, time), left: _left, right: _right}
+
+_u = compression(material, time)
+_u_s = sp.Derivative(_u, time)
+_share = sp.Rational(3, 4)
+_speed = sp.Derivative(depth, time)
+_height, _rate = d - xi**2, d_s - 2 * lam * xi
+"""Compression under the indenter, and its rate in the foundation."""
+_total, _free = (sp.Function(name, real=True) for name in "SE")
+"""The compression of all elements (it prints as U with a bar); the energy of those outside."""
+result = Chapter(SECTION)
+
+
+def _outside(density: sp.Expr) -> sp.Expr:
+    """Integrate over the elements on both sides of the contact."""
+    first, last = _ends
+    return sp.Integral(density, (material, first, _left - travel)) + sp.Integral(
+        density, (material, _right - travel, last)
+    )
+
+
+def _both_sides(density: str) -> str:
+    """Print such an integral."""
+    return rf"\int_{{X_1}}^{{\ell - Y}} {density} \, dX + \int_{{r - Y}}^{{X_2}} {density} \, dX"
+
+
+def _relaxing(proof: Proof) -> None:
+    """Define the known properties of the surface outside the contact."""
+    proof.notation |= {"u": _u, "u'": _u_s}
+    proof.notation[r"\lambda"] = _IN_TIME[lam]
+    proof.define(_u_s, -_u, "outside there is no pressure, Eq. (20)", left="u'", right="-u")
+    for edge, name in ((_left, r"\ell"), (_right, "r")):
+        proof.define(
+            *(compression(edge - travel, time), depth - edge**2, "there the surface meets the indenter"),
+            left=rf"u({name} - Y, s)", right=f"d - {name}^2",
+        )  # fmt: skip
+
+
+@result("F14-surface", uses=("F8", "F9"))
+def _surface(proof: Proof) -> None:
+    """Energy of the surface that relaxes.
+
+    Outside the contact each element relaxes freely; beyond $X_1$ and $X_2$ none was ever compressed. The
+    energy that leaves the contact at its edges is stored in the free surface as $E$ and dissipated there at
+    the rate $2 E$.
+    """
+    energy = _free(time)
+    handed = [
+        (depth - edge**2) ** 2 * sp.Derivative(edge - travel, time) for edge in (_left, _right)
+    ]
+    change = -2 * energy + _share / 2 * (handed[0] - handed[1])
+    _relaxing(proof)
+    proof.define(energy, _share / 2 * _outside(_u**2), "the springs on both sides of the contact",
+                 right=rf"\frac{{3}}{{8}} \left[{_both_sides('u^2')}\right]")  # fmt: skip
+    proof.equal(
+        *(_share * _outside(_u_s**2), 2 * energy, "the dampers there"),
+        left=r"\frac{3}{4} \left[" + _both_sides("u'^2") + r"\right]",
+    )  # fmt: skip
+    proof.equal(
+        *(sp.Derivative(energy, time), change, "the ends of the integrals move with the edges"),
+        left="E'",
+        right=r"-2 E + \frac{3}{8} \left[(d - \ell^2)^2 (\ell' - \lambda) "
+        r"- (d - r^2)^2 (r' - \lambda)\right]",
+    )
+
+
+@result("F14-force", uses=("F9",))
+def _force(proof: Proof) -> None:
+    """Normal force from the compression of all elements.
+
+    $S$ is the compression of all elements, including those that relax outside the contact. Sliding in the
+    other direction is the mirror image, here and in the balance of energy.
+    """
+    total = _total(time)
+    force = _share * (total + sp.Derivative(total, time))
+    _relaxing(proof)
+    _let_move(proof)
+    under = _under(proof, _height.subs(_IN_TIME), "under the indenter", _COMPRESSION, _COMPRESSED)
+    proof.define(total, _outside(_u) + under, "all elements",
+                 right=rf"{_both_sides('u')} + {_COMPRESSION}")  # fmt: skip
+    proof.recall("F11")
+    proof.equal(f_normal, force, _CONTINUOUS, right=r"\frac{3}{4} \left(S + S'\right)")
+
+
+_COMPRESSION = r"\int_{\ell}^{r} (d - \xi^2) \, d\xi"
+_COMPRESSED = r"(r - \ell) d - \frac{r^3 - \ell^3}{3}"
+_CONTINUOUS = "the terms from moving ends cancel: the surface is continuous at the edges"
+
+
+def _let_move(proof: Proof) -> None:
+    """Let depth, drive and edges be functions of time."""
+    proof.notation |= {"d": depth, r"\lambda": _IN_TIME[lam], r"\ell": _left, "r": _right}
+    for name, value in _IN_TIME.items():
+        proof.define(name, value)
+
+
+def _obey(proof: Proof) -> None:
+    """Let the indenter obey its equation of motion."""
+    proof.define(sp.Derivative(depth, (time, 2)), d_ss)
+    proof.recall("scaled-form")
+
+
+@result("F14", notation={"d": depth})
+def _momentum(proof: Proof) -> None:
+    """Balance of momentum.
+
+    With $S$ of F14-force, in dimensional form $U$, the integral of the compression over all elements.
+    """
+    total, now = _total(time), sp.Function("U", real=True)(t)
+    proof.define(d, depth)
+    proof.recall("F14-force")
+    _obey(proof)
+    proof.equal(
+        sp.Derivative(eps * _speed + _share * total, time),
+        1 - kappa * (depth - 1) - _share * total,
+        "integrated over time, the balance of impulse",
+        left=r"\frac{d}{ds} \left[\varepsilon d' + \frac{3}{4} S\right]",
+        right=r"1 - \kappa (d - 1) - \frac{3}{4} S",
+    )
+    proof.recall("scaled-pressure", W_0)
+    proof.define(F_z, W_0 * f_normal)
+    proof.define(C, K * tau, "Eq. (22)")
+    proof.define(now, a_0 * delta_0 * _total(t / tau))
+    proof.define(time, t / tau)
+    result = K * now + C * sp.Derivative(now, t)
+    proof.equal(
+        F_z, result, r"in units of $W_0 = \frac{4}{3} K a_0 \delta_0$", right=r"K U + C \dot{U}"
+    )
+
+
+@result("F14-power", uses=("scaled-pressure",))
+def _power(proof: Proof) -> None:
+    r"""Power given to the foundation.
+
+    In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact
+    there is no pressure, and no power.
+    """
+    density = sp.expand(_share * PRESSURE * _rate)
+    proof.recall("F11")
+    proof.recall("F11", f_friction)
+    proof.notation |= {r"\hat p": PRESSURE, "u'": _rate}
+    proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p")
+    whole = sp.Integral(density, CONTACT)
+    proof.integral(
+        *(whole, density, CONTACT, sp.integrate(density, xi), "pressure times velocity"),
+        left=r"\frac{3}{4} \int_{\ell}^{r} \hat p u' \, d\xi", right=r"d' f_z + \lambda f_x",
+        value=d_s * f_normal + lam * f_friction,
+    )  # fmt: skip
+
+
+@result("F14-energy", uses=("scaled-form", "F14-power"))
+def _energy(proof: Proof) -> None:
+    r"""Balance of energy.
+
+    In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. The power of the drive, in dimensional form $F_x V$,
+    becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g \delta$ and $\frac{1}{2} k_s
+    (\delta - \delta_0)^2$, and energy of the springs of the foundation under the indenter and outside, $E$;
+    the rest is lost in its dampers, under the indenter and outside. A fixed indenter has $d' = 0$, and only
+    the foundation is left.
+    """
+    _let_move(proof)
+    height, rate = (each.subs(_IN_TIME) for each in (_height, _rate))
+    proof.notation |= {"u": sp.Lambda(xi, height), "u'": sp.Lambda(xi, rate)}
+    stored, lost = (
+        _under(proof, sp.expand(density), *shown)
+        for density, shown in (
+            (_share / 2 * height**2, ("stored under the indenter", _STORED, _STORED_THERE)),
+            (_share * rate**2, ("dissipated there", _LOST, _LOST_THERE)),
+        )
+    )
+    proof.recall("F11")
+    proof.recall("F11", f_friction)
+    energy, free = _free(time), established("F14-surface", _free(time).diff(time))
+    given = _speed * f_normal + lam * f_friction - (free + 2 * energy)
+    proof.equal(
+        *(sp.Derivative(stored, time) + lost, given, "elements enter and leave at the edges"),
+        left=rf"\frac{{d}}{{ds}} {_STORED} + {_LOST}",
+        right=r"d' f_z + \lambda f_x + \frac{3}{8} \left[(d - r^2)^2 (r' - \lambda) - (d - \ell^2)^2 "
+        r"(\ell' - \lambda)\right]",
+    )
+    proof.recall("F14-surface")
+    _obey(proof)
+    moving = eps * _speed**2 / 2 - depth + kappa * (depth - 1) ** 2 / 2
+    proof.equal(
+        *(sp.Derivative(moving, time), -_speed * f_normal, "kinetic energy, weight and spring"),
+        left=rf"\frac{{d}}{{ds}} \left[{_MOVING}\right]", right="-d' f_z",
+    )  # fmt: skip
+    balance = sp.Derivative(moving + stored + energy, time) + lost + 2 * energy
+    proof.equal(
+        *(lam * f_friction, balance, "the sum of the three contributions"),
+        left=r"\lambda f_x",
+        right=rf"\frac{{d}}{{ds}} \left[{_MOVING} + {_STORED} + E\right] + {_LOST} + 2 E",
+    )
+
+
+def _under(proof: Proof, density: sp.Expr, reason: str, left: str, right: str) -> sp.Expr:
+    """Prove what an integral over the contact is, and return it."""
+    place = (xi, _left, _right)
+    whole = sp.Integral(density, place)
+    primitive = sp.integrate(density, xi)
+    proof.integral(whole, density, place, primitive, reason, left=left, right=right)
+    return whole
+
+
+_MOVING = r"\frac{\varepsilon d'^2}{2} - d + \frac{\kappa}{2} (d - 1)^2"
+_STORED = r"\frac{3}{8} \int_{\ell}^{r} u^2 \, d\xi"
+_STORED_THERE = (
+    r"\frac{3}{8} d^2 (r - \ell) - \frac{1}{4} (r^3 - \ell^3) d + \frac{3}{40} (r^5 - \ell^5)"
+)
+_LOST = r"\frac{3}{4} \int_{\ell}^{r} u'^2 \, d\xi"
+_LOST_THERE = (
+    r"\frac{3}{4} d'^2 (r - \ell) - \frac{3}{2} (r^2 - \ell^2) \lambda d' "
+    r"+ \lambda^2 (r^3 - \ell^3)"
+)

@@ -1,0 +1,310 @@
+"""The two edges of the contact (F10): where they peel, where they touch, and where they turn.
+
+An edge at xi = X + Y peels while it moves inward through the foundation and touches while it moves
+outward: onto undisturbed ground, or onto ground that it left before and that has not yet recovered.
+"""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import letter, symbol
+from ..engine.step import Proof
+from .contact_interval import E
+from .theorems import lam
+from .transient_memory import (
+    OF_TIME,
+    SECTION,
+    SURFACE,
+    depth,
+    eta,
+    material,
+    sigma,
+    time,
+    travel,
+    zeta,
+)
+from .transient_scaling import PRESSURE, P, d, d_s, xi
+
+start = symbol("s_0", "instant at which ground is left or an edge turns", real=True)
+letter("d_0", "depth at an earlier instant or at the beginning of a step")
+letter(r"X_{\mathrm{e}}", "element at an edge")
+left = symbol("ell", "scaled left edge of the contact", real=True)
+right = symbol("r", "scaled right edge of the contact", real=True)
+b = symbol("b", "scaled length of the contact, from edge to edge", source="F11-peel")
+rho = symbol("rho", r"$\sqrt{d + d' + \lambda^2}$, which is $r + \lambda$ at an edge that peels")
+drift = symbol(
+    "lambda_bar",
+    "mean drive number since an earlier instant, weighted by memory",
+    latex=r"\bar\lambda",
+    real=True,
+)
+lift = symbol(
+    "d_bar", "mean depth since an earlier instant, weighted by memory", latex=r"\bar d", real=True
+)
+c = symbol("c", "rate at which an edge turns", printed=r"c_{\mathrm{t}}")
+letter(r"\bar k_1", "bounded factor of the remainder after the leading order")
+letter(r"\bar k_2", "second bounded factor")
+letter(r"\bar k_3", "third bounded factor")
+letter(r"\bar y", "instant before a turn over the time since")
+
+RADICAND = d + d_s + lam**2
+"""rho**2 of the edges that peel."""
+
+_radius = sp.sqrt(lift + E * drift**2)
+LEFT_AT_ONCE, RIGHT_AT_ONCE = -E * drift - _radius, -E * drift + _radius
+"""Edges on ground that was left at one instant."""
+
+_MOVING = {**OF_TIME, lam: sp.Derivative(travel, time)}
+_d_0, _moved = sp.symbols("d_0 m", real=True)
+_h, _ahead = sp.symbols("h k", positive=True)
+edge_path = sp.Function("X_e", real=True)(time)
+"""The element at an edge of the contact."""
+TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
+"""p/(K delta_0) at an edge that touches."""
+result = Chapter(SECTION, notation={"g": SURFACE})
+
+
+@result("F10-peel", uses=("eq33",))
+def _peeling(proof: Proof) -> None:
+    r"""Edges that peel.
+
+    An edge peels where the pressure vanishes: Eq. (33) in scaled form. If $d + d' + \lambda^2 < 0$ no element
+    can be pressed: the indenter has left the foundation.
+    """
+    pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
+    radius = sp.sqrt(RADICAND).subs(_MOVING)
+    proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
+    for sign, edge in ((-1, r"\ell"), (1, "r")):
+        position = sign * radius - sp.Derivative(travel, time) - travel
+        loss = sp.diff(pressure, time).subs(material, position)
+        moving = sign * radius - sp.Derivative(travel, time)
+        proof.notation |= {
+            edge: sp.Lambda(time, moving),
+            r"\hat p": pressure,
+            "Y": travel,
+            "X": material,
+        }
+        proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
+        proof.equal(
+            *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
+            left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
+            right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
+        )
+    proof.recall("scaled-pressure")
+    proof.define(rho, sp.sqrt(RADICAND))
+    proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
+    for side, sign, name, called in (
+        ((xi, -sp.oo, -lam), -1, "left", left), ((xi, -lam, sp.oo), 1, "right", right)
+    ):  # fmt: skip
+        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
+
+
+_LEAVES = "the element there loses its pressure while the edge moves inward"
+
+
+@result("F10-touch", uses=("F8", "F9", "eq32"))
+def _touching(proof: Proof) -> None:
+    r"""Edges that touch.
+
+    An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi =
+    \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
+    g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity $X_{\mathrm{e}}'$ of the
+    edge through the foundation, and positive while it moves outward, because $\xi - E \eta$ has the sign of
+    the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$ does not matter: either
+    all of the ground was left at once, or each element when its pressure, and with it $\partial(e^{\sigma}
+    g)/\partial\sigma$, vanished.
+    """
+    for sign, called, words in ((-1, left, "left"), (1, right, "right")):
+        side = (xi, -sp.oo, 0) if sign < 0 else (xi, 0, sp.oo)
+        ground = f"{words} edge on undisturbed ground"
+        proof.root(d - xi**2, xi, sign * sp.sqrt(d), ground, over=side, name=called)
+    now = depth - (material + travel) ** 2
+    proof.notation |= {r"\hat p": PRESSURE.subs(_MOVING)}
+    meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
+    condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
+    along = -2 * sp.exp(time) * (xi - E * eta)
+    in_time = sp.exp(time) * PRESSURE.subs(_MOVING)
+    proof.define(xi, material + travel)
+    proof.define(eta, material + travel.subs(time, sigma), r"where the element was at $\sigma$")
+    proof.define(E, sp.exp(sigma - time))
+    proof.equal(
+        *(sp.Derivative(meeting, material), along, "along the foundation"),
+        left=rf"\frac{{\partial}}{{\partial X}} {condition}",
+    )
+    proof.equal(
+        *(sp.Derivative(meeting, time), in_time, "in time"),
+        left=rf"\frac{{\partial}}{{\partial s}} {condition}", right=r"e^{s} \hat p",
+    )  # fmt: skip
+    speed = sp.Derivative(edge_path, time)
+    reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
+    proof.notation[r"X_{\mathrm{e}}"] = edge_path
+    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason, right=_SPEED)
+
+
+_SPEED = r"2 (\xi - E \eta) X_{\mathrm{e}}'"
+
+
+@result("F10-signs", uses=("F9", "F10-peel"))
+def _signs(proof: Proof) -> None:
+    r"""Inward an edge peels, outward it touches.
+
+    In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, $X_{\mathrm{e}}' <
+    0$: the elements there must lose their pressure, which vanishes. One that touches moves outward, for its
+    pressure is not negative. A left edge is the mirror image.
+    """
+    now, speed = depth - (material + travel) ** 2, sp.Derivative(edge_path, time)
+    margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
+    other = margin.subs(material, material - b)
+    slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
+    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
+    proof.notation |= {r"\xi - E \eta": slope}
+    proof.recall("F10-touch")
+    proof.holds(2 * rho * speed, "<", 0,
+                "F10-peel: an element that detaches on the right loses its pressure",
+                cases=(sp.Lt(speed, 0),))  # fmt: skip
+    proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
+    inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
+    proof.define(
+        inside, other, r"at the left edge, not negative: it is in contact", right="D(X - b)"
+    )
+    proof.equal(
+        *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D(X) = 0$"),
+        left=r"2 e^{s} b \left(\xi - E \eta\right)",
+        right=r"D_2 - D(X) + \left(e^{s} - e^{\sigma}\right) b^2",
+    )
+    proof.where(time > sigma, "an earlier instant")
+    proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
+    proof.define(xi, E * eta + _ahead, "with $k > 0$")
+    proof.equivalent(
+        P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
+    )
+
+
+@result("F10-instant", uses=("F10-touch",))
+def _at_once(proof: Proof) -> None:
+    r"""Ground left at one instant.
+
+    A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. With $E =
+    e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in $\xi$.
+    """
+    left_then = d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)
+    quotient = (lift + E * (1 - E) * drift**2) / (E * drift + _radius)
+    whole = (zeta, start, time)
+    inner = depth.subs(time, zeta)
+    growth = sp.exp(zeta) * (inner + sp.Derivative(inner, zeta))
+    proof.integral(
+        *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
+        r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
+        left=r"\int_{s_0}^{s} e^{\zeta} \left(d(\zeta) + d'(\zeta)\right) d\zeta",
+        right=r"e^{s} d(s) - e^{s_0} d(s_0)",
+        value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
+    )
+    proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
+    proof.define(drift, _moved / (1 - E), "$m = Y(s) - Y(s_0)$")
+    middle = -E * drift
+    proof.where(E < 1, "time has passed")
+    proof.where(sp.Gt(lift + E * drift**2, 0), "else the indenter is above all of this ground")
+    proof.root(left_then, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
+    proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
+    proof.where(drift > 0, "the foundation has moved on")
+    proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
+    proof.done(right, RIGHT_AT_ONCE)
+
+
+@result("F10-instant-limits", uses=("F10-instant", "F10-peel", "F10-touch"))
+def _soon_and_late(proof: Proof) -> None:
+    r"""Ground left at one instant: early and late.
+
+    The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the depth is
+    $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after it
+    $E$ vanishes, and $m$ is what the way has been.
+    """
+    proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
+    past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
+    proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
+    proof.equal(
+        (d + d_s * _h - (1 - past) * d) / past, d + d_s * factor, r"$\bar d$ soon after the jump"
+    )
+    proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
+    proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
+    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
+    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
+    means = E, lift, drift
+    for ends, edge, shown, words in (
+        ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
+        ((0, d, _moved), sp.sqrt(d), "0, d, m", "late: undisturbed ground"),
+    ):
+        place = sp.Subs(RIGHT_AT_ONCE, means, ends)
+        proof.equal(place, edge, words, left=f"r({shown})")
+
+
+@result("F10-gradual", uses=("F10-peel", "F10-touch"))
+def _gradually(proof: Proof) -> None:
+    r"""Ground left element by element.
+
+    An edge that peeled at $\xi = \eta$ left the element $X_{\mathrm{e}}(\sigma)$ at $\sigma$. When it
+    comes back at $s$, it is where $e^{s} g(X_{\mathrm{e}}(\sigma), s) = e^{\sigma}
+    g(X_{\mathrm{e}}(\sigma), \sigma)$: one equation for $\sigma$.
+
+    Argued: The difference of both sides is positive at the innermost of these elements and concave across
+    them (F9), so that it vanishes at most once on the way outward.
+    """
+    element, was_depth, moved = (f.subs(time, sigma) for f in (edge_path, depth, travel))
+    now, then = depth - (element + travel) ** 2, was_depth - (element + moved) ** 2
+    meeting = sp.exp(time) * now - sp.exp(sigma) * then
+    slope = -2 * sp.exp(time) * (xi - E * eta) * sp.Derivative(element, sigma)
+    peeling = eta**2 + 2 * eta * sp.Derivative(moved, sigma) - was_depth
+    proof.define(xi, element + travel, "where the element is now")
+    proof.define(eta, element + moved, r"and where it was at $\sigma$")
+    proof.define(E, sp.exp(sigma - time))
+    proof.define(
+        *(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$"),
+        left=r"d'(\sigma)", right=r"\eta^2 + 2 Y'(\sigma) \eta - d(\sigma)",
+    )  # fmt: skip
+    proof.equal(
+        *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
+        left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "
+        r"g(X_{\mathrm{e}}(\sigma), \sigma)\right]",
+        right=r"-2 e^{s} (\xi - E \eta) X_{\mathrm{e}}'(\sigma)",
+    )
+
+
+@result("F10-turn", uses=("F8", "F10-gradual"))
+def _turning(proof: Proof) -> None:
+    r"""Where an edge turns.
+
+    Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: counted
+    from its turn it is at $X(\zeta) = \frac{c \zeta^2}{2} (1 + k_1 \zeta)$ with $c > 0$, at the time $s_0 +
+    \zeta$, and the pressure $e^{\zeta} \hat p$ is $-2 \rho (1 + k_2 \zeta)$ per distance to it. The edge
+    itself then touches ground that it has just left at $\sigma$: by F8 the pressure must add up to nothing
+    from $\sigma$ to $h$. To leading order it does for $\sigma = -h/2$, and because this root is simple, for
+    $\sigma = -h/2 + k_3 h^2$: the edge follows with a quarter of the curvature, whatever $k_1$, $k_2$ and
+    $k_3$ are.
+    """
+    bend, drop, shift, y = sp.symbols("k_1 k_2 k_3 y", real=True)
+    peel = c * zeta**2 / 2 * (1 + bend * zeta)
+    lost = sp.expand(-2 * rho * (1 + drop * zeta) * (peel.subs(zeta, sigma) - peel))
+    proof.notation["X"] = sp.Lambda(zeta, peel)
+    since = (zeta, sigma, _h)
+    value = proof.integral(
+        *(sp.Integral(lost, since), lost, since, sp.integrate(lost, zeta), "pressure since then"),
+        left=_PRESSED.replace("y h", r"\sigma"), right=_PUSHED,
+    )  # fmt: skip
+    first = rho * c * _h**3 * (1 - y) ** 2 * (1 + 2 * y) / 3
+    proof.leading_order(value.subs(sigma, y * _h), first, _h, 0, r"with $\sigma = y h$", eps=_h,
+                        short=True, left=_PRESSED)  # fmt: skip
+    proof.root(first, y, -sp.S.Half, "left as long before the turn as half the time since",
+               over=(y, -sp.oo, 1))  # fmt: skip
+    simple = sp.Subs(sp.Derivative(first, y), y, -sp.S.Half)
+    proof.equal(simple, 3 * rho * c * _h**3 / 2, "not zero: a simple root")
+    edge, quarter = peel.subs(zeta, -_h / 2 + shift * _h**2), c * _h**2 / 8
+    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True,
+                        left=r"X(-h/2 + k_3 h^2)")  # fmt: skip
+
+
+_PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
+_PUSHED = (
+    r"\frac{\rho c}{3} (h - \sigma)^2 (h + 2 \sigma) + \frac{\rho c k_1}{4} (h - \sigma)^2 "
+    r"(h^2 + 2 h \sigma + 3 \sigma^2) + \frac{\rho c k_2}{4} (h^2 - \sigma^2)^2 + "
+    r"\frac{\rho c k_1 k_2}{10} (h - \sigma)^2 (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)"
+)

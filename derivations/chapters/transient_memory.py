@@ -1,0 +1,273 @@
+"""The memory of the foundation: theorems F8 and F9, for any drive and any motion of the indenter.
+
+Element X of the foundation is at xi = X + Y(s), with Y' = lambda, where the surface of the indenter is
+at the compression g(X, s) = d - xi**2: negative where it hangs above the undisturbed foundation.
+"""
+
+import sympy as sp
+
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, letter, symbol
+from ..engine.step import Proof, tex
+from .theorems import lam
+from .transient_scaling import PRESSURE, d, d_s, xi
+
+time = symbol("s", real=True)
+earlier = symbol("s_1", "earlier instant", real=True)
+depth = function("d", real=True)(time)
+compression = function("u", r"scaled compression, $u/\delta_0$", printed=r"\bar u", real=True)
+letter(r"\bar u_0", "scaled compression at the beginning")
+indenter = function(
+    "g",
+    "scaled depth of the indenter's surface, negative above the undisturbed foundation",
+    printed=r"\bar g",
+    real=True,
+)
+material = symbol(
+    "X", "scaled coordinate in the foundation, which moves with it", source="F8", real=True
+)
+letter("X_1", "first of two elements")
+letter("X_2", "second of two elements")
+travel = function("Y", r"scaled displacement of the foundation, with $Y' = \lambda$", real=True)(
+    time
+)
+sigma = symbol(
+    "sigma",
+    "earlier instant, at which an element was at an edge",
+    printed=r"\bar \sigma",
+    real=True,
+)
+eta = symbol("eta", "position of an element then", printed=r"\bar \eta")
+zeta = symbol("zeta", "variable of integration", source="F8", real=True)
+letter(r"\bar c", "rate of a motion within a step")
+letter(r"\check f", "memory $e^{s} g$ within a step, over the exponential at its end")
+letter(r"\check v", r"slope of $\check f$")
+letter(r"\check c", r"difference of $\check M$ and the decrease of that slope")
+letter(r"\check b", "time from the nearer end of a step to the largest value")
+letter(r"\check y", "time from the nearer end of a step")
+letter(r"\check k", "half of the additional distance to the other end")
+letter(r"\check M", r"greatest magnitude of the second derivative of $\check f$")
+letter("J", "jump that a proof excludes")
+letter("D", r"$e^{s} \bar g$ of an element less $e^{s_1} \bar g$ at an earlier instant")
+letter("D_1", "this difference at one position")
+mix = symbol("theta", "share of two elements in one between them", printed=r"\bar \theta")
+letter(r"\Delta s", "scaled step in time")
+letter("D_2", "the difference $D$ at another position")
+
+SECTION = "Transient: theorems"
+
+_NOTATION = (
+    r"An element with the material coordinate $X$ is at $\xi = X + Y(s)$ with $Y' = \lambda$, and the "
+    r"indenter there is at $g(X, s) = d - \xi^2$."
+)
+_h = sp.Symbol("h", positive=True)
+PUSH = sp.Function("p", nonnegative=True)
+"""The pressure on an element, p/(K delta_0), as a function of time."""
+_clear = sp.Function("c", nonnegative=True)
+"""How far the indenter is above the surface of an element."""
+_HEIGHT = depth - (material + travel) ** 2
+SURFACE = sp.Lambda((material, time), _HEIGHT)
+"""g(X, s), the surface of the indenter above an element."""
+
+OF_TIME = {d: depth, d_s: sp.Derivative(depth, time)}
+"""The depth and its rate as functions of the scaled time."""
+
+result = Chapter(SECTION)
+
+
+@result("F8", text=_NOTATION, uses=("scaled-pressure",), notation={r"\hat p": PUSH})
+def _memory(proof: Proof) -> None:
+    r"""Memory in closed form.
+
+    Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never negative, and
+    zero unless $u = g$. Then, for any motion of drive and indenter, $e^{s} u$ is the running maximum of
+    $e^{s} g$. The start counts as a contact with $u_0$, the compression at $s = 0$: an element that has not
+    been touched since keeps $e^{s} u = u_0$, though $u$ itself decays.
+    """
+    u, g = compression, indenter
+    whole = (zeta, earlier, time)
+    pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), whole)
+    kept = sp.exp(time) * u(time)
+    proof.define(
+        *(sp.Derivative(u(zeta), zeta), PUSH(zeta) - u(zeta), r"$\hat p = u + u'$, never negative"),
+        right=r"\hat p(\zeta) - u(\zeta)",
+    )  # fmt: skip
+    proof.integral(
+        *(pushed, sp.exp(zeta) * PUSH(zeta), whole, sp.exp(zeta) * u(zeta)),
+        r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: so $e^{s} u$ never decreases",
+        value=kept - sp.exp(earlier) * u(earlier),
+        left=r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta",
+        right=r"e^{s} u(s) - e^{s_1} u(s_1)",
+    )  # fmt: skip
+    proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
+    at_last = {earlier: sigma}
+    proof.define(pushed.subs(at_last), sp.S.Zero, r"no pressure since $\sigma$, the last contact",
+                 left=r"\int_{\sigma}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta")  # fmt: skip
+    proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(sp.Gt(time, sigma), "that contact is over")
+    proof.greatest(
+        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
+        surplus=pushed + sp.exp(earlier) * _clear(earlier), left="e^{s} u(s)",
+    )  # fmt: skip
+    value = sp.exp(sigma - time) * g(sigma)
+    proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
+    since = kept - sp.exp(sigma) * u(sigma)
+    proof.root(*(since, u(time), value, r"the free element since $\sigma$"),
+               right=r"e^{\sigma - s} g(\sigma)")  # fmt: skip
+
+
+_BOUND = (
+    r"the difference is $\int_{s_1}^{s} e^{\zeta} \hat p \, d\zeta + e^{s_1} c(s_1) \ge 0$, and zero for "
+    r"$s_1 = \sigma$: the least upper bound is attained"
+)
+
+
+@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})
+def _update(proof: Proof) -> None:
+    r"""Memory from one instant to the next.
+
+    The update needs no contact flag. It is exact if $e^{s} g$ takes its maximum over the step at an end of
+    it, so always where it is monotone. It is inexact only if, within the step, an element is first compressed
+    and then released; there $u$ is too small by at most $h^2/8$ times the greatest $|\hat p + \hat p'|$ of
+    the step (F8-remainder).
+    """
+    u, g = compression, indenter
+    proof.define(xi, material + travel)
+    proof.define(lam, sp.Derivative(travel, time))
+    pressure = PRESSURE.subs(OF_TIME)
+    proof.equal(
+        *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * pressure, _RISES),
+        left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
+        right=r"e^{s} \left(d + d' - \xi^2 - 2 \lambda \xi\right)",
+    )
+    after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
+    impulse = sp.Symbol("J", nonnegative=True)
+    larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
+    proof.notation["g"] = g
+    proof.define(
+        g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
+    )
+    proof.define(
+        *(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse),
+        r"F8 over one step: $J = \int e^{\zeta} \hat p \, d\zeta \ge 0$",
+    )
+    either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
+    proof.equal(
+        *(after, larger, "free until then, or in contact at the end"), cases=either,
+        right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
+    )  # fmt: skip
+
+
+_RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
+
+
+@result("F8-remainder", uses=("F8-update",))
+def _remainder(proof: Proof) -> None:
+    r"""Error of the memory within a step.
+
+    Where $e^{s} g$ is largest within a step, at the time $b_8$ from its nearer end, let $f_8(y_8)$ be it over
+    the exponential at its end, at the time $y_8$ from the nearer end; the update takes $f_8(0)$ for
+    $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1 (F8-update), and $M_8$ its
+    greatest magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by $M_8 - c_8$ with $c_8
+    \ge 0$.
+    """
+    f, slope = (sp.Function(name, real=True) for name in ("f_8", "v_8"))
+    unused = sp.Function("c_8", nonnegative=True)
+    y, b, most = sp.symbols("y_8 b_8 M_8", positive=True)
+    later = sp.Symbol("k_8", nonnegative=True)
+    missed = f(b) - f(0)
+    proof.define(sp.Derivative(f(y), y), slope(y), "its slope")
+    proof.define(sp.Derivative(slope(y), y), unused(y) - most, "which falls by at most this bound")
+    whole, spare = (y, 0, b), sp.Integral(y * unused(y), (y, 0, b))
+    primitive = most * y**2 / 2 + y * slope(y) - f(y)
+    proof.integral(spare, y * unused(y), whole, primitive, "by parts")
+    proof.define(slope(b), sp.S.Zero, "the largest value is at $b_8$")
+    proof.equal(
+        missed, most * b**2 / 2 - spare, "the error of the value at the nearer end of the step"
+    )
+    proof.define(_h, 2 * (b + later), "the other end is at least as far")
+    proof.equal(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare, "the rest")
+    proof.holds(most * later * (2 * b + later) / 2 + spare, ">=", 0, "never negative")
+    proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
+
+
+def _margin(position: sp.Expr) -> sp.Expr:
+    """Return e**s g now minus e**s_1 g at an earlier instant, for the element X = position."""
+    now = depth - (position + travel) ** 2
+    return sp.exp(time) * now - sp.exp(earlier) * now.subs(time, earlier)
+
+
+_one, _other = sp.symbols("X_1 X_2", real=True)
+_BULGE = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (_one - _other) ** 2
+_MARGIN = sp.Lambda(material, _margin(material))
+"""e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
+
+
+@result("F9", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, "D": _MARGIN})
+def _interval(proof: Proof) -> None:
+    r"""The contact is one interval.
+
+    By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} g(X, s_1)$
+    at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of these differences,
+    $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by $e^{s}$), so that the
+    elements between two in contact satisfy the same conditions: the contact has no gap. So two edges describe
+    the contact, for any drive $\lambda(s)$ and depth $d(s)$. That the differences are concave needs the
+    parabola, whose curvature is the same everywhere; that the contact is one interval does not.
+    """
+    margin = _margin(material)
+    curvature = sp.Derivative(margin, (material, 2))
+    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
+               left=r"-2 (\eta - 1)")  # fmt: skip
+    proof.define(eta, sp.exp(time - earlier), right="e^{s - s_1}")
+    proof.equal(
+        *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
+        left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
+        right=r"-2 e^{s_1} (\eta - 1)",
+    )
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(mix < 1, "between two elements in contact")
+    _between(proof)
+    proof.holds(_BULGE, ">=", 0, _CONVEX)
+    proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
+
+
+_CONVEX = (
+    "and so is the sum, for each past instant and hence for all: what is between is in contact too"
+)
+
+
+def _between(proof: Proof) -> None:
+    """Prove what a difference is between two elements where it is not negative."""
+    first, second = sp.symbols("D_1 D_2", real=True)
+    for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
+        proof.notation[tex(name)] = name
+        proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
+    between = _margin(mix * _one + (1 - mix) * _other)
+    proof.equal(
+        *(
+            between,
+            mix * first + (1 - mix) * second + _BULGE,
+            "its chord, and how far it bulges above",
+        ),
+        left=r"D(\theta X_1 + (1 - \theta) X_2)",
+        right=r"\theta D_1 + (1 - \theta) D_2 + \theta (1 - \theta) \left(e^{s} - e^{s_1}\right) "
+        "(X_1 - X_2)^2",
+    )
+
+
+@result("F9-landing", uses=("F8", "F9"), notation={"D": _MARGIN})
+def _landing(proof: Proof) -> None:
+    r"""Landing is at one point.
+
+    While the indenter flies since $s_0$, an element is touched when $D(X) = e^{s} g(X, s) - e^{s_1} g(X,
+    s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If two elements
+    were touched at the same instant, those between them would exceed this condition by at least $\theta (1 -
+    \theta) (e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been compressed before.
+    """
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(mix < 1, "between two elements")
+    proof.where(sp.Gt(_one, _other), "that are not the same")
+    _between(proof)
+    proof.holds(_BULGE, ">", 0,
+                "if both landed at the same instant, the elements between would have before")  # fmt: skip

@@ -1,0 +1,373 @@
+r"""Steady sliding of a parabola on any linear viscoelastic foundation: theorem F17.
+
+Everything is linear in the relaxation function, so that one arm is enough, which relaxes as exp(-X/l) over
+the distance X. A spring is an arm with l -> oo, a Prony series a sum of arms; a springpot, like every
+relaxation function that is completely monotone, is an integral over arms (Bernstein). Lengths are scaled by
+the length of the contact.
+"""
+
+import sympy as sp
+
+from ..engine.algebra import antiderivative
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, letter, symbol
+from ..engine.step import Proof
+from .model import R
+from .steady import W, a, l, q
+
+contact_length = symbol("c_v", "length of the contact", "m", latex=r"\breve c")
+arm_number = symbol(
+    "z_v", r"length of the contact over that of an arm, $\breve c/l_i$", latex=r"\breve z"
+)
+place = symbol(
+    "x_v", "distance from the leading edge over the length of the contact", latex=r"\breve x"
+)
+passed = symbol("s_v", r"as $\breve x$, of an earlier position", latex=r"\breve s", real=True)
+half_share = symbol("a_v", "half length at rest over the length of the contact", latex=r"\breve a")
+arm_pressure = symbol(
+    "p_v", r"pressure of an arm, in units of $K_i \breve c^2/R$", latex=r"\breve p", real=True
+)
+from_trailing = symbol(
+    "w_v", "distance from the trailing edge over the length of the contact", latex=r"\breve w"
+)
+moment_ahead = symbol(
+    "P_v", r"moment of the relaxation function, of weight $1 - \breve w$", latex=r"\breve P"
+)
+moment_behind = symbol("Q_v", r"moment of weight $\breve w$", latex=r"\breve Q")
+moment_bulge = symbol("D_v", r"moment of weight $\breve w (1 - \breve w)/2$", latex=r"\breve D")
+moment_twist = symbol(
+    "E_v", r"moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$", latex=r"\breve E"
+)
+moment_mean = symbol(
+    "A_v", r"mean of the relaxation function, $\breve P + \breve Q$", latex=r"\breve A"
+)
+moment_slant = symbol("B_v", r"$(\breve P - \breve Q)/2$", latex=r"\breve B")
+excess_share = symbol("eta_v", r"$\breve a - \frac{1}{2}$", latex=r"\breve \eta")
+arm_load = symbol("W_v", r"load of an arm, in units of $K_i \breve c^3/R$", latex=r"\breve W")
+arm_work = symbol(
+    "F_v", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", latex=r"\breve F"
+)
+arm_lost = symbol(
+    "L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True
+)
+relaxation = function(
+    "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
+)(contact_length)
+primitive_1 = function(
+    "G_v1",
+    r"integral of $\breve G$ over the contact",
+    "N/m²",
+    printed=r"\breve G_1",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+primitive_2 = function(
+    "G_v2",
+    r"integral of $\breve G_1$ over the contact",
+    "N/m",
+    printed=r"\breve G_2",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+primitive_3 = function(
+    "G_v3",
+    r"integral of $\breve G_2$ over the contact",
+    "N",
+    printed=r"\breve G_3",
+    source="F17-growth",
+    positive=True,
+)(contact_length)
+ratio_first = symbol(
+    "t_v0", "ratio of two modified spherical Bessel functions", latex=r"\breve t_0"
+)
+ratio_second = symbol("t_v1", "ratio of the next two", latex=r"\breve t_1")
+spring_share = symbol("nu_v", "1 less the order of a springpot", latex=r"\breve \nu")
+springpot = symbol(
+    "zeta_v", "stiffness of springpot or arm over the spring's", latex=r"\breve \zeta"
+)
+letter(r"\Gamma", "Gamma function", source="constant")
+
+SECTION = "Any linear viscoelastic foundation"
+
+z, y, s, w, b, e, c, nu = (
+    arm_number, place, passed, from_trailing, half_share, excess_share, contact_length,
+    spring_share,
+)  # fmt: skip
+FALL = sp.exp(-z)
+P, Q, A, B, D, E = (
+    moment_ahead,
+    moment_behind,
+    moment_mean,
+    moment_slant,
+    moment_bulge,
+    moment_twist,
+)
+MOMENTS = {
+    P: (1 - w, (z - 1 + FALL) / z**2),
+    Q: (w, (1 - (1 + z) * FALL) / z**2),
+    D: (w * (1 - w) / 2, (z - 2 + (z + 2) * FALL) / (2 * z**3)),
+    E: (
+        (1 - 3 * w + 2 * w**3) / 12,
+        (z**3 - 3 * z**2 + 12 - 3 * (z**2 + 4 * z + 4) * FALL) / (12 * z**4),
+    ),
+}
+"""Each moment of exp(-z w): its weight, and its value."""
+PRESSURE = (b * z - z * y + 1 - (b * z + 1) * sp.exp(-z * y)) / z**2
+LOAD = D + e * P
+WORK = E + e**2 * P
+LOST = E - B**2 / 2 + e * (A * B + e * (B + A * z * P / 2))
+UNIT = (w, 0, 1)
+
+result = Chapter(SECTION)
+
+
+@result("F17-pressure")
+def _pressure(proof: Proof) -> None:
+    r"""Any relaxation function: pressure of an arm.
+
+    An element at the distance $X$ behind the leading edge is compressed by $u$, $R u' = a - X$; a foundation
+    with the relaxation function $G(t)$ exerts the pressure $p = \int G((X - X')/V)\, u'\, dX'$. This is
+    linear in $G$. One arm is $G = K_i e^{-X/l_i}$, $l_i = V \tau_i$; its pressure is $\breve p$ in units of
+    $K_i \breve c^2/R$, where $\breve c$ is the length of the contact, $\breve z = \breve c/l_i$, $\breve x =
+    X/\breve c$ and $\breve a = a/\breve c$.
+    """
+    integrand = sp.exp(-z * (y - s)) * (b - s)
+    primitive = sp.exp(-z * (y - s)) * (b - s + 1 / z) / z
+    reason = r"$\int G\,\dot u\,dt$ of one arm, with $R u' = a - X$ in the contact"
+    proof.integral(arm_pressure, integrand, (s, 0, y), primitive, reason, value=PRESSURE)
+    slope = sp.Derivative(PRESSURE, y)
+    proof.equal(slope, b - y - z * arm_pressure, "the arm is strained by $a - X$, and relaxes",
+                left=r"\frac{d \breve p}{d \breve x}")  # fmt: skip
+    proof.done(arm_pressure, PRESSURE)
+
+
+@result("F17-moments")
+def _moments(proof: Proof) -> None:
+    r"""Any relaxation function: four moments.
+
+    The moments weight the memory of an arm at the trailing edge, at the distance $\breve w \breve c$ ahead of
+    it. The weights of the first three are positive; that of the last has no mean, and falls from the trailing
+    edge, so that none of the moments is negative where $G$ falls and is convex.
+    """
+    for name, (weight, form) in MOMENTS.items():
+        integrand = weight * sp.exp(-z * w)
+        proof.integral(name, integrand, UNIT, antiderivative(integrand, w),
+                       "a moment of $e^{-\\breve z \\breve w}$", value=form)  # fmt: skip
+    proof.define(A, P + Q, "its mean")
+    proof.define(B, (P - Q) / 2, "half of its slant")
+    proof.equal(A, (1 - FALL) / z, "mean")
+    proof.equal(B, z * D, "one moment gives another")
+    proof.equal(1 - A, z * P, "which replaces the difference")
+    proof.done(A, P + Q)
+
+
+def _from_moments(proof: Proof) -> None:
+    """Let the moments stand for their values, and a/c for 1/2 + e."""
+    proof.recall("F17-moments", *MOMENTS)
+    proof.recall("F17-moments")
+    proof.recall("F17-moments", (B, (P - Q) / 2))
+    proof.define(
+        b, sp.Rational(1, 2) + e, "the half length, by its excess over half of the contact"
+    )
+
+
+def _under_pressure(proof: Proof) -> None:
+    """Let the pressure of an arm stand for its value too."""
+    _from_moments(proof)
+    proof.recall("F17-pressure")
+
+
+@result("F17-edge")
+def _edge(proof: Proof) -> None:
+    r"""Any relaxation function: trailing edge.
+
+    All arms and the spring together have no pressure there: $a = \breve c \sum K_i \breve P/\sum K_i \breve
+    A$ and $x_{\mathrm{TE}} = \breve c \sum K_i \breve Q/\sum K_i \breve A$, with the moments of each arm. The
+    length of the contact therefore determines the half length at rest. The slope of the pressure, $R p' = a G
+    - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once.
+    """
+    _from_moments(proof)
+    proof.notation[r"\breve p"] = sp.Lambda(y, PRESSURE)
+    at_edge = PRESSURE.subs(y, 1)
+    proof.equal(at_edge, b * A - P, "pressure of the arm at the trailing edge", left=r"\breve p(1)")
+    proof.equal(at_edge, e * A - B, "the same", left=r"\breve p(1)")
+
+
+@result("F17-load")
+def _load(proof: Proof) -> None:
+    r"""Any relaxation function: load.
+
+    Of one arm, in units of $K_i \breve c^3/R$. So $W = (\breve c^3/R) \sum K_i (\breve D + \breve \eta \breve
+    P)$, a sum of positive terms.
+    """
+    _under_pressure(proof)
+    primitive = (b * z * y - z * y**2 / 2 + y + (b * z + 1) * sp.exp(-z * y) / z) / z**2
+    proof.integral(arm_load, arm_pressure, (y, 0, 1), sp.expand(primitive),
+                   "the integral of the pressure", value=LOAD)  # fmt: skip
+
+
+@result("F17")
+def _work(proof: Proof) -> None:
+    r"""Any relaxation function: friction force.
+
+    Of one arm, in units of $K_i \breve c^4/R^2$. So $F = (\breve c^4/R^2) \sum K_i (\breve E + \breve \eta^2
+    \breve P)$: friction is positive where $G$ falls and is convex, and no sum cancels.
+    """
+    _under_pressure(proof)
+    primitive = antiderivative(PRESSURE * (b - y), y)
+    proof.integral(
+        arm_work, arm_pressure * (b - y), (y, 0, 1), primitive, "the integral of $u' p$", value=WORK
+    )
+
+
+@result("F17-energy")
+def _energy(proof: Proof) -> None:
+    r"""Any relaxation function: energy.
+
+    What is stored in the springs at the trailing edge, $\breve p(1)^2/2$, is lost while the surface relaxes
+    behind the contact.
+    """
+    _under_pressure(proof)
+    stored = sp.Derivative(arm_pressure**2, y) / 2
+    work = arm_pressure * (b - y)
+    proof.equal(work, stored + z * arm_pressure**2, "stored in the spring of the arm, or lost")
+    primitive = antiderivative(z * PRESSURE**2, y)
+    proof.integral(
+        arm_lost, z * arm_pressure**2, (y, 0, 1), primitive, "lost in the contact", value=LOST
+    )
+    proof.equal(arm_lost + (e * A - B) ** 2 / 2, WORK, "and what is stored where it ends")
+    proof.done(arm_lost, LOST)
+
+
+def _primitives(proof: Proof) -> None:
+    """Name the repeated integrals of the relaxation function over the contact."""
+    G, (first, second, third) = relaxation, (primitive_1, primitive_2, primitive_3)
+    for whole, part in ((first, G), (second, first), (third, second)):
+        proof.define(sp.Derivative(whole, c), part, "a repeated integral")
+    proof.define(a, second / first, "F17-edge")
+
+
+@result("F17-growth", uses=("F17-edge",))
+def _growth(proof: Proof) -> None:
+    r"""Any relaxation function: growth of the contact.
+
+    With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each
+    load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact.
+    """
+    _primitives(proof)
+    slope = 1 - primitive_2 * relaxation / primitive_1**2
+    proof.equal(sp.Derivative(a, c), slope, "by the quotient rule: less than 1")
+    gap, fall = primitive_1**2 - 2 * primitive_2 * relaxation, sp.Derivative(relaxation, c)
+    proof.equal(slope - sp.Rational(1, 2), gap / (2 * primitive_1**2), "more than one half, if")
+    proof.equal(sp.Derivative(gap, c), -2 * primitive_2 * fall,
+                r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
+    proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ inserted")
+    rise = primitive_2 * slope / R
+    proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
+
+
+@result("F17-arm")
+def _forms(proof: Proof) -> None:
+    r"""Any relaxation function: an arm without cancellation.
+
+    $\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of $\coth$, which
+    continues with 5, 7 and so on, all positive; ten terms give full double precision for $\breve z \le 4$.
+    """
+    _from_moments(proof)
+    x = z / 2
+    hyperbolic = (1 + FALL) / (1 - FALL)
+    proof.define(
+        ratio_first, (hyperbolic - 1 / x) / x, r"$(\coth(\breve z/2) - 2/\breve z)\, 2/\breve z$"
+    )
+    proof.define(ratio_second, (1 / ratio_first - 3) / x**2, "the next of the continued fraction")
+    t_0, t_1 = ratio_first, ratio_second
+    proof.equal(P, A * (1 + x * t_0) / 2, "all terms positive")
+    proof.equal(Q, A * (1 - x * t_0) / 2, r"$\breve z \breve t_0/2$ is below 1")
+    proof.equal(1 - x * t_0, 1 / x - 2 * FALL / (1 - FALL), r"for $\breve z > 4$")
+    proof.equal(D, A * t_0 / 4, "all terms positive")
+    proof.equal(E, A * t_0 * x * (1 + t_1 * (1 + x)) / 24, "all terms positive")
+
+
+@result("F17-springpot")
+def _springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: moments.
+
+    For $G = K (1 + \breve \zeta \breve w^{\breve \nu - 1}/\Gamma(\breve \nu))$, $\breve \zeta = (V
+    \tau/\breve c)^{1 - \breve \nu}$, of the order $1 - \breve \nu$ between 0 and 1. The moments are divided
+    by $\Gamma(\breve \nu)$; for $\breve \nu \to 0$ they are then those of a dashpot, 1, 0, 0 and 1/12.
+    """
+    fade = w ** (nu - 1)
+    for name, (weight, _) in MOMENTS.items():
+        integrand = sp.powsimp(sp.expand(fade * weight))
+        powers = (term.as_coeff_exponent(w) for term in sp.Add.make_args(integrand))
+        primitive = sum(share * w ** (power + 1) / (power + 1) for share, power in powers)
+        proof.integral(name, integrand, UNIT, primitive, "a moment", value=SPRINGPOT[name])
+
+
+SPRINGPOT = {
+    P: 1 / (nu * (1 + nu)),
+    Q: 1 / (1 + nu),
+    D: 1 / (2 * (1 + nu) * (2 + nu)),
+    E: (1 - nu) / (4 * nu * (1 + nu) * (3 + nu)),
+}
+
+
+@result("F17-kelvin-voigt", uses=("F17-edge", "F17-load", "F17", "F17-springpot"))
+def _kelvin_voigt(proof: Proof) -> None:
+    r"""Any relaxation function: Kelvin-Voigt.
+
+    A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the steady state
+    of F1.
+    """
+    lam, half = springpot, sp.Rational(1, 2)
+    proof.define(A, 1 + lam, "spring and dashpot")
+    proof.define(P, half + lam, "their moments")
+    proof.define(e, P / A - half, "F17-edge")
+    proof.define(a, contact_length * P / A, "F17-edge")
+    proof.define(l, lam * contact_length / a, r"$l_{\mathrm{r}}/a$")
+    proof.define(q, half / P, r"$x_{\mathrm{TE}}/a$")
+    proof.equal(l, (1 - q**2) / (2 * q), "the same relation as in F1")
+    scaled = contact_length**3 / (a**3 / 2)
+    load = (sp.Rational(1, 12) + e * P) * scaled
+    proof.equal(
+        load, (1 + q) ** 2 * (q**2 - 2 * q + 3) / (6 * q), r"$W/(K \delta a)$ is that of F1"
+    )
+    work = (lam / 12 + e**2 * P) * contact_length**4 / (a**4 / 2)
+    friction = (1 - q) * (1 + q) ** 2 * (q**2 - q + 4) / (12 * q)
+    proof.equal(work, friction, r"$F R/(K \delta a^2)$ is that of F1")
+
+
+@result("F18-low", uses=("F17", "F17-load"))
+def _slow(proof: Proof) -> None:
+    r"""Any relaxation function: low velocity.
+
+    With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$.
+
+    Argued: To this order arms add up: $\mu \to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i
+    \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
+    """
+    _from_moments(proof)
+    far = {"variable": z, "point": sp.oo, "eps": 1 / z}
+    proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order, "
+                        r"and $e^{-\breve z}$ of none", **far)  # fmt: skip
+    proof.leading_order(E, 1 / (12 * z), reason="friction force of the arm", **far)
+
+
+@result("F18-high", uses=("F17", "F17-load"))
+def _fast(proof: Proof) -> None:
+    r"""Any relaxation function: high velocity.
+
+    With $\breve c \to 2 a$ this is $\mu \to \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$, as $G(0) = K (1
+    + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; to this order arms add up. The half length is that
+    of the stiffness $G(0)$. So friction has a maximum even at a fixed depth, and Eqs. (45) and (46) hold only
+    in a window, in which most of the arms have relaxed and the fastest have not.
+    """
+    _from_moments(proof)
+    near = {"variable": z, "point": 0, "eps": z}
+    proof.leading_order(B, z / 12, reason=r"so $\breve \eta^2$ is of second order", **near)
+    proof.leading_order(E, z / 120, reason="friction force of the arm", **near)
+    proof.leading_order(D, sp.Rational(1, 12), reason="load of the arm, that of a spring", **near)
+    stiff = springpot
+    limit = stiff * z / (10 * (1 + stiff))
+    proof.equal(stiff * z / 120 / ((1 + stiff) / 12), limit, r"$\mu R/\breve c$ with the spring")
+    proof.done(E, z / 120)

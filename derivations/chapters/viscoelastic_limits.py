@@ -1,0 +1,360 @@
+r"""Distance of a foundation from its limits: proved bounds for V -> 0 and V -> oo, and the springpot (F18).
+
+A bound uses two numbers of the relaxation function: for low velocity its integral C = int (G - K) dt and
+the mean time int t (G - K) dt/C; for high velocity -G'(0)/G(0) and G''(0)/G'(0).
+"""
+
+import sympy as sp
+
+from ..engine.algebra import antiderivative
+from ..engine.chapter import Chapter
+from ..engine.nomenclature import function, letter, symbol
+from ..engine.step import Proof
+from .model import K
+from .relaxation import fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
+from .steady import l, q
+from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
+from .theorems import UNIT as RATIOS
+from .viscoelastic import (
+    MOMENTS,
+    SECTION,
+    SPRINGPOT,
+    UNIT,
+    A,
+    D,
+    E,
+    P,
+    Q,
+    excess_share,
+    half_share,
+    spring_share,
+    springpot,
+    w,
+)
+
+spare_3 = symbol("omega_v3", "the same of a third", latex=r"\breve \omega_3", nonnegative=True)
+delay = symbol(
+    "epsilon_v",
+    "mean relaxation length over the length of the contact",
+    latex=r"\breve \varepsilon",
+)
+rates = [
+    symbol("r_1", "rate of an arm", "1/s", source=""),
+    symbol("r_2", "rate of another arm", "1/s", source=""),
+]
+letter(r"\bar t", r"mean relaxation time, $\int t (G - K)\,dt/C$", "s")
+letter(r"\mu_0", "friction coefficient on the Kelvin-Voigt foundation with the same $C$")
+spring_number = symbol("kappa_v", r"$K \breve c/(C V)$", latex=r"\breve \kappa")
+lack_mean = symbol(
+    "alpha_vA",
+    r"difference of a dashpot's $\breve A$ and this one",
+    latex=r"\breve \alpha_A",
+    nonnegative=True,
+)
+lack_ahead = symbol(
+    "alpha_vP", r"the same for $\breve P$", latex=r"\breve \alpha_P", nonnegative=True
+)
+letter(r"\breve \alpha_D", r"difference of $\breve D$ and that of a dashpot")
+lack_twist = symbol(
+    "alpha_vE",
+    r"difference of a dashpot's $\breve E$ and this one",
+    latex=r"\breve \alpha_E",
+    nonnegative=True,
+)
+steepness = symbol("chi_v", r"$C/(K \bar t)$, or $1/\breve \nu - 1$", latex=r"\breve \chi")
+letter(r"\breve \gamma", r"$-\breve c\, G'(0)/(V G(0))$")
+haste = symbol("omega_v", r"$-\breve c\, G''(0)/(V G'(0))$", latex=r"\breve \omega")
+load_number = symbol(
+    "Lambda_v",
+    r"load on spring and springpot, in units of $K \breve c^3/R$",
+    latex=r"\breve \Lambda",
+)
+friction_number = symbol("m_v", r"$\mu R/\breve c$", latex=r"\breve m")
+slowing = function("C_v", "how fast the fall slows", "N/m³", printed=r"\breve C", nonnegative=True)
+weight_at = function("k_v", "any weight", printed=r"\breve k", nonnegative=True)
+
+kap, eps, nu = spring_number, delay, spring_share
+half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
+SMALL = sp.Rational(1, 20)
+"""Largest ratio of the mean relaxation length to the contact length."""
+VOIGT = 7
+"""Relative error of Kelvin-Voigt, over that number."""
+HASTE = sp.Rational(1, 5)
+GLASSY = 2
+"""The same for the glassy limit, over the length of the contact by that of the fastest arms."""
+
+result = Chapter(SECTION)
+
+
+@result("F18-lacks", uses=("F17-parts",))
+def _lacks(proof: Proof) -> None:
+    r"""Low velocity: moments near those of a dashpot.
+
+    Let $\breve \zeta = C V/(K \breve c)$, and $\breve \varepsilon = V \bar t/\breve c$ with the mean
+    relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. Without
+    the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and $\breve E$ are $1
+    - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - \breve \alpha_E$; for a
+    dashpot all four differences are 0. They are integrals of $\breve k = (G - K)/(K \breve \zeta) \ge 0$ over
+    all $\breve w > 0$, with weights that are 1, 1, 0 and $\frac{1}{12}$ beyond the contact, $\breve w = 1$;
+    here to any distance $\breve \omega_1$ beyond it.
+    """
+    ahead, bulge, twist = (MOMENTS[name][0] for name in (P, D, E))
+    felt, beyond = weight_at(w), (w, 1, 1 + spare_1)
+    for near, far, what in (
+        (w, 0, r"$\breve \alpha_P - \breve \alpha_A$"),
+        (w - (1 - ahead), w - 1, r"$\breve \varepsilon - \breve \alpha_P$"),
+        (w / 2 - bulge, w / 2, r"$\breve \varepsilon/2 - \breve \alpha_D$"),
+        (twelfth - twist, twelfth, r"$\breve \alpha_E$"),
+        (w / 4 - (twelfth - twist), w / 4 - twelfth, r"$\breve \varepsilon/4 - \breve \alpha_E$"),
+    ):
+        whole = sp.Integral(near * felt, UNIT) if near != 0 else 0
+        whole += sp.Integral(far * felt, beyond) if far != 0 else 0
+        proof.holds(whole, ">=", 0, what)
+
+
+@result("F18-voigt", uses=("F18-lacks", "F17-load", "F17", "F1"))
+def _voigt(proof: Proof) -> None:
+    r"""Low velocity: distance from Kelvin-Voigt.
+
+    Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, on
+    the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve
+    \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The
+    steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at
+    one $\breve c$. There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times that of Kelvin-Voigt,
+    the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$
+    times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve
+    \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times.
+
+    Argued: Then the contact on Kelvin-Voigt changes to the one on its own support. At a given velocity $W
+    + k_s \delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so that the factor
+    of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on Kelvin-Voigt
+    (error-L1) this bounds that of Eq. (42) on every foundation.
+    """
+    for small, bound, spare in (
+        (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
+    ):  # fmt: skip
+        proof.define(small, bound / (1 + spare), "F18-lacks: at most the numerator")
+    mean, ahead = kap + 1 - lack_mean, kap / 2 + 1 - lack_ahead
+    slant = half - lack_ahead + lack_mean / 2
+    plain_mean, plain_ahead = kap + 1, kap / 2 + 1
+    for low, value, high, what in (
+        ((1 - eps) * plain_ahead, ahead, plain_ahead, r"$\breve P$"),
+        ((1 - eps) * plain_mean, mean, plain_mean, r"$\breve A$"),
+        ((half - eps), slant, half, r"$\breve B$"),
+        ((1 - 3 * eps) * twelfth, twelfth - lack_twist, twelfth, r"$\breve E$"),
+    ):  # fmt: skip
+        proof.holds(value, ">=", low, f"{what}, with that of Kelvin-Voigt on the right")
+        proof.holds(high, ">=", value, "and above")
+    proof.holds(
+        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most that on Kelvin-Voigt"
+    )
+    product = plain_ahead / (2 * plain_mean)  # of the excess and the moment P on Kelvin-Voigt
+    load, work = kap / 12 + product, twelfth + product / (2 * plain_mean)
+    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo), "load of Kelvin-Voigt")
+    proof.holds((1 + 9 * eps / 8) * load, ">=", kap / 12 + eps / 2 + product,
+                r"the load, at most: $\breve \alpha_D \le \breve \varepsilon/2$")  # fmt: skip
+    proof.where(eps < half)
+    less = (1 - eps) * (1 - 2 * eps)
+    proof.holds(kap / 12 + less * product, ">=", less * load, "and at least")
+    proof.holds(
+        work / ((1 - eps) * less * load), ">=",
+        (twelfth + product / (2 * plain_mean * (1 - eps))) / (kap / 12 + less * product),
+        r"$\mu$ at the same $\breve c$, at most",
+    )  # fmt: skip
+    for slope, relation, what in (
+        (FRICTION_COEFFICIENT, "<", r"$\mu_0 R/a$ grows with $l$"),
+        (FRICTION_COEFFICIENT / NUMBER, ">", "but less than in proportion"),
+        (LOAD / NUMBER, ">", r"and $W$ grows faster than $a^2$ at a given velocity"),
+    ):
+        proof.sign(sp.Derivative(slope, q), relation, 0, RATIOS, what)
+    unit = (eps, 0, SMALL)
+    lowest = (1 - 2 * eps) ** 2 * (1 - eps)
+    proof.sign(
+        lowest,
+        ">",
+        1 - 5 * eps,
+        unit,
+        r"on the left, over Kelvin-Voigt, the least $\breve \eta^2 \breve P$; $\breve E$ is closer",
+    )
+    proof.sign((1 - 5 * eps) ** 2 - (1 - VOIGT * eps) ** 2 * (1 + 9 * eps / 8) ** 3, ">", 0, unit,
+               r"$\mu/\mu_0 \ge (1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)^{3/2}$")  # fmt: skip
+    upper = (1 - eps) ** 5 * (1 - 2 * eps) ** 3 * (1 + VOIGT * eps) ** 2
+    proof.sign(upper, ">", 1, unit,
+               r"and at most $1/\sqrt{(1 - \breve \varepsilon)^5 (1 - 2 \breve \varepsilon)^3}$")  # fmt: skip
+
+
+@result("F18-window", uses=("F18-voigt", "F1"))
+def _window(proof: Proof) -> None:
+    r"""The window of the asymptotes for high velocity.
+
+    With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve
+    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. The last step is with $q$ for $l$: the
+    window is best at $l = \sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens
+    slowly: for an error of 10 % by this bound an arm must be 1900 times as stiff as the spring.
+
+    Argued: So the relative error of Eq. (45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$
+    upwards, and $7 l/\breve \chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$.
+    """
+    proof.recall("scaling", reason=RATIO)
+    over = sp.Rational(2, 3) / FRICTION_COEFFICIENT
+    proof.sign(over, ">", 1, RATIOS, "Eq. (45) over Kelvin-Voigt")
+    proof.sign(
+        2 / (3 * l) - (over - 1), ">", 0, RATIOS, r"its error is below $2/(3 l)$ at every velocity"
+    )
+    best = sp.sqrt(2 * steepness / 21)
+    sum_of = 2 / (3 * q) + VOIGT * q / steepness
+    proof.equal(sum_of, VOIGT / steepness * (q - best) ** 2 / q + 2 * VOIGT * best / steepness,
+                "both errors together, to first order")  # fmt: skip
+
+
+@result("F18-window-weight", uses=("F18-voigt", "F1"))
+def _window_weight(proof: Proof) -> None:
+    """The window under a dead weight.
+
+    Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt; $a$ is that of the indenter that is lifted, and
+    $l$ grows faster for it.
+    """
+    proof.recall("scaling", reason=RATIO)
+    square = 4 * LOAD / (9 * l * FRICTION_COEFFICIENT**2)
+    proof.sign(square, ">", 1, RATIOS, r"$(L_2/\mu)^2$, as $\alpha^2 = 8/9$ and $a^2 = 2 R \delta$")
+    proof.sign(
+        (1 + 1 / l) ** 2 - square,
+        ">",
+        0,
+        (q, 0, sp.Rational(2, 5)),
+        r"$l > \frac{21}{20}$: its error is below $1/l$",
+    )
+
+
+@result("F18-glass", uses=("F17-sign",))
+def _glass(proof: Proof) -> None:
+    r"""High velocity: moments near those of a spring.
+
+    In units of $G(0)$, with $\breve \gamma = -\breve c\, G'(0)/(V G(0))$ and $\breve \omega = -\breve c\,
+    G''(0)/(V G'(0))$, that is $\breve c/V$ times $\sum K_i \tau_i^{-2}/\sum K_i \tau_i^{-1}$. As $G$ falls
+    and is convex, and so is $-G'$ (a Prony series), $1 - \breve \gamma \breve w \le \breve G \le 1$ and
+    $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$. The weights are those of
+    F17-sign and F17-moments.
+    """
+    part, fall, slow = other_trailing, fading, slowing
+    proof.define(memory(part).diff(part), -fall(part), r"$G$ falls, at the rate $\breve H$")
+    proof.define(fall(part).diff(part), -slow(part), r"which slows, at the rate $\breve C$")
+    over = (part, 0, w)
+    rest = sp.Integral((w - part) * slow(part), over)
+    proof.holds(rest, ">=", 0, r"$G$ is convex")
+    proof.integral(rest, rest.function, over, memory(part) - (w - part) * fall(part),
+                   r"so $\breve G \ge \breve G(0) - \breve w \breve H(0)$",
+                   value=memory(w) - memory(0) + w * fall(0))  # fmt: skip
+    (r_1, r_2), glass = rates, K + spring_1 + spring_2
+    first, second = spring_1 * r_1 + spring_2 * r_2, spring_1 * r_1**2 + spring_2 * r_2**2
+    form = K * second + spring_1 * spring_2 * (r_1 - r_2) ** 2
+    proof.equal(glass * second - first**2, form, "of Cauchy and Schwarz, with two arms")
+    proof.holds(form, ">", 0, r"$\breve \omega > \breve \gamma$")
+    bulge = w * (1 - w) ** 2 * (2 + w) / 24
+    for integrand, value, what in (
+        (bulge, sp.Rational(1, 120), r"$\breve E$ is at most $\breve \gamma$ times this"),
+        (w * bulge, sp.Rational(1, 288), r"and less by at most $\breve \gamma \breve \omega$ times this"),
+        (w * (1 - w) / 2, twelfth, r"$\breve B$ is at most $\breve \gamma$ times this"),
+        (w, half, r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this"),
+        (w * MOMENTS[D][0], sp.Rational(1, 24), r"and $\breve D$ by at most $\breve \gamma$ times this"),
+    ):  # fmt: skip
+        whole = sp.Integral(integrand, UNIT)
+        proof.integral(whole, integrand, UNIT, antiderivative(integrand, w), what, value=value)
+
+
+@result("F18-glassy", uses=("F18-glass", "F18-high"))
+def _glassy(proof: Proof) -> None:
+    r"""High velocity: distance from the glassy limit.
+
+    The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length $a$
+    on a spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| \le 2
+    \breve \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are.
+
+    Argued: At one $\breve c$ the load is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve
+    \omega}{2})$ times that of the spring of half length $\breve c/2$, and so is, on any support, $(2
+    a/\breve c)^2$ of the spring that carries what is asked for, as $W + k_s \delta$ grows at least as
+    $a^2$.
+    """
+    unit, o = (haste, 0, HASTE), haste
+    part = 1 - o / 2
+    share = sp.Rational(5, 12)
+    lower, upper = (1 - share * o) * part**2, 1 + share * o / part**2
+    longest = (1 + (o / 6) / part) * part
+    proof.where(o < HASTE, "fast enough")
+    proof.equal(120 * twelfth**2 / 2, share, r"$\breve \eta^2 \breve P$ over $\breve E$, at most",
+                left=r"120 \left(\frac{1}{12}\right)^2 \frac{1}{2}")  # fmt: skip
+    proof.equal(longest, 1 - o / 3, r"greatest $2 \breve a$, times $1 - \breve \omega/2$")
+    proof.sign(
+        part - (1 - o / 3) ** 2, ">", 0, unit, "so that its square is bounded as the load is"
+    )
+    proof.sign(lower, ">", 1 - GLASSY * o, unit, r"$\mu$ over its limit is at least this")
+    proof.sign((1 + GLASSY * o) * part**2 - upper, ">", 0, unit,
+               r"and at most the last terms of this over $(1 - \breve \omega/2)^2$")  # fmt: skip
+
+
+def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Name load, friction coefficient and half length, over those of the units, of spring and springpot.
+
+    Each is defined in one fraction and shown by its parts: the display is compared with the definition.
+    """
+    nu, t = proof._resolve(spring_share), springpot
+    ahead, behind, bulge, twist = (SPRINGPOT[name].subs(spring_share, nu) for name in (P, Q, D, E))
+    ahead, mean, bulge = half + t * ahead, 1 + t * (ahead + behind), twelfth + t * bulge
+    eta = ahead / mean - half
+    load = sp.factor(bulge + eta * ahead)
+    work = sp.factor(t * twist + eta**2 * ahead)
+    for name, part in ((P, ahead), (A, mean), (D, bulge), (E, t * twist), (excess_share, eta)):
+        proof.define(name, sp.factor(part), "spring and springpot")
+    names = load_number, friction_number, half_share
+    proof.define(load_number, load, "F17-load", right=r"\breve D + \breve \eta \breve P")
+    proof.define(friction_number, sp.factor(work / load), "F17",
+                 right=r"\frac{\breve E + \breve \eta^2 \breve P}{\breve \Lambda}")  # fmt: skip
+    proof.define(
+        half_share, sp.factor(ahead / mean), "F17-edge", right=r"\frac{\breve P}{\breve A}"
+    )
+    return names
+
+
+@result("F18-springpot", uses=("F17-springpot", "F17-load", "F17", "F17-growth"))
+def _springpot(proof: Proof) -> None:
+    r"""Fractional Kelvin-Voigt: both limits.
+
+    With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for
+    the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3
+    - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha
+    (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)}
+    (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$
+    falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the
+    velocity (F17-growth).
+
+    Argued: At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
+    $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The
+    limit for low velocity over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$,
+    and $\mu$ over that for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 +
+    \breve \nu)$. Both are positive at both ends of that mean, by these inequalities, so on every support:
+    each limit is within a tolerance on a half-line of velocities.
+    """
+    proof.define(nu, 1 / (1 + steepness), "between 0 and 1")
+    load, friction, share = _state(proof)
+    ratio, t = friction / share, springpot
+    rise, heavier, longer = (t * sp.Derivative(form, t) / form for form in (friction, load, share))
+    for form, what in (
+        (heavier, "the load grows"),
+        (longer, r"the half length grows, at a given $\breve c$"),
+        (1 - 3 * longer, "but slowly"),
+        (1 - rise, r"$\breve m$ grows less than in proportion"),
+        (rise - longer, r"but more than $\breve a$: at a fixed depth $\mu$ grows"),
+        ((2 + nu) * rise + 1 - heavier, r"under a dead weight $\mu$ falls less than its limit"),
+    ):  # fmt: skip
+        proof.holds(form, ">", 0, what)
+    slow, fast = (
+        {"variable": t, "point": 0, "eps": t},
+        {"variable": t, "point": sp.oo, "eps": 1 / t},
+    )
+    low = 6 * (1 - nu) * t / (nu * (1 + nu) * (3 + nu))
+    heavy = t / (nu * (1 + nu) ** 2 * (2 + nu))
+    high = (1 - nu) * (2 + nu) / (3 + nu)
+    proof.leading_order(load, twelfth, reason="load at low velocity, of the spring alone", **slow)
+    proof.leading_order(ratio, low, reason=r"$\mu R/a$ at low velocity", **slow)
+    proof.leading_order(load, heavy, reason="load at high velocity, of the springpot", **fast)
+    proof.leading_order(ratio, high, reason=r"$\mu R/a$ at high velocity", **fast)

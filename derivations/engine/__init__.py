@@ -1,0 +1,1 @@
+"""The engine: a step, what checks it, and what a record keeps of it."""

@@ -1,0 +1,932 @@
+"""The book of a proof: its definitions, recalled and established relations, and its result."""
+
+import re
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import lru_cache, wraps
+from inspect import signature
+from typing import Any, NamedTuple, ParamSpec, TypedDict, TypeVar, Unpack, cast
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.core.relational import Relational
+from sympy.printing.latex import LatexPrinter
+
+from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
+from .conditions import (
+    Conditions,
+    Interval,
+    demands,
+    open_factors,
+    proves_nonnegative,
+    proves_nonzero,
+    proves_positive,
+    proves_real,
+)
+from .display import Meaning, UnreadableError, names_in, read_chain
+from .letters import letters, printed, told
+from .nomenclature import CONSTANTS, TEX
+from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
+from .record import ARGUED, Claim, Derivation, Step, Table
+from .rules import HiddenError, is_name, resolve
+from .witness import has_witness
+
+_P = ParamSpec("_P")
+_Value = TypeVar("_Value")
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A derivation, and the equalities that later proofs may recall from it."""
+
+    derivation: Derivation
+    exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+    result: tuple[sp.Expr, sp.Expr]
+
+
+_finished: dict[str, Finished] = {}
+"""The finished proofs by label, for `Book.recall`."""
+
+
+def finished(labels: Iterable[str]) -> dict[str, Finished]:
+    """Return finished proofs by their labels."""
+    return {label: _finished[label] for label in labels}
+
+
+def restore(proofs: Mapping[str, Finished]) -> None:
+    """Let results be recalled that were proved before, from the same sources: see `store`."""
+    _finished.update(proofs)
+
+
+_CONSTANTS = {r"\pi", "e", r"\infty"}
+"""What no notation may give another meaning."""
+
+
+def forget(prefix: str) -> None:
+    """Forget the results whose labels begin so: those of another document, which names its own alike."""
+    for label in [each for each in _finished if each.startswith(prefix)]:
+        del _finished[label]
+
+
+class StepError(ValueError):
+    """A step that is wrong, or that the engine cannot prove."""
+
+
+class Said(NamedTuple):
+    """A claim for a message: written out if the message is."""
+
+    lhs: sp.Expr
+    relation: str
+    rhs: sp.Expr | int
+
+    def __str__(self) -> str:
+        return " ".join(map(str, self[:]))
+
+
+class Shown(TypedDict, total=False):
+    """LaTeX that replaces SymPy's own for a side of a step."""
+
+    left: str
+    right: str
+
+
+class _OverTimeError(BaseException):
+    """No `Exception`, so that nothing on the way swallows it."""
+
+
+SECONDS = 10
+"""Processor time after which a step is given up; the slowest of the chapters takes two."""
+
+
+@contextmanager
+def _limited() -> Iterator[None]:
+    """Interrupt what takes too long, where the system can: the main thread of Unix."""
+    main = threading.current_thread() is threading.main_thread()
+    if not (main and hasattr(signal, "SIGVTALRM")):
+        yield
+        return
+
+    def expire(*_: object) -> None:
+        raise _OverTimeError
+
+    before = signal.signal(signal.SIGVTALRM, expire)
+    signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
+    """Let a check store its input with the step that it records, and fail with a `StepError` alone."""
+    form = signature(check)
+
+    @wraps(check)
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> _Value:
+        given = form.bind(*args, **kwargs).arguments
+        book = cast("Book", given.pop("self"))
+        words = {"reason", "shown"}
+        arguments = {name: value for name, value in given.items() if name not in words}
+        name = check.__name__.strip("_")
+        book._asked, book._read = (name, arguments, dict(book._rules)), {}
+        try:
+            with _limited():
+                for argument in arguments.values():
+                    book._meant(argument, complex_too=name in _ALGEBRAIC)
+                return check(*args, **kwargs)
+        except StepError:
+            raise
+        except _OverTimeError:
+            raise StepError(
+                f"{book.label}: not decided within {SECONDS} s of processor time"
+            ) from None
+        except Exception as error:
+            raise StepError(
+                f"{book.label}: {name} cannot be decided: {type(error).__name__}: {error}"
+            ) from error
+
+    return run
+
+
+_SHORT = 8
+"""The operations of a condition that is printed as it is; of a longer one, which letter is positive is."""
+
+_BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
+"""What has a variable of its own."""
+
+_ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
+"""The checks that complex letters may enter."""
+
+
+class _Printer(LatexPrinter):
+    """SymPy's own, but for values at a place, whose brackets it leaves out."""
+
+    def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
+        inner = self._print(node.expr)
+        bracketed = any(part.is_Add for part in sp.Mul.make_args(node.expr))
+        bracketed = bracketed or node.expr.could_extract_minus_sign()
+        shown = rf"\left({inner}\right)" if bracketed else inner
+        pairs = zip(node.variables, node.point, strict=True)
+        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
+        return rf"\left. {shown} \right|_{{{places}}}"
+
+
+def tex(expr: sp.Expr | int) -> str:
+    r"""Print an expression in the notation of the paper.
+
+    >>> x, y = sp.symbols("x y")
+    >>> tex(sp.Subs(x + y, x, 0))
+    '\\left. \\left(x + y\\right) \\right|_{x = 0}'
+    """
+    return _printed(sp.sympify(expr))
+
+
+@lru_cache(maxsize=8192)
+def _printed(expr: sp.Expr) -> str:
+    return str(_Printer({"symbol_names": TEX, "fold_frac_powers": True}).doprint(expr))
+
+
+def tex_interval(over: Interval) -> str:
+    r"""Print the values of a variable for which a step holds.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
+    ['0 < x < 1', 'x > 0', 'x < 2', '-\\infty < x < \\infty']
+    """
+    variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
+    if low == -sp.oo and high == sp.oo:
+        return rf"-\infty < {variable} < \infty"
+    if high == sp.oo:
+        return f"{variable} > {tex(low)}"
+    if low == -sp.oo:
+        return f"{variable} < {tex(high)}"
+    return f"{tex(low)} < {variable} < {tex(high)}"
+
+
+def tex_within(over: Interval) -> str:
+    r"""Print that a variable lies in an open interval, in one formula without a chain.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> [tex_within((x, *ends)) for ends in ((0, 1), (0, sp.oo))]
+    ['x \\in (0, 1)', 'x \\in (0, \\infty)']
+    """
+    variable, low, high = (tex(sp.sympify(each)) for each in over)
+    return rf"{variable} \in ({low}, {high})"
+
+
+def tex_condition(gap: sp.Expr) -> str:
+    """Print that an expression is positive.
+
+    >>> x, y = sp.symbols("x y")
+    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1)]
+    ['x < 1', 'x > y', 'x y - 1 > 0']
+    """
+    for symbol in sorted(gap.free_symbols, key=str):
+        rest = sp.expand(gap - symbol), sp.expand(gap + symbol)
+        if not rest[1].has(symbol):
+            return f"{tex(symbol)} < {tex(rest[1])}"
+        if not rest[0].has(symbol) and rest[0] != 0:
+            return f"{tex(symbol)} > {tex(-rest[0])}"
+    return f"{tex(gap)} > 0"
+
+
+def evaluated(expr: sp.Expr) -> sp.Expr:
+    """Evaluate the integrals of polynomials, and the derivatives of what they give."""
+    found = expr.replace(
+        lambda node: (
+            isinstance(node, sp.Integral)
+            and node.function.doit(integrals=False).is_polynomial(*node.variables)
+        ),
+        lambda node: node.doit(),
+    )
+    return found.doit(integrals=False) if found != expr else found
+
+
+def tex_case(case: sp.Basic) -> str:
+    """Print a case: an equation, an inequality, or several at once."""
+    if isinstance(case, sp.And):
+        return ", ".join(map(tex_case, sp.ordered(case.args)))
+    return tex(case)
+
+
+def established(label: str, lhs: sp.Expr) -> sp.Expr:
+    """Return the last form of `lhs` that the derivation with this label has established exactly."""
+    forms = [right for left, right in _source(label).exact if left == lhs]
+    if not forms:
+        raise StepError(f"{label} does not establish {lhs}")
+    return forms[-1]
+
+
+def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Put in values, and carry out what does not need to be believed."""
+    return expr.subs(at).doit(integrals=False, sums=False)
+
+
+def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
+    if table is None:
+        return None
+    heads = tuple(told(head, new) for head in table.heads)
+    return Table(heads, tuple(tuple(told(cell, new) for cell in row) for row in table.rows))
+
+
+def _source(label: str) -> Finished:
+    if label not in _finished:
+        raise StepError(f"{label} has not been derived yet")
+    return _finished[label]
+
+
+class Book:
+    """Definitions, relations of other proofs, and the steps made so far; `step.Proof` checks them.
+
+    What is defined or recalled is a rule: later steps are checked with its left side replaced by
+    its right side, until no left side is left. Each fact keeps the premises that its check has used,
+    those of recalled facts among them, and the conditions under which it holds.
+    """
+
+    def __init__(
+        self,
+        label: str,
+        equation: int | None,
+        *,
+        section: str,
+        title: str,
+        text: str = "",
+        uses: tuple[str, ...] = (),
+        notation: Mapping[str, Meaning] | None = None,
+    ) -> None:
+        for each in uses:
+            if each == label:
+                raise StepError(f"{label} cannot rest on itself")
+            _source(each)
+        self.label, self.equation = label, equation
+        self._section, self._title, self._text = section, title, text
+        self._uses, self._declared = list(uses), uses
+        self.notation = dict(notation or {})
+        """Names that displays may use beside those of the symbols."""
+        self._rules: dict[sp.Expr, sp.Expr] = {}
+        self._origins: dict[sp.Expr, Fact] = {}
+        """For each rule, the fact that it comes from."""
+        self._conditions = Conditions()
+        self._domain: tuple[str, ...] = ()
+        self._used: set[sp.Expr] = set()
+        """The rules that the step in hand has used."""
+        self._needed: set[sp.Expr] = set()
+        """The rules that any step has used."""
+        self.finished: Derivation | None = None
+        """The record, once the proof has ended."""
+        self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
+        self._read: dict[str, sp.Expr] = {}
+        """The other forms that the display of the step in hand shows of its sides."""
+        self._steps: list[Step] = []
+        self._letters: dict[str, Any] = {}
+        """The symbols and functions by what is printed for them."""
+        self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+        self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+
+    @asked
+    def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
+        """Define the left side by the right side: a name, or a law of the model."""
+        self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
+        if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
+            raise StepError(f"{self.label}: {lhs} has a value already")
+        self._rule(lhs, rhs)
+        self._imply(sp.sympify(lhs))
+        fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
+        self._premise(lhs, rhs, fact)
+
+    @asked
+    def where(self, condition: Relational, reason: str = "") -> None:
+        """Restrict what follows to where an inequality holds: part of the domain of the result."""
+        if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
+            raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
+        raw = condition.gts - condition.lts
+        gap = self._resolve(raw)
+        if proves_positive(-gap, self._conditions) or gap.is_nonpositive:
+            raise StepError(f"{self.label}: {condition} contradicts what is given")
+        sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
+        latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
+        for form in (gap, raw):
+            self._demand(form, latex)
+        premises = merged(fact.premises for fact in self._origins.values())
+        if not has_witness(
+            tuple((each.lhs, each.rhs) for each in premises), self._conditions.positive
+        ):
+            raise StepError(
+                f"{self.label}: no point was found where {condition} and all else holds"
+            )
+        claim = self._claim(condition.lhs, condition.rhs)
+        sides = tex(condition.lhs), sign, tex(condition.rhs)
+        self._steps.append(Step(*sides, reason, "definition", claim=claim))
+
+    def recall(
+        self,
+        label: str,
+        *wanted: sp.Expr | tuple[sp.Expr, sp.Expr],
+        reason: str = "",
+        at: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> None:
+        """Use what the derivation with this label has established: its result, or what is `wanted` of it.
+
+        That is the last form of a left side, or a relation of both sides. Its premises and its domain come
+        with it. With `at` it is used at one place: variables on which no premise depends get these values.
+        """
+        for each in wanted or (_source(label).result,):
+            lhs, rhs = each if isinstance(each, tuple) else (each, established(label, each))
+            self._recall(label, lhs, rhs, reason, at=at)
+
+    @asked
+    def _recall(
+        self,
+        label: str,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        reason: str,
+        *,
+        at: Mapping[sp.Symbol, sp.Expr] | None,
+    ) -> None:
+        fact = _source(label).exact.get((sp.sympify(lhs), sp.sympify(rhs)))
+        if fact is None:
+            raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
+        step = fact.step
+        shown: Shown = {"left": step.left, "right": step.right}
+        if at:
+            lhs, rhs, fact = self._placed(fact, lhs, rhs, at)
+            shown = {}
+        self._rule(lhs, rhs)
+        if label not in self._uses:
+            self._uses.append(label)
+        self._carry(fact)
+        self._origins[lhs] = fact
+        self._consistent(lhs, rhs, label)
+        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
+
+    def done(
+        self, lhs: sp.Expr = None, rhs: sp.Expr | int = None, *, table: Table | None = None
+    ) -> Derivation:
+        """End the proof with a relation that one of its steps established: the last one, if none is given."""
+        if lhs is None and self._steps and (last := self._steps[-1].claim):
+            lhs, rhs = last.lhs, last.rhs
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        result = self._known.get(key)
+        if result is None:
+            raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
+        steps = self._stated()
+        new = letters(self.label, self._section)
+        cited = {step.source for step in steps} | set(self._declared)
+        found = Derivation(
+            label=self.label,
+            equation=self.equation,
+            section=self._section,
+            title=told(self._title, new),
+            text=told(self._text, new),
+            latex=printed(result.step.latex, new),
+            status=self._status(),
+            steps=tuple(self._lettered(step) for step in steps),
+            uses=tuple(label for label in self._uses if label in cited),
+            table=_table(table, new),
+            domain=tuple(printed(each, new) for each in result.domain),
+            premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
+        )
+        before = _finished.get(self.label)
+        if before is not None and before.derivation != found:
+            raise StepError(f"{self.label} names another result already")
+        _finished[self.label] = Finished(found, dict(self._exact), key)
+        self.finished = found
+        return found
+
+    def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
+        check, arguments, rules = self._asked
+        known = self._conditions
+        if check == "equal" and lhs == rhs:  # what the page shows, as it was read back
+            lhs, rhs = self._read.get("left", lhs), self._read.get("right", rhs)
+        sides = sp.sympify(lhs), sp.sympify(rhs)
+        return Claim(check, *sides, arguments, rules, known.positive, known.intervals)
+
+    def _stated(self) -> tuple[Step, ...]:
+        """Return the steps without the premises that no check has used."""
+        needed, before = set(self._needed), -1
+        while len(needed) > before:
+            before = len(needed)
+            forms = [rhs for lhs, rhs in self._rules.items() if lhs in needed]
+            needed |= {lhs for lhs in self._rules if any(form.has(lhs) for form in forms)}
+        checked = [
+            sp.sympify(argument)
+            for step in self._steps
+            if step.claim and not step.source
+            for argument in step.claim.arguments.values()
+            if isinstance(argument, sp.Basic)
+        ]
+
+        def used(claim: Claim) -> bool:
+            return claim.lhs in needed or any(form.has(claim.rhs) for form in checked)
+
+        return tuple(
+            step
+            for step in self._steps
+            if not step.source or step.claim is None or used(step.claim)
+        )
+
+    def _lettered(self, step: Step) -> Step:
+        """Return the step in the letters that this document prints; a recalled one in its source's."""
+        own = letters(self.label, self._section)
+        new = own
+        if step.source:
+            origin = _finished[step.source].derivation
+            new = letters(origin.label, origin.section)
+        return replace(
+            step,
+            left=printed(step.left, new),
+            right=printed(step.right, new),
+            domain=printed(step.domain, new),
+            note=told(step.note, new),
+            reason=told(step.reason, own),
+        )
+
+    def pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> Derivation:
+        """End the proof with two established relations, side by side."""
+        facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
+        if None in facts:
+            raise StepError(f"{self.label}: no step established {one} and {other}")
+        left, right = (
+            r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
+            for side in ("left", "right")
+        )
+        status = weakest(fact.step.status for fact in facts if fact)
+        step = Step(left, "=", right, reason, status)
+        premises = merged(fact.premises for fact in facts if fact)
+        domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
+        key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        self._steps.append(step)
+        self._known[key] = Fact(step, premises, self._conditions, domain)
+        return self.done(*key)
+
+    def _status(self) -> str:
+        """Return the weakest status of the steps and of what they rest on; argued, if words prove the title.
+
+        Words count here alone: what others use of this proof are its lines.
+        """
+        used = (_finished[label].derivation.status for label in self._uses)
+        weak = [status for status in used if status == "sampled"]
+        words = ["argued"] if ARGUED in self._text else []
+        return weakest([*(step.status for step in self._steps), *weak, *words])
+
+    def _meant(self, argument: object, *, complex_too: bool = False) -> None:
+        """Refuse what is no exact real value, and letters bound to places where they cannot be."""
+        if isinstance(argument, tuple | list):
+            for part in argument:
+                self._meant(part, complex_too=complex_too)
+        if not isinstance(argument, sp.Basic) or not argument.args:
+            return
+        for node in sp.preorder_traversal(argument):
+            if isinstance(node, sp.Float | sp.Limit | sp.Order | sp.AccumBounds) or node in (
+                sp.zoo,
+                sp.nan,
+            ):
+                raise StepError(f"{self.label}: {node} is no exact value")
+            if (
+                isinstance(node, sp.Symbol)
+                and node.is_extended_real is not True
+                and not complex_too
+            ):
+                raise StepError(f"{self.label}: {node} is not known to be real")
+            if isinstance(node, sp.Integral | sp.Sum | sp.Product):
+                places = [(limit[0], end) for limit in node.limits for end in limit[1:]]
+            elif isinstance(node, sp.Subs):
+                places = list(zip(node.variables, node.point, strict=True))
+            else:
+                continue
+            for variable, place in places:
+                if gaps := self._open_admissions(variable, place, closed=True):
+                    raise StepError(f"{self.label}: in {node}, {gaps[0]} > 0 is not known")
+
+    def _open_admissions(
+        self, symbol: sp.Expr, value: sp.Expr, *, closed: bool = False
+    ) -> list[sp.Expr]:
+        """Return what must be positive for a symbol to take a value, as far as it is not proved.
+
+        An interval may end, and a value be taken, at the end of what the symbol can be: `closed`.
+        """
+        value = sp.sympify(value)
+        found, known = self._resolve(value), self._conditions
+        if closed and found in (sp.oo, -sp.oo):
+            found = value = sp.sign(found)
+        real = symbol.is_extended_real is not True or any(
+            proves_real(form, known) for form in (value, found)
+        )
+        if not real or (symbol.is_integer and not found.is_integer):
+            raise StepError(f"{self.label}: {symbol} cannot be {value}")
+        if not (symbol.is_nonnegative or symbol.is_nonpositive):
+            if symbol.is_nonzero and not proves_nonzero(found, known):
+                raise StepError(f"{self.label}: {symbol} is not zero, but {value} may be")
+            return []
+        forms = [form if symbol.is_nonnegative else -form for form in (value, found)]
+        proves = proves_positive if symbol.is_nonzero and not closed else proves_nonnegative
+        return [] if any(proves(form, known) for form in forms) else [forms[0]]
+
+    def _rule(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
+        lhs, rhs = sp.sympify(lhs), sp.sympify(rhs)
+        if lhs in self._rules:
+            raise StepError(f"{self.label}: {lhs} is defined twice")
+        value = self._resolve(rhs)
+        if value.has(lhs):
+            raise StepError(f"{self.label}: the definition {lhs} = {rhs} is circular")
+        if isinstance(lhs, AppliedUndef):
+            self._smooth(lhs, value)
+        was = self._resolve(lhs)
+        if violates(was, value):
+            raise StepError(f"{self.label}: {lhs} = {rhs} contradicts the assumptions on {lhs}")
+        self._rules[lhs] = rhs
+
+    def _smooth(self, call: AppliedUndef, value: sp.Expr) -> None:
+        """Refuse a value with a singularity for a function of which something was proved as if smooth."""
+        facts = [*self._known.values(), *self._origins.values()]
+        claims = [fact.step.claim for fact in facts if fact.step.claim]
+        asked = (side for claim in claims for side in (claim.lhs, claim.rhs))
+        if not any(side.has(call.func) for side in asked):
+            return
+        for letter in (arg for arg in call.args if arg.is_Symbol and value.has(arg)):
+            over = (
+                letter,
+                0 if letter.is_nonnegative else -sp.oo,
+                0 if letter.is_nonpositive else sp.oo,
+            )
+            if not is_continuous(value, over, self._conditions, smooth=True):
+                raise StepError(
+                    f"{self.label}: {call} = {value} may be singular, though it was taken as smooth"
+                )
+
+    @contextmanager
+    def _case(self, case: Relational | sp.logic.boolalg.BooleanTrue) -> Iterator[None]:
+        """Assume an equality for a name, or a strict inequality, within a context."""
+        kept = self._rules.copy(), self._origins.copy(), self._conditions
+        if isinstance(case, sp.Eq):
+            premise = Premise(case.lhs, case.rhs, tex(case))
+            self._rule(case.lhs, case.rhs)
+            self._origins[case.lhs] = Fact(Step("", "", "", "", "definition"), (premise,))
+            self._consistent(case.lhs, case.rhs, "")
+        elif isinstance(case, sp.StrictGreaterThan | sp.StrictLessThan):
+            gap = case.gts - case.lts
+            positive = (*self._conditions.positive, self._resolve(gap), gap)
+            self._conditions = Conditions(self._conditions.intervals, positive)
+        elif case != sp.true:
+            raise StepError(f"{self.label}: {case} is no equality and no strict inequality")
+        try:
+            yield
+        finally:
+            self._rules, self._origins, self._conditions = kept
+            self._used &= self._rules.keys()
+
+    def _imply(self, name: sp.Expr) -> None:
+        """Take over, as part of the domain, what the assumptions on a name say about its value."""
+        if not (name.is_Symbol or isinstance(name, AppliedUndef)):
+            return
+        value = self._resolve(self._rules[name])
+        if name.is_integer and not value.is_integer:
+            raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
+        raw = demands(self._rules[name])[1]
+        settled = {
+            self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)
+        }
+        roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
+        gaps = [
+            gap for base in roots if not proves_nonnegative(base, self._conditions)
+            for gap in open_factors(base, self._conditions) or [base]
+        ]  # fmt: skip
+        if name.is_nonnegative or name.is_nonpositive:
+            forms = [
+                each if name.is_nonnegative else -each
+                for each in (sp.sympify(self._rules[name]), value)
+            ]
+            proves = proves_positive if name.is_nonzero else proves_nonnegative
+            if not any(proves(form, self._conditions) for form in forms):
+                gaps += open_factors(forms[1], self._conditions)
+        for gap in gaps:
+            short = gap.count_ops() <= _SHORT or not name.is_Symbol
+            self._demand(gap, tex_condition(gap) if short else f"{tex(name)} > 0")
+
+    def _demand(self, gap: sp.Expr, latex: str) -> None:
+        """Let an expression be positive from here on."""
+        known = self._conditions
+        if gap not in known.positive:
+            self._conditions = Conditions(known.intervals, (*known.positive, gap))
+            self._domain = tuple(dict.fromkeys((*self._domain, latex)))
+
+    def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
+        """Keep a definition as a premise of every step that will use it."""
+        premise = Premise(sp.sympify(lhs), sp.sympify(rhs), fact.step.latex)
+        self._origins[lhs] = Fact(fact.step, (premise,), fact.conditions, fact.domain)
+        self._exact[premise.lhs, premise.rhs] = self._origins[lhs]
+        self._consistent(lhs, rhs, "")
+
+    def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
+        """Refuse premises that cannot hold together."""
+        premises = merged(fact.premises for fact in self._origins.values())
+        found = contradiction(premises)
+        if not found and not self._possible_with(premises, lhs):
+            found = "no point was found at which all premises and conditions hold"
+        if found:
+            origin = f" of {label}" if label else ""
+            raise StepError(f"{self.label}: with {lhs} = {rhs}{origin}: {found}")
+
+    def _possible_with(self, premises: tuple[Premise, ...], new: sp.Expr) -> bool:
+        """Tell whether premises and conditions have a witness; a new name alone needs none."""
+        others = [side for each in premises if each.lhs != new for side in (each.lhs, each.rhs)]
+        mine = [each for each in premises if each.lhs == new]
+        others += [*self._conditions.positive, *(each.rhs for each in mine)]
+        alone = len(self._origins[new].premises) == 1
+        fresh = (
+            new.is_Symbol and alone and len(mine) == 1 and not any(each.has(new) for each in others)
+        )
+        signed = new.is_nonnegative or new.is_nonpositive
+        value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
+        if fresh and not new.is_integer and (not signed or value.is_positive):
+            return True
+        pairs = tuple((each.lhs, each.rhs) for each in premises)
+        return has_witness(pairs, self._conditions.positive)
+
+    def _placed(
+        self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
+    ) -> tuple[sp.Expr, sp.Expr, Fact]:
+        """Return the fact at one place."""
+        for variable in at:
+            # A law of functions holds at every place; any other equation fixes what is in it.
+            laws = (each.lhs for each in fact.premises if not is_name(each.lhs))
+            fixed = [each for each in laws if not each.has(AppliedUndef)]
+            laid_down = {variable} & {lhs, *(each.lhs for each in fact.premises)}
+            if laid_down or any(each.has(variable) for each in fixed):
+                raise StepError(f"{self.label}: {variable} is not free in {lhs} = {rhs}")
+        lhs, rhs = (_put(sp.sympify(side), at) for side in (lhs, rhs))
+        premises = tuple(
+            Premise(one, other, f"{tex(one)} = {tex(other)}")
+            if (one, other) != (each.lhs, each.rhs) else each
+            for each in fact.premises
+            for one, other in [(_put(each.lhs, at), _put(each.rhs, at))]
+        )  # fmt: skip
+        intervals = fact.conditions.intervals
+        ends = [gap for name, low, high in intervals for gap in (name - low, high - name)]
+        gaps = [
+            gap for variable, value in at.items() for gap in self._open_admissions(variable, value)
+        ]
+        for gap in (*gaps, *(each.subs(at) for each in (*ends, *fact.conditions.positive))):
+            if gap != sp.oo and not proves_positive(gap, self._conditions):
+                self._demand(gap, tex_condition(gap))
+        return lhs, rhs, Fact(fact.step, premises, self._conditions, self._domain)
+
+    def _carry(self, fact: Fact) -> None:
+        """Take over the domain of a recalled fact."""
+        known = self._conditions
+        for over in fact.conditions.intervals:
+            if over not in known.intervals:
+                known = known.with_interval(over)
+        more = tuple(each for each in fact.conditions.positive if each not in known.positive)
+        self._conditions = Conditions(known.intervals, (*known.positive, *more))
+        self._domain = tuple(dict.fromkeys((*self._domain, *fact.domain)))
+
+    def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
+        """Replace all that was defined or recalled, and carry out the derivatives."""
+        rules, places = self._rules, dict[sp.Expr, tuple[sp.Expr, sp.Expr]]()
+        try:
+            found, used, derived = resolve(expr, rules, self._hidden())
+            while new := self._laws(found, rules):
+                places |= new
+                rules = {**rules, **{call: value for call, (_, value) in new.items()}}
+                found, used, derived = resolve(expr, rules, self._hidden())
+        except HiddenError as error:
+            raise StepError(f"{self.label}: {error}") from error
+        used = frozenset(places[each][0] if each in places else each for each in used)
+        for each in derived:
+            if not is_differentiable(each, self._conditions):
+                raise StepError(f"{self.label}: {each} is not known to exist everywhere")
+        self._used |= used
+        return found
+
+    def _laws(
+        self, expr: sp.Expr, rules: Mapping[sp.Expr, sp.Expr]
+    ) -> dict[sp.Expr, tuple[sp.Expr, sp.Expr]]:
+        """Return, for functions at other places than where their law was written, the law and the value.
+
+        A law is for all values of its letters: none of them has a value or a condition, and each can be
+        what stands at its place.
+        """
+        found = {}
+        laws = {
+            lhs.func: lhs for lhs, rhs in self._rules.items()
+            if isinstance(lhs, AppliedUndef) and is_general(lhs, rhs) and not rhs.has(*_BINDING)
+            and not any(self._is_bounded(letter) for letter in lhs.args)
+        }  # fmt: skip
+        bound = set().union(*(each.variables for each in expr.atoms(*_BINDING))) if laws else set()
+        for call in expr.atoms(AppliedUndef) if laws else ():
+            law = laws.get(call.func)
+            if law is None or call in rules or call.free_symbols & bound:
+                continue
+            places = dict(zip(law.args, call.args, strict=True))
+            if not any(self._open_admissions(*each) for each in places.items()):
+                found[call] = law, self._rules[law].subs(places, simultaneous=True)
+        return found
+
+    def _is_bounded(self, letter: sp.Symbol) -> bool:
+        """Tell whether a letter has a value or a condition here."""
+        conditions = (
+            *self._conditions.positive,
+            *(name for name, *_ in self._conditions.intervals),
+        )
+        premises = (side for fact in self._origins.values() for each in fact.premises
+                    if not isinstance(each.lhs, AppliedUndef) for side in (each.lhs, each.rhs))  # fmt: skip
+        return letter in self._rules or any(each.has(letter) for each in (*conditions, *premises))
+
+    def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
+        """Return on what names depend by the premises of recalled facts, where no rule says it."""
+        direct: dict[sp.Expr, set[sp.Expr]] = {}
+        for fact in self._origins.values():
+            for premise in fact.premises:
+                if premise.lhs not in self._rules and premise.lhs.is_Symbol:
+                    direct.setdefault(premise.lhs, set()).update(premise.rhs.free_symbols)
+                opaque = (AppliedUndef, sp.Derivative, sp.Integral)
+                if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):
+                    related = premise.lhs.free_symbols | premise.rhs.free_symbols
+                    for each in related - self._rules.keys():
+                        direct.setdefault(each, set()).update(related - {each})
+        for _ in direct:
+            for reach in direct.values():
+                reach.update(*(direct.get(name, ()) for name in tuple(reach)))
+        return {name: frozenset(reach) for name, reach in direct.items()}
+
+    def _unambiguous(self, *expressions: sp.Expr) -> None:
+        """Refuse two symbols or two functions of one proof that are printed alike."""
+        for expr in expressions:
+            for symbol in expr.atoms(sp.Symbol) - expr.atoms(sp.Dummy):
+                shape = re.sub(r"\\mathrm\{([^{}]*)\}", r"\1", tex(symbol))
+                if self._letters.setdefault(shape, symbol) != symbol:
+                    raise StepError(f"{self.label}: two letters are printed {tex(symbol)}")
+            for call in expr.atoms(AppliedUndef):
+                name = f"{call.func.__name__}()"
+                if self._letters.setdefault(name, call.func) != call.func:
+                    raise StepError(f"{self.label}: two functions are printed {name}")
+
+    def _means(self, known: Meaning, meaning: Meaning) -> bool:
+        """Tell whether a name of the notation is what the symbol or function of that name is here."""
+        if known == meaning or getattr(known, "func", None) == meaning:
+            return True
+        if isinstance(meaning, sp.Lambda):
+            given = known.args if isinstance(known, AppliedUndef) else meaning.variables
+            meaning = meaning(*given) if len(given) == len(meaning.variables) else sp.nan
+        if not isinstance(known, sp.Expr) or not isinstance(meaning, sp.Expr):
+            return False
+        return difference(self._resolve(known), self._resolve(meaning)) == 0
+
+    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
+        """Refuse LaTeX that does not say what was checked: it may only rearrange."""
+        used = set(self._used)
+        self._unambiguous(lhs, rhs, *known)
+        for side, expr in (("left", lhs), ("right", rhs)):
+            if side not in shown:
+                continue
+            latex = str(dict(shown)[side])
+            rules = [*self._rules, *self._rules.values()]
+            names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
+            for name, meaning in self.notation.items():
+                here = names.get(name, meaning) if name in latex else meaning
+                agrees = self._means(here, meaning)
+                agrees = agrees or (
+                    isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)
+                )
+                if name in _CONSTANTS or not agrees:
+                    raise StepError(
+                        f"{self.label}: the notation {name} = {meaning} has another meaning here"
+                    )
+            names |= {**CONSTANTS, **self.notation}
+            try:
+                links = read_chain(latex, names)
+            except UnreadableError as error:
+                raise StepError(f"{self.label}: {error}") from error
+            for link in links:
+                if link == expr:
+                    continue
+                self._read[side] = link
+                read, checked = map(evaluated, map(self._resolve, (link, expr)))
+                if difference(read, checked) != 0:
+                    raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
+        self._used = used
+
+    def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: "Said | str") -> None:
+        rest = difference(lhs, rhs)
+        if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
+            rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
+        if rest != 0 and not is_constant_zero(rest, self._conditions):
+            raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _signed(self, inner: sp.Expr) -> sp.Expr:
+        """Write an absolute value without its bars, where the conditions say the sign."""
+        for form in (inner, -inner):
+            if proves_nonnegative(form, self._conditions):
+                return form
+        return sp.Abs(inner)
+
+    def _record(
+        self,
+        lhs: sp.Expr,
+        relation: str,
+        rhs: sp.Expr,
+        reason: str,
+        status: str,
+        shown: Shown,
+        *,
+        exact: bool = True,
+        over: Interval | None = None,
+        premise: Premise | None = None,
+        cases: tuple[Relational, ...] = (),
+        trusted: bool = False,
+        bound: bool = False,
+        note: str = "",
+    ) -> Fact:
+        """Keep a step; an exact one is an equality that later proofs may use as a rule.
+
+        What it shows is read back and compared, unless the display has been checked before.
+        """
+        if not trusted:
+            self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
+        origins = [self._origins[name] for name in self._rules if name in self._used]
+        self._needed |= self._used
+        self._used = set()
+        extra = () if premise is None else (premise,)
+        premises = merged([*(fact.premises for fact in origins), extra])
+        worth = weakest([status, *(fact.step.status for fact in origins if status != "definition")])
+        conditions = self._conditions
+        if over is not None and not bound:
+            conditions = conditions.with_interval(over)
+        own = () if over is None else (tex_interval(over),)
+        if cases:
+            own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
+        domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
+        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, worth, "", ", ".join(own), note, claim)
+        fact = Fact(step, premises, conditions, domain)
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        self._steps.append(step)
+        self._known[key] = fact
+        if exact:
+            self._exact[key] = fact
+        return fact
+
+    def _write(
+        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, status: str, shown: Shown,
+        *, source: str, fact: Fact,
+    ) -> None:  # fmt: skip
+        """Keep a step of another proof."""
+        self._needed |= self._used
+        self._used = set()
+        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        self._steps.append(step)
+        placed = Fact(step, fact.premises, fact.conditions, fact.domain)
+        self._known[key] = self._exact[key] = placed
+        self._origins[lhs] = placed

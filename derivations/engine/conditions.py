@@ -1,0 +1,571 @@
+r"""Conditions under which a step holds: intervals and inequalities, and what follows from them.
+
+Everything here is conservative: a function returns True only for what is proved, and where it cannot
+prove anything it returns False.
+
+>>> x = sp.Symbol("x", real=True)
+>>> proves_positive(1 - x**2, Conditions(intervals=((x, 0, 1),)))
+True
+>>> proves_positive(1 - x**2)
+False
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import sympy as sp
+
+from .points import signs
+
+Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
+"""A variable with its lower and upper bound, as SymPy writes it; the ends do not belong to it."""
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The premises in addition to the assumptions on the symbols."""
+
+    intervals: tuple[Interval, ...] = ()
+    positive: tuple[sp.Expr, ...] = ()
+    """Expressions that are taken to be positive."""
+
+    def with_interval(self, over: Interval) -> "Conditions":
+        """Return these conditions, with one variable inside an interval as well."""
+        return Conditions((*self.intervals, over), self.positive)
+
+
+NONE = Conditions()
+
+
+def proves_positive(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is positive wherever the conditions hold."""
+    return _sign(sp.sympify(expr), known) == 1
+
+
+def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is never negative where the conditions hold."""
+    return _is_nonnegative(sp.sympify(expr), known)
+
+
+@lru_cache(maxsize=8192)
+def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
+    if -1 in signs(expr, known.intervals, known.positive):
+        return False
+    if expr.is_nonnegative or _sign(expr, known) == 1:
+        return True
+    if expr.is_Add or expr.is_Mul:
+        if all(proves_nonnegative(part, known) for part in expr.args):
+            return True
+    elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+        return _is_nonnegative_integral(expr, known)
+    if _by_ends(expr, known, proves_nonnegative) or _is_definite(expr, known, strict=False):
+        return True
+    return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
+
+
+def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
+    """Decide by the integrand, whose variable has the conditions of its range and no others."""
+    variable, low, high = expr.limits[0]
+    bound = sp.Dummy(variable.name, real=True)
+    inside = known.with_interval((bound, low, high))
+    integrand = expr.function.subs(variable, bound)
+    return proves_nonnegative(high - low, known) and proves_nonnegative(integrand, inside)
+
+
+def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression has no zero where the conditions hold."""
+    expr = sp.sympify(expr)
+    return expr.is_nonzero is True or _sign(expr, known) != 0
+
+
+def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is real and finite wherever the conditions hold."""
+    if expr.is_real:
+        return True
+    if isinstance(expr, sp.Derivative):
+        return proves_real(expr.expr, known)
+    if expr.is_Pow:
+        base, exponent = expr.args
+        if not (exponent.is_Rational and proves_real(base, known)):
+            return False
+        if exponent.is_negative and not proves_nonzero(base, known):
+            return False
+        return bool(exponent.is_Integer or proves_nonnegative(base, known))
+    return bool((expr.is_Add or expr.is_Mul) and all(proves_real(arg, known) for arg in expr.args))
+
+
+@lru_cache(maxsize=8192)
+def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return for each way
+    """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
+    seen = signs(expr, known.intervals, known.positive)
+    if len(seen) == 2:
+        return 0
+    if expr.is_positive or expr.is_negative:
+        return 1 if expr.is_positive else -1
+    sign = 0
+    if isinstance(expr, (sp.sin, sp.cos)):
+        sign = _sign_of_wave(expr, known)
+    elif isinstance(expr, (sp.Min, sp.Max)):
+        sign = _sign_of_extreme(expr, known)
+    elif expr.is_Add and known.positive:
+        sign = next((side for side in _sides(seen) if _outweighs(side * expr, known)), 0)
+    elif expr.is_Mul:
+        sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
+    elif expr.is_Pow and expr.exp.is_Integer:
+        sign = _sign(expr.base, known) ** abs(int(expr.exp))
+    if sign:
+        return sign
+    found = (_product_sign(one, strict=True) for one in _swept(expr, known))
+    sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
+    if sign or not expr.free_symbols:
+        return sign
+    factored = sp.factor(expr) if expr.is_Add and known.positive else expr
+    several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
+    if factored != expr and several and (sign := _sign(factored, known)):
+        return sign
+    for side in _sides(seen):
+        one = side * expr
+        if (
+            _by_ends(one, known, proves_positive)
+            or _is_definite(one, known, strict=True)
+            or _by_slope(one)
+            or _by_coefficients(one)
+        ):
+            return side
+    return _by_scale(expr)
+
+
+def _sides(seen: frozenset[int]) -> tuple[int, ...]:
+    """Return the signs that may be proved: the one that was seen, or else both."""
+    return tuple(seen) or (1, -1)
+
+
+def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
+    """Decide the sign of a sine in (-pi, pi) and of a cosine in (-pi/2, pi/2)."""
+    (angle,) = expr.args
+    right = sp.pi / 2 if isinstance(expr, sp.cos) else sp.S.Zero
+    for side in (1, -1) if right == 0 else (1,):
+        phase = side * angle + right
+        if proves_positive(phase, known) and proves_positive(sp.pi - phase, known):
+            return side
+    return 0
+
+
+def _sign_of_extreme(expr: sp.Expr, known: Conditions) -> int:
+    signs = [_sign(arg, known) for arg in expr.args]
+    decides = 1 if isinstance(expr, sp.Max) else -1
+    return decides if decides in signs else signs[0] if len(set(signs)) == 1 else 0
+
+
+def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> bool:
+    """Decide what is affine in a sine or cosine by its values at -1 and 1, between which it lies."""
+    for wave in sorted(expr.atoms(sp.sin, sp.cos), key=str):
+        name = sp.Dummy(real=True)
+        named = expr.xreplace({wave: name})
+        slope = sp.diff(named, name)
+        if wave.is_real and not slope.has(name) and not named.atoms(sp.sin, sp.cos):
+            return all(proves(named.subs(name, end), known) for end in (-1, 1))
+    return False
+
+
+def _is_definite(expr: sp.Expr, known: Conditions, *, strict: bool) -> bool:
+    """Decide a quadratic polynomial by its leading coefficient and its discriminant."""
+    proves = proves_positive if strict else proves_nonnegative
+    for letter in sorted(expr.free_symbols, key=str):
+        if not letter.is_real or not expr.is_polynomial(*expr.free_symbols):
+            return False
+        coefficients = sp.Poly(expr, letter).all_coeffs()
+        if len(coefficients) == 3:
+            lead, middle, rest = coefficients
+            return proves_positive(lead, known) and proves(4 * lead * rest - middle**2, known)
+    return False
+
+
+_DERIVATIVES, _LONGEST = 6, 60
+"""How often an inequality is put down to that of a derivative, and the operations that it may have."""
+
+
+@lru_cache(maxsize=4096)
+def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
+    """Tell whether a smooth function of one positive letter is positive by its slope and a value.
+
+    It rises from a value at 0 that is not negative, or falls to such a limit at infinity; an analytic
+    function whose slope never changes its sign does so strictly, if it is not constant.
+    """
+    from .algebra import is_continuous
+
+    exponents = {node.exp for node in expr.atoms(sp.exp)}
+    if len(expr.free_symbols) == 2 and len(exponents) == 1:  # it may depend on a product alone
+        (product,) = exponents
+        one = sp.Dummy(positive=True)
+        expr = expr.subs(product, one) if product.is_positive else expr
+    if len(expr.free_symbols) != 1 or not left or expr.count_ops() > _LONGEST:
+        return False
+    (letter,) = expr.free_symbols
+    if letter.is_positive and expr.has(sp.atan) and _by_arc(expr, letter):
+        return True
+    kinds = (sp.exp, sp.log, sp.sin, sp.cos, sp.atan)
+    if not (letter.is_positive and expr.has(*kinds)) or letter.is_integer:
+        return False
+    slope = sp.expand(sp.diff(expr, letter))
+    if slope == 0 or not is_continuous(expr, (letter, 0, sp.oo), NONE, smooth=True):
+        return False
+    start = expr.subs(letter, 0)
+    return bool(
+        start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1))
+    ) or bool(
+        expr.has(sp.atan)
+        and (slope.is_nonpositive or _never_below(-slope, left - 1))
+        and sp.limit(expr, letter, sp.oo).is_nonnegative
+    )
+
+
+def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
+    """Decide a rational function and an arc tangent times a polynomial: over that, the slope is rational."""
+    arcs = sorted(expr.atoms(sp.atan), key=str)
+    if len(arcs) != 1 or expr.atoms(sp.Function) - {*arcs}:
+        return False
+    name = sp.Dummy()
+    constant, varying = sp.expand(expr).as_independent(letter, as_Add=True)
+    dropped = constant if constant.is_positive and not constant.is_Rational else 0
+    share = sp.Poly((varying + constant - dropped).xreplace({arcs[0]: name}), name)
+    size = next((each for each in (share.LC(), -share.LC()) if each.is_positive), None)
+    if share.degree() != 1 or size is None:
+        return False
+    whole = share.LC() / size * arcs[0] + sp.cancel(share.coeff_monomial(1) / size)
+    slope = sp.factor(sp.together(sp.diff(whole, letter)))
+    if not slope.is_rational_function(letter) or slope.is_number:
+        return False
+    end = {1: sp.S.Zero, -1: sp.oo}.get(_sign_by_roots(slope, NONE))
+    return end is not None and bool(sp.limit(whole, letter, end).is_nonnegative)
+
+
+def _by_scale(expr: sp.Expr) -> int:
+    """Decide what two positive letters enter by their ratio alone, but for a factor."""
+    letters = sorted(expr.free_symbols, key=str)
+    if len(letters) != 2 or not expr.has(sp.atan) or not all(each.is_positive for each in letters):
+        return 0
+    one, other = letters
+    scaled = sp.factor(sp.expand(expr.subs(one, one * other)))
+    scale, rest = scaled.as_independent(one, as_Add=False)
+    return _known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
+
+
+def _by_coefficients(expr: sp.Expr) -> bool:
+    """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
+    for letter in sorted(expr.free_symbols, key=str):
+        if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
+            found = sp.Poly(sp.expand(expr), letter).coeffs()
+            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found):
+                return True
+    return False
+
+
+def _never_below(slope: sp.Expr, left: int) -> bool:
+    """Tell whether a slope is never negative, after positive factors have been left out."""
+    forms = [slope, sp.factor(slope)]
+    forms.append(sp.Mul(*(part for part in sp.Mul.make_args(forms[1]) if not part.is_positive)))
+    return any(
+        _product_sign(form, strict=False) == 1
+        or _by_ends(form, NONE, proves_nonnegative)
+        or _by_slope(sp.expand(form), left)
+        for form in forms
+    )
+
+
+def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
+    """Return the sign that follows directly from the assumptions on the symbols."""
+    if expr.is_positive or (expr.is_nonnegative and not strict):
+        return 1
+    return -1 if expr.is_negative or (expr.is_nonpositive and not strict) else 0
+
+
+def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
+    """Yield the expression, and in variables that sweep over what the conditions allow, each once."""
+    return _once(_forms(expr, known))
+
+
+def _once(forms: Iterable[sp.Expr]) -> Iterator[sp.Expr]:
+    seen: set[sp.Expr] = set()
+    for form in forms:
+        if form not in seen:
+            seen.add(form)
+            yield form
+
+
+@lru_cache(maxsize=1024)
+def _name(place: int) -> sp.Dummy:
+    """Return a positive variable for one place among the conditions, the same whenever it is asked.
+
+    A new one each time would defeat every cache.
+    """
+    return sp.Dummy(f"positive_{place}", positive=True)
+
+
+def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
+    yield expr
+    squares = {
+        power.base: sp.Dummy(positive=True) ** power.exp.q
+        for power in sorted(expr.atoms(sp.Pow), key=str)
+        if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
+        if power.base.is_positive
+    }
+    if expr.has(sp.cosh):
+        yield expr.replace(sp.cosh, lambda angle: 1 + 2 * sp.sinh(angle / 2) ** 2)
+    if squares and not known.intervals and not known.positive:
+        yield expr.subs(squares)  # roots of letters are letters too
+    for place, (variable, *ends) in enumerate(known.intervals):
+        low, high = map(sp.sympify, ends)
+        step = _name(place)
+        if not expr.has(variable) or not (low.is_finite or high.is_finite):
+            continue
+        if low.is_finite and high.is_finite:
+            value = (low + high * step) / (1 + step)
+        else:
+            value = low + step if low.is_finite else high - step
+        expr = expr.subs(variable, value)
+        yield expr
+    for place, positive in enumerate(known.positive, len(known.intervals)):
+        if positive.free_symbols <= expr.free_symbols:
+            yield from _named(expr, positive, _name(place))
+    for order in (known.positive[::-1], known.positive):
+        solved, rest = expr, order
+        while rest:
+            name = _name(len(known.intervals) + len(rest))
+            solved, rest = _solved(solved, rest[0], rest[1:], name)
+            yield solved
+
+
+def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr]:
+    """Yield the expression with a name for something positive that it contains as it stands."""
+    for form in _written(expr):
+        changed = form.subs(positive, name)
+        changed = changed.subs(sp.expand(positive), name).subs(sp.expand(-positive), -name)
+        if changed != form:
+            yield changed
+
+
+@lru_cache(maxsize=4096)
+def _written(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Return an expression as one fraction, as a product, and as it stands."""
+    top, bottom = sp.fraction(sp.together(expr))
+    return sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr
+
+
+def _solved(
+    expr: sp.Expr, positive: sp.Expr, rest: tuple[sp.Expr, ...], name: sp.Dummy
+) -> tuple[sp.Expr, tuple[sp.Expr, ...]]:
+    """Put in for one of its symbols what it is in terms of something positive."""
+    # A symbol of known sign would lose it.
+    order = sorted(
+        positive.free_symbols & expr.free_symbols,
+        key=lambda each: (bool(each.is_positive), str(each)),
+    )
+    for symbol in order:
+        slope, rest_of = linear(positive, symbol)
+        if slope.is_nonzero:
+            value = (name - rest_of) / slope
+            return expr.subs(symbol, value), tuple(each.subs(symbol, value) for each in rest)
+    return expr, rest
+
+
+@lru_cache(maxsize=8192)
+def linear(expr: sp.Expr, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return slope and rest of what is linear in a symbol, else zero and the expression."""
+    slope = sp.diff(expr, symbol)
+    return (sp.S.Zero, expr) if slope.has(symbol) else (slope, sp.expand(expr - slope * symbol))
+
+
+@lru_cache(maxsize=8192)
+def _factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Return the factors of the numerator and of the denominator."""
+    parts = sp.fraction(sp.together(expr))
+    return tuple(factor for part in parts for factor in sp.Mul.make_args(_factored(part)))
+
+
+def _factored(expr: sp.Expr) -> sp.Expr:
+    """Factor what is not simple already."""
+    if expr.is_Atom:
+        return expr
+    # Sums of positive terms need no factors: their sign is known as they stand, or multiplied out.
+    if -1 not in signs(expr):
+        for form in (expr, sp.expand(expr)):
+            if form.is_positive:
+                return form
+    return sp.factor(expr)
+
+
+@lru_cache(maxsize=8192)
+def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
+    """Return the sign of a product from that of its factors, 0 where one of them is not known.
+
+    If it need not be strict, factors may vanish, and 1 and -1 are "not negative", "not positive".
+    """
+    if len(signs(expr)) == 2:
+        return 0
+    sign = 1
+    for factor in _factors(expr):
+        base, power = factor.as_base_exp()
+        even = bool(power.is_Integer and power % 2 == 0)
+        base = base if power.is_Integer else factor
+        one = _factor_sign(base, strict=strict)
+        if one:
+            sign *= 1 if even else one
+        elif not (even and base.is_real and (base.is_nonzero or not strict)):
+            return 0
+    return sign
+
+
+@lru_cache(maxsize=8192)
+def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
+    expanded = sp.expand(factor)
+    sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
+    if sign or not expanded.is_Add:
+        return sign
+    seen = signs(expanded)
+    if len(seen) == 2:
+        return 0
+    for side in _sides(seen):
+        if _outweighs(side * expanded, NONE):
+            return side
+    univariate = len(expanded.free_symbols) == 1 and expanded.is_polynomial()
+    return _sign_by_roots(expanded, NONE) if univariate else 0
+
+
+@lru_cache(maxsize=4096)
+def _outweighs(total: sp.Expr, known: Conditions) -> bool:
+    """Tell whether each negative term of a sum has a positive one of its own that is larger.
+
+    Roots are compared by their squares, exponentials by their exponents; a root with all other terms too.
+    """
+    terms = sp.Add.make_args(sp.expand(total))
+    for root in (term for term in terms if term.is_Pow and term.is_positive and term.is_real):
+        rest = sp.expand(sum(terms) - root)
+        if rest.is_real and sp.expand(root**2 - rest**2).is_positive:
+            return True
+    plus = [term for term in terms if term.is_positive]
+    minus = [-term for term in terms if term.is_negative]
+    if len(plus) + len(minus) < len(terms) or not minus:
+        return False
+    for small in minus:
+        for large in plus:
+            by_square = sp.expand(large**2 - small**2)
+            by_exponent = sp.expand(sp.expand_log(sp.log(large) - sp.log(small)))
+            if by_square.is_positive or by_exponent.is_positive or _is_share(small / large, known):
+                plus.remove(large)
+                break
+        else:
+            rest = sp.expand(sum(plus) ** 2 - sum(minus) ** 2)
+            return len(minus) == 1 and bool(rest.is_positive)
+    return True
+
+
+def _is_share(ratio: sp.Expr, known: Conditions) -> bool:
+    """Tell whether a product is less than 1: of powers of letters of which the conditions say so."""
+    bound, powers = ratio.as_coeff_Mul()
+    factors = [factor.as_base_exp() for factor in sp.Mul.make_args(sp.powsimp(powers))]
+    below = all(base.is_positive and 1 - base in known.positive and exponent.is_positive
+                for base, exponent in factors)  # fmt: skip
+    return bool(known.positive and powers != 1 and 0 < bound <= 1 and below)
+
+
+def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
+    """Decide a rational function of one variable by Sturm's theorem."""
+    from .algebra import UndecidedError, sign_between
+
+    if len(expr.free_symbols) != 1:
+        return 0
+    (variable,) = expr.free_symbols
+    if not variable.is_extended_real:
+        return 0
+    low = 0 if variable.is_nonnegative else -sp.oo
+    high = 0 if variable.is_nonpositive else sp.oo
+    given = [over for over in known.intervals if over[0] == variable]
+    try:
+        found = sign_between(expr, given[-1] if given else (variable, low, high))
+    except (UndecidedError, sp.PolynomialError):
+        return 0
+    sign = {"+": 1, "-": -1}.get(found, 0)
+    # The interval is open, but a variable that may be zero reaches its end.
+    closed = not given and 0 in (low, high) and not variable.is_nonzero
+    return 0 if closed and _known_sign(sign * expr.subs(variable, 0)) != 1 else sign
+
+
+def fails_inside(expr: sp.Expr, over: Interval) -> bool:
+    """Tell whether an expression that should be positive in an interval is not, or may not be.
+
+    A rational function is decided; of others some values are tested.
+    """
+    if proves_nonnegative(expr, NONE.with_interval(over)):
+        return False
+    variable = over[0]
+    if expr.is_rational_function(variable):
+        return True
+    (swept,) = list(_swept(variable, NONE.with_interval(over)))[1:] or [variable]
+    steps = [sp.Rational(2) ** k for k in (-20, -6, -2, 0, 2, 6, 20)]
+    places = [swept.subs(dict.fromkeys(swept.free_symbols, place)) for place in steps]
+    return any(sp.N(expr.subs(variable, place)) < 0 for place in places)
+
+
+def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
+    """Return what must be positive for an expression to be so, as far as it is not proved.
+
+    One factor of unknown sign, what stands under a root, or the expression itself.
+
+    >>> q = sp.Symbol("q", positive=True)
+    >>> open_factors((1 - q**2) / (2 * q), NONE)
+    [1 - q]
+    """
+    if expr.is_positive:
+        return []
+    if expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer:
+        return open_factors(expr.base, known)
+    if expr.has(sp.Derivative, sp.Integral, sp.Piecewise) or not expr.free_symbols:
+        return [expr]
+    sign, unknown = 1, []
+    for part in sp.fraction(sp.together(expr)):
+        for factor in sp.Mul.make_args(sp.factor(part)):
+            found = _sign(factor, known)
+            sign *= found or 1
+            if not found:
+                unknown.append(factor)
+    if not unknown and sign > 0:
+        return []
+    if len(unknown) != 1 or unknown[0].is_Pow:
+        return [] if proves_positive(expr, known) else [expr]
+    gap = sp.expand(sign * unknown[0])
+    base, exponent = sp.powsimp(1 - gap).as_base_exp()
+    return [1 - base if base.is_positive and exponent.is_positive and base.is_Symbol else gap]
+
+
+def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
+    """Collect what must not vanish, and what must not be negative, where the expression is real."""
+    nonzero, nonnegative = set(), set()
+    for node in sp.preorder_traversal(expr):
+        if isinstance(node, sp.Pow):
+            base, exponent = node.args
+            if not exponent.is_nonnegative:
+                nonzero.add(base)
+            if not exponent.is_integer:
+                nonnegative.add(base)
+        elif isinstance(node, sp.log):
+            nonzero.add(node.args[0])
+            nonnegative.add(node.args[0])
+        elif isinstance(node, (sp.asin, sp.acos)):
+            nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.acosh):
+            nonnegative.add(node.args[0] - 1)
+        elif isinstance(node, sp.atanh):
+            nonzero.add(1 - node.args[0] ** 2)
+            nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, sp.gamma):  # more than it needs: the poles are at 0, -1, -2 and so on
+            nonzero.add(node.args[0])
+            nonnegative.add(node.args[0])
+        elif isinstance(node, (sp.coth, sp.csch)):
+            nonzero.add(node.args[0])
+        elif isinstance(node, (sp.tan, sp.sec)):
+            nonzero.add(sp.cos(node.args[0]))
+        elif isinstance(node, (sp.cot, sp.csc)):
+            nonzero.add(sp.sin(node.args[0]))
+    return nonzero, nonnegative

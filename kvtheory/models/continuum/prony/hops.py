@@ -1,0 +1,313 @@
+"""The indenter leaves the foundation and lands: a contact closes to a point, and opens from one.
+
+The width of a contact that closes falls to zero as the root of the time that is left; that of one that opens
+grows like this. The last step of the former and the first of the latter are short, without forces, and with
+edges that move uniformly: the force that is neglected is of the order of the cube of the width. In flight the
+lists of free ground on both sides begin where the contact closed. The indenter lands where the gap above an
+element of them, or above ground that was never touched, vanishes first.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from kvtheory.models.continuum.prony.contact import (
+    EDGES,
+    FORCES,
+    FREE,
+    GOLDEN,
+    MOMENTS,
+    NEVER,
+    OWN,
+    ROWS,
+    SIDES,
+    STRESSES,
+    TOUCHING,
+    edge_at,
+    free,
+    motion,
+    over,
+    step_of,
+    value,
+)
+from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, turn
+from kvtheory.models.continuum.prony.step import INDEX, SIGMA, prepare, solve
+from kvtheory.scene.base_motion import evaluate
+
+CLOSED = 0.03
+"""Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens at a
+penetration of the square of this width."""
+BRIEF = 100.0
+"""A contact that closes within so many of the shortest steps is closed too."""
+SAMPLES, REFINED, BISECTIONS = 3, 40, 60
+"""Samples of the free ground for each step in which it was left, golden sections about the best one, and
+bisections for the instant at which the gap vanishes."""
+SAME = 1e-12
+"""Relative distance of two places that counts as rounding."""
+
+Run = Any
+Gap = tuple[float, int, int, float]
+"""The least gap; on which side it is, in which segment, or beyond all, and at which instant, or X, there."""
+
+
+def closed(run: Run) -> float:
+    """Return the width of a contact that is closed."""
+    return float(CLOSED * np.cbrt(run.given.rtol))
+
+
+def flies(run: Run) -> bool:
+    """Whether there is no contact."""
+    return bool(run.now.sides[0].state == FREE)
+
+
+def time_left(run: Run) -> float:
+    """Return the time after which the contact closes if its width is as the root of this time."""
+    now = run.now
+    if now.steps == 0:
+        return math.inf
+    rows, rate = run.rows[now.steps - 1], 0.0
+    for k in range(1, rows.shape[1]):
+        rate += k * (rows[EDGES + 1, k] - rows[EDGES, k])
+    if not rate < 0.0 or not now.smooth:
+        return math.inf
+    width = now.sides[1].xi - now.sides[0].xi
+    return float(-0.5 * width / rate * run.steps[now.steps - 1].span)
+
+
+def closes(run: Run, left: float, shortest: float) -> bool:
+    """Whether the contact is about to close; `left` is the time until then."""
+    width = run.now.sides[1].xi - run.now.sides[0].xi
+    return bool(left < math.inf and (width <= closed(run) or left <= BRIEF * shortest))
+
+
+def close(run: Run, span: float) -> bool:
+    """Take the step of length `span` in which the contact closes; return whether it is solved."""
+    now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
+    for k in range(2):
+        if now.sides[k].state == TOUCHING:
+            turn(run, k)
+    prepare(run, span)
+    X = 0.5 * (here(run, 0) + here(run, 1))
+    for i in over(len(run.arms)):
+        mean = 0.5 * (run.state[i, STRESSES] + run.state[i, STRESSES + 1])
+        run.here[i, STRESSES], run.here[i, STRESSES + 1] = mean, mean
+        run.here[i, FORCES] = run.here[i, MOMENTS] = 0.0 * mean
+    if not _without_forces(run, 0.5 * (l + r)):
+        return False
+    xi = X + motion(run, now.steps, now.s + span)[2]
+    _end_with(run, l, r, xi, xi)
+    return True
+
+
+def fly(run: Run) -> None:
+    """Begin a flight, after the step in which the contact closes."""
+    now = run.now
+    for k in range(2):
+        side = now.sides[k]
+        side.segment, side.own, side.near = end(run, k), NEVER, here(run, k)
+        side.state, now.kinked[k] = FREE, 1
+    now.count, now.smooth = 0, False
+    for i in over(len(run.arms)):
+        for row in range(STRESSES, OWN):
+            run.state[i, row] = 0.0
+
+
+def _without_forces(run: Run, xi: float) -> bool:
+    """Solve the step without a contact."""
+    now, n = run.now, run.given.stages
+    for k in range(2):
+        now.sides[k].state = FREE
+        for j in range(n):
+            run.stages[EDGES + k, j] = xi
+    for i in over(len(run.arms)):
+        for row in range(STRESSES, OWN):
+            for j in range(n):
+                run.arm_stages[i, row, j] = 0.0
+    return solve(run)
+
+
+def _end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
+    """Let edges, stresses and moments change uniformly over a step, to those in `here`."""
+    now, n, rows, memory = (
+        run.now,
+        run.given.stages,
+        run.rows[run.now.steps],
+        run.memory[run.now.steps],
+    )
+    for k, first, last in ((0, l, l_end), (1, r, r_end)):
+        for m in range(n + 1):
+            rows[EDGES + k, m] = 0.0
+        rows[EDGES + k, 0], rows[EDGES + k, 1] = first, last - first
+        run.stages[EDGES + k, n - 1] = last
+    for i in over(len(run.arms)):
+        for row in range(STRESSES, OWN):
+            for m in range(n + 1):
+                memory[i, row, m] = 0.0
+            memory[i, row, 0] = run.state[i, row]
+            memory[i, row, 1] = run.here[i, row] - run.state[i, row]
+            run.arm_stages[i, row, n - 1] = run.here[i, row]
+    now.smooth = False
+
+
+def least_gap(run: Run, s: float, d: float, Y: float) -> Gap:
+    """Return the least gap between the indenter and the ground, at a time in flight."""
+    found, side, number, at = math.inf, 0, NEVER, 0.0
+    for k in range(2):
+        segment, outer = run.now.sides[k].segment, run.now.sides[k].near
+        while segment != NEVER:
+            gap, x = _gap_above(run, segment, s, d, Y, found)
+            if gap < found:
+                found, side, number, at = gap, k, segment, x
+            outer, segment = far_end(run.segments[segment], k), int(run.segments[segment].next)
+        xi = SIDES[k] * max(SIDES[k] * (outer + Y), 0.0)
+        if xi * xi - d < found:
+            found, side, number, at = xi * xi - d, k, NEVER, xi - Y
+    return found, side, number, at
+
+
+def _gap_above(
+    run: Run, number: int, s: float, d: float, Y: float, enough: float
+) -> tuple[float, float]:
+    """Return the least gap above a segment if it is below `enough`, and the instant, or X, of the element."""
+    part = run.segments[number]
+    l, r = min(part.X_a, part.X_b) + Y, max(part.X_a, part.X_b) + Y
+    xi = min(max(0.0, l), r)
+    if xi * xi - d >= enough:
+        return math.inf, 0.0
+    if part.step == NEVER:
+        return xi * xi - d, xi - Y
+    found, at, index, x = math.inf, part.a, part.step, part.a
+    before, low, high = part.a, part.a, part.b
+    while True:
+        index = step_of(run, part.edge, index, x)
+        gap, _ = free(run, s, d, Y, part.edge, index, x)
+        if gap < found:
+            found, at, low, high = gap, x, before, math.inf
+        high = min(high, x) if x > at else high
+        if x >= part.b:
+            break
+        before, x = x, min(x + run.steps[index].span / SAMPLES, part.b)
+    return _refined(run, number, s, d, Y, (low, at, min(high, part.b)), found)
+
+
+def _refined(
+    run: Run, number: int, s: float, d: float, Y: float, between: tuple[float, float, float], found: float
+) -> tuple[float, float]:  # fmt: skip
+    """Return the least gap, and its instant, by golden sections about the second of three instants."""
+    part, (low, at, high) = run.segments[number], between
+    for _ in range(REFINED):
+        wide = high - at > at - low
+        x = at + GOLDEN * (high - at if wide else low - at)
+        gap, _ = free(run, s, d, Y, part.edge, step_of(run, part.edge, part.step, x), x)
+        if gap < found:
+            low, high = (at, high) if wide else (low, at)
+            found, at = gap, x
+        elif wide:
+            high = x
+        else:
+            low = x
+    return found, at
+
+
+def touches_at(run: Run, theta: float, number: int, x: float) -> float:
+    """Return the share of the step at which the element first touches that is penetrated at `theta`."""
+    step, low, high = run.steps[run.now.steps], 0.0, theta
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        s = step.start + middle * step.span
+        d, _, Y, _, _ = motion(run, run.now.steps, s)
+        if _gap_at(run, number, x, s, d, Y) > 0.0:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _gap_at(run: Run, number: int, x: float, s: float, d: float, Y: float) -> float:
+    """Return the gap above an element, and write its stresses."""
+    if number == NEVER or run.segments[number].step == NEVER:
+        for i in over(len(run.arms)):
+            run.here[i, STRESSES] = 0.0
+        return float((x + Y) * (x + Y) - d)
+    part = run.segments[number]
+    return free(run, s, d, Y, part.edge, step_of(run, part.edge, part.step, x), x)[0]
+
+
+def land(run: Run, side: int, number: int, x: float) -> None:
+    """Begin a contact of no width above an element; both edges touch, and move over the free ground."""
+    now = run.now
+    Y = evaluate(run.pieces[now.piece], now.s)[0] - now.x
+    _gap_at(run, number, x, now.s, now.d, Y)
+    X = x
+    if number != NEVER and run.segments[number].step != NEVER:
+        part = run.segments[number]
+        index = step_of(run, part.edge, part.step, x)
+        _, _, Y_e, _, theta = motion(run, index, x)
+        X = value(run.rows[index, EDGES + part.edge], theta) - Y_e
+    for k in range(2):
+        now.sides[k].xi, now.sides[k].sigma = X + Y, x
+        for i in over(len(run.arms)):
+            run.state[i, STRESSES + k] = run.here[i, STRESSES]
+    inward, part_of = now.sides[1 - side].segment, now.sides[side].segment
+    outer = now.sides[side].near
+    while part_of != number:  # the ground between, met in the other direction
+        old = run.segments[part_of]
+        inward, outer, part_of = copy(run, part_of, inward), far_end(old, side), int(old.next)
+    outward = NEVER
+    if number != NEVER:
+        outward = _beyond(run, side, number, int(run.segments[number].next))
+        inward = _beyond(run, 1 - side, number, inward)
+    elif SIDES[side] * (X - outer) > SAME * (1.0 + abs(Y)):
+        inward = copy(run, -1, inward)
+        virgin = run.segments[inward]
+        virgin.edge, virgin.step, virgin.X_a, virgin.X_b = side, NEVER, X, outer
+    for k in range(2):
+        now.sides[k].state = TOUCHING
+        begin(run, k, NEVER)
+        aim(run, k, outward if k == side else inward)
+    now.first, now.count, now.chain = now.chain + 1, 2, now.chain + 4
+    for k in range(2):
+        run.chain[now.first + k] = now.sides[k].own
+
+
+def _beyond(run: Run, k: int, number: int, outward: int) -> int:
+    """Return a copy of the part of a segment that is beyond an edge, or `outward` if it is empty."""
+    old, X = run.segments[number], here(run, k)
+    if SIDES[k] * (far_end(old, k) - X) <= SAME * (1.0 + abs(X)):
+        return outward
+    new = cut(run, k, number)
+    run.segments[new].next = outward
+    return new
+
+
+def far_end(segment: Any, k: int) -> float:
+    """Return X of the outer end of a segment on a side."""
+    return float(segment.X_a if segment.edge == k else segment.X_b)
+
+
+def open_contact(run: Run, span: float) -> bool:
+    """Take the step of length `span` in which a contact opens; return whether it is solved."""
+    now, n, xi = run.now, run.given.stages, run.now.sides[0].xi
+    prepare(run, span)
+    if not _without_forces(run, xi):
+        return False
+    s, last = now.s + span, run.stages[ROWS:, n - 1]
+    d, _, Y, _, _ = motion(run, now.steps, s)
+    for k in range(2):
+        side = now.sides[k]
+        side.state = TOUCHING
+        place, index, sigma = edge_at(run, k, s, d, Y, xi, side.index, side.sigma)
+        if not abs(place) < math.inf:
+            return False
+        run.stages[EDGES + k, n - 1], last[INDEX + k], last[SIGMA + k] = place, index, sigma
+        for i in over(len(run.arms)):
+            run.arm_stages[i, STRESSES + k, n - 1] = run.here[i, STRESSES]
+    l, r = run.stages[EDGES, n - 1], run.stages[EDGES + 1, n - 1]
+    for i in over(len(run.arms)):
+        first, second = run.arm_stages[i, STRESSES, n - 1], run.arm_stages[i, STRESSES + 1, n - 1]
+        run.here[i, STRESSES], run.here[i, STRESSES + 1] = first, second
+        run.here[i, FORCES] = 0.5 * (r - l) * (first + second)
+        run.here[i, MOMENTS] = 0.5 * (r - l) * (l * first + r * second)
+    _end_with(run, xi, xi, l, r)
+    return bool(l < r)
