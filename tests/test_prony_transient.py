@@ -34,6 +34,15 @@ def test_slow_arms_are_solved_without_elements_also_where_the_indenter_hops():
     assert found.normal_force[1] == 0.0
 
 
+def test_a_tolerance_is_met_through_a_stop_without_elements():
+    history = [(0.0, 0.1), (0.05, 0.1), (0.05, 0.0), (0.07, 0.0), (0.07, 0.1)]
+    foundation = kv.GeneralizedMaxwell(1e10, arms=[(5e10, 0.1)])
+    scene = kv.Scene(foundation=foundation, drive=kv.Drive(history=history), run=kv.Run(0.08))
+    found = kv.solve(scene, at=[0.08], rtol=1e-6, quantity=["depth", "friction_force"])
+    assert found.model == "continuum"
+    assert found.certificate.relative_error["friction_force"] < 1e-6
+
+
 def test_a_damper_replaces_fast_arms_where_the_motion_stops_and_the_certificate_says_so():
     arms = fast(1e-7).foundation
     points = [(0.0, 0.1), (0.11, 0.1), (0.11, 0.0), (0.12, 0.0)]

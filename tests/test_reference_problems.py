@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,6 +24,24 @@ FOLDERS = {
     "point-contact": "transient",
     "ball": "elements",
 }
+
+RUBBER = {
+    "rubber-start": {
+        0.005: (2.95848088e-4, 11028.4325, 796.450166), 0.02: (2.03903403e-4, 9451.30178, 612.606839),
+        0.1: (1.51821653e-4, 9921.82809, 156.870938),
+    },
+    "rubber-reversal": {
+        0.03: (1.68678677e-4, 9619.46675, 329.574126), 0.05: (1.63327776e-4, 10003.4226, 104.2279),
+        0.08: (2.19635839e-4, 9677.72295, 295.859885), 0.12: (2.00534739e-4, 10009.7493, -574.206513),
+    },
+    "rubber-stick-slip": {
+        0.02: (1.71709897e-4, 9980.20802, 389.77253), 0.06: (1.44891729e-4, 10998.9543, 108.482791),
+        0.1: (1.53075229e-4, 10189.8952, 131.703858),
+    },
+}  # fmt: skip
+"""Time: depth, normal force and friction force, by programs that share no code with the solver: start and
+stick-slip by material points followed one by one, the reversal by elements, extrapolated from 1,000 and
+2,000 per mm."""
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +77,17 @@ def test_they_are_what_their_names_say():
     assert kv.asymptotes(kv.problem("low-velocity")).use == "L1"
     assert kv.asymptotes(kv.problem("high-velocity")).use == "L2"
     assert kv.steady(kv.problem("wedge")).friction_coefficient == pytest.approx(0.1, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", RUBBER)
+def test_those_on_rubber_have_the_values_of_other_programs(name):
+    times, due = list(RUBBER[name]), np.array(list(RUBBER[name].values()))
+    scene = replace(kv.problem(name), run=kv.Run(times[-1]))
+    found = kv.transient(scene, at=times, rtol=1e-7, certify=False)
+    for values, right in zip(
+        (found.depth, found.normal_force, found.friction_force), due.T, strict=True
+    ):
+        np.testing.assert_allclose(values, right, rtol=1e-7)
 
 
 def test_the_command_prints_what_the_library_loads(tmp_path):

@@ -58,7 +58,10 @@ class PronyMotion:
         times, found, _ = self.samples
         for _ in range(ZOOMS + 1):
             values = found[:, column]
-            k = int(np.argmax(np.abs(values) if sense == maxima.MAGNITUDE else sense * values))
+            measured = np.abs(values) if sense == maxima.MAGNITUDE else sense * values
+            k = int(
+                np.argmax(np.nan_to_num(measured, nan=-math.inf))
+            )  # there are no edges in flight
             best = float(times[k]), float(values[k])
             low, high = times[max(k - BESIDE, 0)], times[min(k + BESIDE, times.size - 1)]
             times = np.unique(np.append(np.linspace(low, high, GRID), best[0]))
