@@ -47,7 +47,9 @@ arm_load = symbol("W_v", r"load of an arm, in units of $K_i \breve c^3/R$", late
 arm_work = symbol(
     "F_v", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", latex=r"\breve F"
 )
-arm_lost = symbol("L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True)
+arm_lost = symbol(
+    "L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True
+)
 relaxation = function(
     "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
 )(contact_length)
@@ -78,7 +80,9 @@ primitive_3 = function(
 ratio_first = symbol(
     "t_v0", "ratio of two modified spherical Bessel functions", latex=r"\breve t_0"
 )
-ratio_second = symbol("t_v1", "ratio of the next two", latex=r"\breve t_1")
+ratio_second = symbol(
+    "t_v1", "ratio of the next two modified spherical Bessel functions", latex=r"\breve t_1"
+)
 spring_share = symbol("nu_v", "1 less the order of a springpot", latex=r"\breve \nu")
 springpot = symbol(
     "zeta_v", "stiffness of springpot or arm over the spring's", latex=r"\breve \zeta"
