@@ -8,7 +8,7 @@ r"""The engine: a proof is a list of steps, and each step is checked when it is 
 >>> proof.equal(l_r / tau, 2 * V, "wrong")
 Traceback (most recent call last):
 ...
-derivations.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
+derivations.engine.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
 """
 
 from collections.abc import Iterable
