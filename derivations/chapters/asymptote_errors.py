@@ -38,13 +38,13 @@ e_l1 = symbol(
 )
 e_l2_fixed = symbol(
     "e_L2",
-    "the same for high velocity, fixed indenter",
+    "relative error of the friction coefficient for high velocity, fixed indenter",
     latex=r"e_{\mathrm{L2\text{-}FI}}",
     real=True,
 )
 e_l2_weight = symbol(
     "e_L2_weight",
-    "the same for high velocity, dead weight",
+    "relative error of the friction coefficient for high velocity, dead weight",
     latex=r"e_{\mathrm{L2\text{-}MI}}",
     real=True,
 )
@@ -242,8 +242,8 @@ def _dead_weight(proof: Proof) -> None:
             proof.recall(error.label, (error.symbol, error.ratio - 1))
     proof.define(e_l2_weight, 2 / (3 * m) * sp.sqrt(w / l) - 1, _OVER_EXACT)
     proof.equal(e_l2_weight, root * (1 + e_l2_fixed) - 1, "both errors")
-    proof.define(S, root - 1, "half the error of the depth, at first order")
-    proof.equal(S, e_depth_high / (1 + root), "without a difference")
+    proof.define(S, e_depth_high / (1 + root), "half the error of the depth, at first order")
+    proof.equal(S, root - 1, "without a difference on the left")
     proof.equal(e_l2_weight, form, "a sum of positive terms")
     _recall(proof, squared)
     proof.equal((1 + e_l2_weight) ** 2, squared, r"the square of $L_2/\mu$")

@@ -32,7 +32,9 @@ ball_mean = symbol("g_b", r"$(\pi + \tilde T)/4$", latex=r"\tilde g")
 ball_rest = symbol("K_b", r"$\frac{2}{15} - l^2 \tilde D$", latex=r"\tilde K")
 ball_kept = symbol("M_b", r"$\tilde D - \tilde N$", latex=r"\tilde M")
 ball_lost = symbol("N_b", r"half of $- l \frac{d \tilde D}{d l}$", latex=r"\tilde N")
-ball_tail = symbol("T_b", "what the load of a ball has beside its limits", latex=r"\tilde T")
+ball_tail = symbol(
+    "T_b", "part of the load of a ball that vanishes at high velocity", latex=r"\tilde T"
+)
 ball_loss = symbol("D_b", "integral by which a ball leaves energy behind", latex=r"\tilde D")
 ball_depth = symbol("I_b", "integral of the depths of the strips", latex=r"\tilde I")
 ball_friction = symbol(

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter
-from ..engine.step import Proof
+from ..engine.step import Proof, tex
 from .element_schemes import SECTION
 
 letter(r"\check z", "time step over the relaxation time of an arm")
@@ -59,10 +59,10 @@ def _arm(proof: Proof) -> None:
         "the power that goes in is stored in the spring or lost in the damper",
     )  # fmt: skip
     damper, spring = 2 * MEAN - END, 2 * (END - MEAN)
-    proof.equal(
-        spring + damper, END, "a spring and a damper with the same stress at the end of the ramp"
-    )
-    proof.equal(spring / 2 + damper, MEAN, "and the same mean")
+    shown = rf"\left({tex(spring)}\right) + \left({tex(damper)}\right)"
+    proof.equal(spring + damper, END, left=shown,
+                reason="a spring and a damper with the same stress at the end of the ramp")  # fmt: skip
+    proof.equal(spring / 2 + damper, MEAN, "and the same mean", left=rf"\frac{{1}}{{2}} {shown}")
     proof.leading_order(damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
     proof.equal(
         _z * damper, 1 + sp.exp(-_z) - 2 * END, r"in units of $K_i \tau_i$: 1 for a fast arm"

@@ -20,7 +20,7 @@ letter(r"x_{\mathrm{s}}", "distance from that strip inward, in spacings")
 letter(r"Q_{\mathrm{s}}", "what trapezoids leave out between two strips")
 letter(r"\zeta_{\mathrm{H}}", "zeta function of Hurwitz")
 letter(r"\breve p_1", r"slope of a strip's load over $y_{\mathrm{s}}$ at the rim")
-letter(r"\breve p_2", r"the same over $y_{\mathrm{s}}^{3/2}$")
+letter(r"\breve p_2", r"coefficient of $y_{\mathrm{s}}^{3/2}$ in the load near the rim")
 
 _spacing, _share, _y, _v, _x, _root = sp.symbols("Delta vartheta y v x psi", positive=True)
 _rest = sp.Symbol("Q", real=True)

@@ -43,7 +43,7 @@ T = symbol(
 mu_max = symbol(
     "mu_max", "friction maximum of a dead weight over its velocity", latex=r"\mu_{\max}", source=""
 )
-V_max = symbol("V_max", "velocity of this maximum", "m/s", latex=r"V_{\max}", source="")
+V_max = symbol("V_max", "velocity of the friction maximum", "m/s", latex=r"V_{\max}", source="")
 
 DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
 FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)

@@ -25,7 +25,10 @@ w_ahead = symbol(
     "w_ahead", "part of the scaled load ahead of the lowest line", latex=r"w_{\mathrm{a}}"
 )
 w_behind = symbol(
-    "w_behind", "part of the scaled load behind it", latex=r"w_{\mathrm{b}}", nonnegative=True
+    "w_behind",
+    "part of the scaled load behind the lowest line",
+    latex=r"w_{\mathrm{b}}",
+    nonnegative=True,
 )
 phi_n = symbol("phi_n", "scaled friction force of a power law", latex=r"\varphi_n")
 phi_ahead = symbol(
@@ -35,7 +38,7 @@ phi_ahead = symbol(
 )
 phi_behind = symbol(
     "phi_behind",
-    "part of the scaled friction force behind it",
+    "part of the scaled friction force behind the lowest line",
     latex=r"\varphi_{\mathrm{b}}",
     nonnegative=True,
 )
@@ -43,7 +46,7 @@ m_n = symbol("m_n", "scaled friction coefficient of a power law")
 eta_n = symbol("eta_n", "dissipated part inside the contact of a power law")
 lost_ahead = symbol("e_ahead", "dissipation ahead of the lowest line", latex=r"\eta_{\mathrm{a}}")
 lost_behind = symbol(
-    "e_behind", "dissipation behind it", latex=r"\eta_{\mathrm{b}}", nonnegative=True
+    "e_behind", "dissipation behind the lowest line", latex=r"\eta_{\mathrm{b}}", nonnegative=True
 )
 P_n = symbol(
     "P_n", "maximum of the scaled pressure of a power law", latex=r"\hat p_{\max,n}", real=True
@@ -146,9 +149,6 @@ def _load(proof: Proof) -> None:
     explicit = n / (n + 1) + q - q ** (n + 1) / (n + 1) + (1 - q**n) ** 2 / (n * q ** (n - 1))
     proof.equal(w_n, explicit, "as a function of $q$")
     proof.equal(w_n, LOAD, "a sum of positive terms")
-
-
-_SUMS = r"With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in either limit."
 
 
 @result("F19-friction", uses=("F19-edge",))

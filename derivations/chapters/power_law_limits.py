@@ -25,8 +25,12 @@ from .steady import l, q
 
 letter(r"\bar z", "$1 - q^n$")
 w_rest = symbol("w_rest", "scaled load of a power law at rest", latex="w_{n,0}")
-m_low = symbol("m_low", "its coefficient at low velocity", latex="m_{n,0}'")
-m_high = symbol("m_high", "its limit at high velocity", latex=r"m_{n,\infty}")
+m_low = symbol(
+    "m_low", "friction coefficient of a power law at low velocity, over $l$", latex="m_{n,0}'"
+)
+m_high = symbol(
+    "m_high", "friction coefficient of a power law at high velocity", latex=r"m_{n,\infty}"
+)
 l_cross = symbol("l_cross", "scaled retardation length where the asymptotes meet", latex="l^{*}")
 
 result = Chapter(SECTION)

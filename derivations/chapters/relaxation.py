@@ -62,7 +62,9 @@ pressed = symbol(
 damper_1 = symbol(
     "u_v1", "extension of the dashpot of an arm", "m", latex=r"\breve u_1", nonnegative=True
 )
-damper_2 = symbol("u_v2", "that of another arm", "m", latex=r"\breve u_2", nonnegative=True)
+damper_2 = symbol(
+    "u_v2", "extension of the dashpot of another arm", "m", latex=r"\breve u_2", nonnegative=True
+)
 spring_1 = symbol("K_v1", "stiffness of one arm per unit area", "N/m³", latex="K_1")
 spring_2 = symbol("K_v2", "stiffness of another arm per unit area", "N/m³", latex="K_2")
 share_1 = symbol(
@@ -81,7 +83,9 @@ on_off = symbol(
 spare_1 = symbol(
     "omega_v1", "remainder of a bound, not negative", latex=r"\breve \omega_1", nonnegative=True
 )
-spare_2 = symbol("omega_v2", "the same of another", latex=r"\breve \omega_2", nonnegative=True)
+spare_2 = symbol(
+    "omega_v2", "remainder of another bound", latex=r"\breve \omega_2", nonnegative=True
+)
 repeated = tuple(function(f"G_v{n}", nonnegative=True) for n in range(1, 5))
 
 y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length

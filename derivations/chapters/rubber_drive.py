@@ -51,7 +51,7 @@ fading_depth = symbol(
 )
 fading_drag = symbol(
     "beta_r",
-    r"that with the displacement, in units of $K_i \breve c/R$",
+    r"change of the pressure of an arm with the displacement, in units of $K_i \breve c/R$",
     latex=r"\tilde \beta",
     real=True,
 )
@@ -59,7 +59,10 @@ normal_per_depth = symbol(
     "f_zd", r"change of $F_z$ of an arm with the depth, over $K_i \breve c$", latex=r"f_{z\delta}"
 )
 rubbing_per_depth = symbol(
-    "f_xd", r"that of $F_x$, over $K_i \breve c^2/R$", latex=r"f_{x\delta}", real=True
+    "f_xd",
+    r"change of $F_x$ with the depth, over $K_i \breve c^2/R$",
+    latex=r"f_{x\delta}",
+    real=True,
 )
 normal_per_drag = symbol(
     "f_zX",
@@ -68,7 +71,10 @@ normal_per_drag = symbol(
     real=True,
 )
 rubbing_per_drag = symbol(
-    "f_xX", r"that of $F_x$, over $K_i \breve c^3/R^2$", latex="f_{xX}", real=True
+    "f_xX",
+    r"change of $F_x$ with the displacement, over $K_i \breve c^3/R^2$",
+    latex="f_{xX}",
+    real=True,
 )
 total_normal_per_depth = symbol(
     "F_zd", "change of $F_z$ with the depth", "N/m²", latex=r"F_{z\delta}"
@@ -196,7 +202,7 @@ def _recalled(proof: Proof) -> None:
 
 
 _1, _2, _3, _4 = kernels
-_S1, _S2, _S3, _S4 = kernels_still
+_, _S2, _S3, _S4 = kernels_still
 FORCES = {
     normal_per_depth: _1 + sigma * _2,
     rubbing_per_depth: _2 + sigma * _3 - (HALF - e) * (_1 + sigma * _2),
@@ -278,12 +284,16 @@ def _kelvin_voigt(proof: Proof) -> None:
         e, lam / (2 * (1 + lam)), r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
     )
     proof.equal(1 + lam, (HALF - e) + lam + (HALF + e),
-                r"$F_{z\delta}$ at $\tilde s = 0$: $r + \lambda + \hat a$ of F22")  # fmt: skip
+                r"$F_{z\delta}$ at $\tilde s = 0$: $r + \lambda + \hat a$ of F22",
+                right=r"\left(\frac{1}{2} - \breve \eta\right) + \breve \zeta "
+                r"+ \left(\frac{1}{2} + \breve \eta\right)")  # fmt: skip
     proof.equal(
         e + lam * (HALF + e), lam, r"$F_{x\delta}$ at $\tilde s = 0$: $\lambda (r + \hat a)$"
     )
     proof.equal(lam * e, lam * (HALF - (HALF - e)),
-                r"$-F_{zX}/\tilde s$ and $F_{x\delta}/\tilde s$")  # fmt: skip
+                r"$-F_{zX}/\tilde s$ and $F_{x\delta}/\tilde s$",
+                right=r"\breve \zeta \left(\frac{1}{2} - \left(\frac{1}{2} "
+                r"- \breve \eta\right)\right)")  # fmt: skip
     proof.equal(3 * (sp.Rational(1, 12) + e**2), (HALF - e) ** 3 + (HALF + e) ** 3,
                 r"$-F_{xX}/\tilde s$: $r^3 + \hat a^3$")  # fmt: skip
 

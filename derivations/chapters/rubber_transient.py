@@ -42,8 +42,8 @@ alpha_i = function("alpha_i", "what an arm has accumulated of the depth", "m", r
 beta_i = function("beta_i", "what it has accumulated of the distance slid", "m", real=True)
 E_i = symbol("E_i", "share of a stress at entry that an arm still has")
 stress_i = function("s_i", "stress of an arm in an element", "Pa", real=True)
-S_i = function("S_i", "integral of this stress over the contact", "N/m", real=True)(t)
-T_i = function("T_i", "its first moment", "N", real=True)(t)
+S_i = function("S_i", "integral of the stress of an arm over the contact", "N/m", real=True)(t)
+T_i = function("T_i", "first moment of the stress of an arm over the contact", "N", real=True)(t)
 glassy = symbol("K_g", "glassy stiffness", "N/m³", latex=r"K_{\mathrm{g}}")
 fading_rate = symbol("rho_r", "rate of the free surface", "1/s", latex=r"\tilde \varrho", real=True)
 

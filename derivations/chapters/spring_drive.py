@@ -30,7 +30,12 @@ along = symbol("x_d", r"$x_{\mathrm{A}}/a_0$", latex=r"\check x", real=True)
 along_s = symbol("x_ds", latex=r"\check x'", real=True)
 along_ss = symbol("x_dss", latex=r"\check x''", real=True)
 along_0 = symbol("x_d0", r"$\check x$ in steady sliding", latex=r"\check x_0", real=True)
-swing = symbol("x_d1", "amplitude of its change", latex=r"\check x_1", real=True)
+swing = symbol(
+    "x_d1",
+    "amplitude of the change of the position along the foundation",
+    latex=r"\check x_1",
+    real=True,
+)
 small = symbol(
     "theta_d", "small number that multiplies both amplitudes", latex=r"\check \theta", real=True
 )

@@ -16,7 +16,7 @@ slides_more = symbol("v_x", r"change of $\lambda$", latex=r"\check v_x", real=Tr
 sinks_faster = symbol("v_z", "change of $d'$", latex=r"\check v_z", real=True)
 letter(r"\check d", "change of $d$ while the spring rings")
 length = symbol("l_c", "length of the contact", latex=r"\check l")
-middle = symbol("c_m", "its middle", latex=r"\check \xi", real=True)
+middle = symbol("c_m", "middle of the contact", latex=r"\check \xi", real=True)
 power = symbol(
     "Pi_c", "power that both changes cost in the dampers", latex=r"\check \Pi", real=True
 )

@@ -31,12 +31,16 @@ coupling = symbol("g_c", "strength of the coupling of both motions", latex=r"\ch
 uncoupled = symbol("h_c", r"$1 - \check g$", latex=r"\check h")
 rise = symbol("e_c", "what has the sign of $dF/dV$ with the damper", latex=r"\check e", real=True)
 own_rise = symbol(
-    "e_0", "the same of a dead weight without a damper", latex=r"\check e_0", real=True
+    "e_0", r"$\check e$ of a dead weight without a damper", latex=r"\check e_0", real=True
 )
 hurwitz = symbol("H_c", "determinant of Hurwitz", latex=r"\check H", real=True)
 Omega = symbol("Omega", r"square of the frequency at onset, times $\tau^2$", latex=r"\Omega")
-Omega_plus = symbol("Omega_p", "the larger of two", latex=r"\Omega_{+}", real=True)
-Omega_minus = symbol("Omega_m", "the smaller of two", latex=r"\Omega_{-}", real=True)
+Omega_plus = symbol(
+    "Omega_p", r"larger root $\Omega$ of the quadratic of onset", latex=r"\Omega_{+}", real=True
+)
+Omega_minus = symbol(
+    "Omega_m", r"smaller root $\Omega$ of the quadratic of onset", latex=r"\Omega_{-}", real=True
+)
 bias = symbol(
     "m_c", r"$\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$", latex=r"\check m", real=True
 )
@@ -46,7 +50,12 @@ onset_square = symbol(
     latex=r"\check D",
     real=True,
 )
-spread = symbol("s_c", "its root", latex=r"\check w", nonnegative=True)
+spread = symbol(
+    "s_c",
+    r"root of the discriminant of the quadratic in $\Omega$",
+    latex=r"\check w",
+    nonnegative=True,
+)
 onset_sum = symbol("n_c", r"$\check m - 2 \vartheta_z \check e$", latex=r"\check n", real=True)
 lag_plus = symbol("p_p", r"$\varrho_z - \vartheta_z \Omega_{+}$", latex=r"\check p_{+}")
 constant = tuple(

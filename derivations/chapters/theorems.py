@@ -17,10 +17,10 @@ xi = symbol(
     "xi", "scaled coordinate, $x/a$", latex=r"\xi", printed=r"\hat x", source="F16", real=True
 )
 P = symbol("P", r"scaled pressure, $p/(K \delta)$", latex=r"\hat p", real=True)
-P_max = symbol("P_max", "its maximum", latex=r"\hat p_{\max}")
+P_max = symbol("P_max", "maximum of the scaled pressure", latex=r"\hat p_{\max}")
 n = symbol(
     "n",
-    "position of this maximum ahead of the lowest line, over the half length",
+    "position of the greatest pressure ahead of the lowest line, over the half length",
     printed=r"\hat n",
 )
 w = symbol("w", r"scaled load, $W/(K \delta a)$")

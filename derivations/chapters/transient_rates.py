@@ -28,7 +28,7 @@ f = symbol(
     printed=r"f_{\mathrm{b}}",
 )
 letter(r"\tilde d", "scaled depth near that of steady sliding")
-change = symbol("d_hat", "amplitude of its change", latex=r"\hat d", real=True)
+change = symbol("d_hat", "amplitude of the change of depth", latex=r"\hat d", real=True)
 per_depth = symbol("A", "stiffness of the contact, scaled")
 per_rate = symbol("B", "damping of the contact, scaled")
 sigma = symbol("sigma", "scaled rate of a small motion about steady sliding", real=True)

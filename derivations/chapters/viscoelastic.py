@@ -80,7 +80,9 @@ primitive_3 = function(
 ratio_first = symbol(
     "t_v0", "ratio of two modified spherical Bessel functions", latex=r"\breve t_0"
 )
-ratio_second = symbol("t_v1", "ratio of the next two", latex=r"\breve t_1")
+ratio_second = symbol(
+    "t_v1", "ratio of the next two modified spherical Bessel functions", latex=r"\breve t_1"
+)
 spring_share = symbol("nu_v", "1 less the order of a springpot", latex=r"\breve \nu")
 springpot = symbol(
     "zeta_v", "stiffness of springpot or arm over the spring's", latex=r"\breve \zeta"

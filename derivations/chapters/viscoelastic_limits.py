@@ -32,7 +32,9 @@ from .viscoelastic import (
     w,
 )
 
-spare_3 = symbol("omega_v3", "the same of a third", latex=r"\breve \omega_3", nonnegative=True)
+spare_3 = symbol(
+    "omega_v3", "remainder of a third bound", latex=r"\breve \omega_3", nonnegative=True
+)
 delay = symbol(
     "epsilon_v",
     "mean relaxation length over the length of the contact",
@@ -52,7 +54,10 @@ lack_mean = symbol(
     nonnegative=True,
 )
 lack_ahead = symbol(
-    "alpha_vP", r"the same for $\breve P$", latex=r"\breve \alpha_P", nonnegative=True
+    "alpha_vP",
+    r"difference of a dashpot's $\breve P$ and this one",
+    latex=r"\breve \alpha_P",
+    nonnegative=True,
 )
 letter(r"\breve \alpha_D", r"difference of $\breve D$ and that of a dashpot")
 lack_twist = symbol(

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbol
-from ..engine.step import Proof
+from ..engine.step import Proof, tex
 from .friction_identity import r
 from .model import C, K, V, delta
 from .power_law import (
@@ -84,12 +84,14 @@ def _forces(
     proof.equal(phi_n, friction, "friction force")
     proof.define(m_n, phi_n / w_n, r"$\mu/c$")
     proof.equal(m_n, friction / load, "friction coefficient")
+    proof.notation["n"] = n
     for name, general, own in (
         ("w_n", LOAD, load), (r"\varphi_n", FRICTION_FORCE, friction),
         ("m_n", FRICTION_COEFFICIENT, friction / load),
     ):  # fmt: skip
-        form = general.subs(n, 1).subs({Q: state[Q]}).subs(q, edge)
-        proof.equal(form, own, f"${name}$ of a power law, for $n = 1$")
+        form = general.subs({Q: state[Q], q: edge})
+        proof.equal(form.subs(n, 1), own, f"${name}$ of a power law, for $n = 1$",
+                    left=tex(sp.Subs(form, n, 1)))  # fmt: skip
     proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
     general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
     proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")

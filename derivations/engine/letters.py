@@ -126,7 +126,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
 """Beside these, by label or by the first part of one; they come before those of the section."""
 
 _DIFFERENTIAL = re.compile(
-    r"(?<![A-Za-z\\])d(?=[A-Za-z](?![A-Za-z])|\\(?:xi|zeta|sigma|ell)(?![a-z]))"
+    r"(?<![A-Za-z\\])d(?=[A-Za-z](?![A-Za-z])|\\(?:xi|zeta|sigma|ell|hat|bar|tilde|breve|check)(?![a-z]))"
 )
 _SPACED = re.compile(r"\\frac\{d((?:\^\{\d+\})?)\}\{d (?=[A-Za-z\\])")
 _OPERATOR = re.compile(r"\\frac\{d((?:\^\{?\d\}?)?)\}(?=\{\\mathrm\{d\})")

@@ -1,6 +1,6 @@
 r"""The record of a derivation after every step has been checked: LaTeX and words, ready to print.
 
-The engine (`derivations.step`) makes these records and the renderers (`derivations.render`)
+The engine (`step`) makes these records and the renderers (`render`)
 print them; neither knows the other.
 
 Text fields are plain English in which mathematics stands between dollar signs (``$l_r = V\tau$``);

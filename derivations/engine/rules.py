@@ -51,6 +51,8 @@ def _resolved(
         before, after = after, rewriter.rewrite(after)
         if after.has(sp.Derivative, sp.Subs, Computed):
             after = after.doit(integrals=False, sums=False)
+        elif all(lhs.is_Symbol for lhs, _ in rules):  # then nothing that was put in is a left side
+            break
     return after, frozenset(rewriter.used), frozenset(rewriter.derived)
 
 

@@ -8,7 +8,7 @@ r"""The engine: a proof is a list of steps, and each step is checked when it is 
 >>> proof.equal(l_r / tau, 2 * V, "wrong")
 Traceback (most recent call last):
 ...
-derivations.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
+derivations.engine.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
 """
 
 from collections.abc import Iterable
@@ -194,7 +194,11 @@ class Proof(Guarded):
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
         # The variable of a root with a name of its own is bound: its interval restricts nothing else.
-        note = rf"the only root of ${tex(sp.sympify(expr))} = 0$ for ${where}$"
+        whole_line = where.startswith(r"-\infty <") and where.endswith(r"< \infty")
+        among = "real root" if whole_line else "root"
+        note = f"the only {among} of ${tex(sp.sympify(expr))} = 0$" + (
+            "" if whole_line else f" for ${where}$"
+        )
         fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise,
                             bound=called != variable, note=note)  # fmt: skip
         if called != variable:

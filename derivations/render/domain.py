@@ -37,7 +37,10 @@ def domain(derivation: Derivation) -> str:
         step.domain for step in own if step.latex == derivation.latex
     }
     apart = [assumed[each] for each in sorted(assumed, key=str)]
-    holds = [*signs, *(f"${each}$" for each in derivation.domain if each not in {*said, *apart})]
+    ends = (each.split(" < ") for each in derivation.domain if each.count(" < ") == 2)
+    implied = {f"{one} < {other}" for *_, one, other in ends}
+    left = [each for each in derivation.domain if each not in {*said, *apart, *implied}]
+    holds = [*signs, *(f"${each}$" for each in left)]
     parts = [f"It holds for {', '.join(holds)}"] if holds else []
     parts += [f"assumed, not proved: {', '.join(f'${each}$' for each in apart)}"] if apart else []
     return f"{'; '.join(parts)}." if parts else ""

@@ -10,7 +10,7 @@ r"""The common part of the renderers: the text of a record and the order of its 
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from ..engine.record import Calculation, Derivation, Step
@@ -206,7 +206,13 @@ def _lines(derivation: Derivation) -> list[Line]:
     The result is the step with the same formula; if there is none, an additional line ends the list.
     """
     tag = number(derivation.label)
-    found = [Line(step, tag if step.latex == derivation.latex else "") for step in derivation.steps]
+    found = []
+    for step in derivation.steps:
+        is_result = step.latex == derivation.latex
+        argued = is_result and derivation.status == "argued"
+        found.append(
+            Line(replace(step, status="argued") if argued else step, tag if is_result else "")
+        )
     if not any(line.tag for line in found):
         found.append(Line(Step(derivation.latex, "", "", "", derivation.status), tag))
     return found
