@@ -280,7 +280,7 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
         text = f"for the data grow beyond all bounds: {needs}"
     else:
         return
-    yield Explanation(UNSTABLE, f"the time step is unstable (F15), {text}", LIKELY, True)
+    yield Explanation(UNSTABLE, f"the time step is unstable (F15), {text}", LIKELY, False)
 
 
 def _grows(case: Case) -> bool:
