@@ -44,7 +44,7 @@ def test_a_tolerance_is_met_through_a_stop_without_elements():
 
 
 def test_a_damper_replaces_fast_arms_where_the_motion_stops_and_the_certificate_says_so():
-    arms = fast(1e-7).foundation
+    arms = fast(1e-9).foundation
     points = [(0.0, 0.1), (0.11, 0.1), (0.11, 0.0), (0.12, 0.0)]
     scene = kv.Scene(foundation=arms, drive=kv.Drive(history=points), run=kv.Run(duration=0.12))
     found = kv.solve(scene, at=[0.01, 0.1], rtol=1e-3, quantity=ASKED)
