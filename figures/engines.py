@@ -143,7 +143,7 @@ def draw(data: Data) -> Figure:
         F = [data.stored[f"{name} {V:g}"]["friction_force"][-1] for V in SPEEDS]
         words = {"steady": "Drake, SAP", "Hunt-Crossley": "Drake, Lagged"}.get(name, name)
         steady.plot(SPEEDS, np.array(F) / LOAD, mark, color=color, markersize=4, label=words)
-    steady.set(xlabel="$V$ (m/s)", ylabel=r"$\mu$", title="steady sliding")
+    steady.set(xlabel="velocity [m/s]", ylabel=r"friction coefficient $\mu$", title="steady sliding")
     steady.legend(fontsize=7, loc="upper right", bbox_to_anchor=(1.0, 0.42))
     for ax, name in ((start, "start"), (back, "reversal")):
         exact = data.theory[name]
@@ -156,7 +156,7 @@ def draw(data: Data) -> Figure:
             if run in data.stored:
                 t, depth = (data.stored[run][key] for key in ("time", "depth"))
                 ax.plot(1e3 * t, 1e3 * depth, ".", color=color, markersize=3, label=words)
-        ax.set(xlabel="$t$ (ms)", ylabel=r"$\delta$ (mm)", title=name)
+        ax.set(xlabel="time [ms]", ylabel=r"depth $\delta$ [mm]", title=name)
         ax.legend(fontsize=7)
     found = [data.stored[f"step {h:g}"]["friction_force"][-1] / LOAD for h in STEPS]
     shown = np.array(STEPS) * 1e3
@@ -168,7 +168,7 @@ def draw(data: Data) -> Figure:
         label=r"theory for $\tau + \Delta t$",
     )
     step.set(
-        xlabel=r"$\Delta t$ (ms)",
+        xlabel=r"$\Delta t$ [ms]",
         ylabel=r"$1 - \mu/\mu_{\Delta t = 0}$",
         title="time step, 0.5 m/s",
     )

@@ -18,7 +18,7 @@ from kvtheory.plots import BLACK, BLUE, RED
 from kvtheory.scene.foundations import Arm
 
 TITLES = {"fixed": "given depth", "dead-weight": "dead weight"}
-TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 2e-3, 24), np.linspace(3e-3, 0.07, 46), [0.2]])
+TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 0.2, 150)])
 RELAXATION_TIMES = np.array([1e-4, 1e-3, 1e-2, 1e-1, 1.0])
 SLOPE = -0.5
 """Stiffness of the five arms over their relaxation time, as an exponent: a typical transition."""
