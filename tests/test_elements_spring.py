@@ -51,6 +51,18 @@ def test_elements_agree_with_the_continuum_and_the_certificate_covers(name):
     assert max(found[quantity] for quantity in ("depth", "spring_force")) < 4e-3
 
 
+def test_edges_may_change_places_where_sliding_may_go_either_way():
+    history = [(0.0, 0.112), (0.134, 0.112), (0.134, -0.03)]
+    drive = kv.Drive(history=history, stiffness=0.926, damping=0.0615, mass=0.22)
+    support = kv.DeadWeight(mass=0.166, gravity=8.03)
+    scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), support, drive, kv.Run(0.6))
+    run = kv.elements(scene, per_length=10.0, at=[0.4, 0.57])
+    truth = kv.transient(scene, at=[0.4, 0.57], rtol=1e-8, certify=False)
+    assert run.sliding_velocity[1] < 0.0 < truth.sliding_velocity[1]
+    off = np.abs(run.leading_edge - truth.leading_edge).max() / Model.of(scene).at_rest.half_length
+    assert 1.9 < off < run.certificate.relative_error["leading_edge"]
+
+
 def test_the_hard_scenes_slide_backwards():
     backward = 0
     for name in HARD:

@@ -317,6 +317,13 @@ def _estimate(
         "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),
     }.items():  # fmt: skip
         differences[name] += more
+    if model.sprung:  # where sliding may go either way, so may the edge that leads
+        speed = rows["sliding_velocity"]
+        apart = np.max([abs(speed - other["sliding_velocity"]) for other in others], axis=0)
+        either = (speed != 0.0) & (abs(speed) <= SAFETY * apart)
+        swapped = abs(rows["leading_edge"] - rows["trailing_edge"])[either] / SAFETY
+        for name in ("leading_edge", "trailing_edge"):
+            differences[name] += float(np.nanmax(swapped, initial=0.0))
     runs = "half as many elements and steps" + ", and as many" * (len(others) > len(SHIFTS))
     return Certificate(
         "estimated",
