@@ -143,7 +143,9 @@ def draw(data: Data) -> Figure:
         F = [data.stored[f"{name} {V:g}"]["friction_force"][-1] for V in SPEEDS]
         words = {"steady": "Drake, SAP", "Hunt-Crossley": "Drake, Lagged"}.get(name, name)
         steady.plot(SPEEDS, np.array(F) / LOAD, mark, color=color, markersize=4, label=words)
-    steady.set(xlabel="velocity [m/s]", ylabel=r"friction coefficient $\mu$", title="steady sliding")
+    steady.set(
+        xlabel="velocity [m/s]", ylabel=r"friction coefficient $\mu$", title="steady sliding"
+    )
     steady.legend(fontsize=7, loc="upper right", bbox_to_anchor=(1.0, 0.42))
     for ax, name in ((start, "start"), (back, "reversal")):
         exact = data.theory[name]
