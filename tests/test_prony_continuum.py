@@ -195,6 +195,14 @@ def test_a_reversal_over_ground_that_the_other_edge_left_is_one_interval():
     assert apart(found, kv.elements(scene, per_length=1e5, at=at), scene, SERIES[:5]) < 2e-3
 
 
+def test_a_jump_of_remembered_stresses_does_not_stop_an_edge():
+    """After a stop and a reversal an edge peels over places where the other one passed to other ground."""
+    history = [(0.0, 0.1), (0.04, 0.1), (0.04, 0.0), (0.06, 0.0), (0.06, -0.1)]
+    scene = sliding([(1e10, 5e-3), (1e10, 0.05), (1e10, 0.5)], kv.Drive(history=history), 0.1)
+    found = kv.transient(scene, at=[0.05, 0.09, 0.1], rtol=1e-6)
+    assert max(found.certificate.relative_error.values()) < 1e-4
+
+
 def test_many_arms_are_interpreted_at_once():
     """A hundred arms need little more Python than a few, each of which an array would not make faster."""
     calls = []

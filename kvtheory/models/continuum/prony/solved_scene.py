@@ -147,7 +147,7 @@ def transient(
 ) -> Transient:  # fmt: skip
     """Solve a scene whose foundation is a Prony series; `kvtheory.transient` documents it.
 
-    ValueError if no consistent state of the edges is found, or the contact is not one interval.
+    ValueError if the method fails.
     """
     units = own_units(scene)
     drive = scaled_drive(scene, units)
@@ -178,9 +178,9 @@ def transient(
         raise TransientError(error.reason, error.s * units.time, "t", " s") from None
     except ValueError as error:
         why, s = error.args
-        at = f"{why} at t = {s * units.time:.6g} s"
         raise ValueError(
-            f"the transient on a Prony series is followed as long as the contact is one interval: {at}"
+            f"the transient on a Prony series fails numerically at t = {s * units.time:.6g} s: {why}; "
+            "try another tolerance"
         ) from None
     fine = SolvedPronyScene(motion, drive, units, end_of(scene) / units.time)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)

@@ -30,9 +30,9 @@ SUBDIVISIONS = 4
 """Points shown for each step."""
 REFUSED = {
     walk.STUCK: "no consistent state of the edges is found",
-    walk.PARTS: "the contact is not one interval",
+    walk.PARTS: "the pressure in the contact, or the gap outside, has the wrong sign",
 }
-"""Why a motion is not solved."""
+"""Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
 
 
 class Tally:
@@ -115,7 +115,7 @@ def solve(
     Raises
     ------
     ValueError
-        If no consistent state of the edges is found, or the contact is not one interval.
+        If the method fails: `REFUSED` says how.
     TransientError
         If too many steps are needed.
 
