@@ -121,6 +121,8 @@ def turn(run: Run, k: int) -> None:
         new = cut(run, k, old)
         if other.state == PEELING and other.segment == old:
             other.segment = new
+        if other.own == old:  # the other edge goes on to write the copy
+            other.own, run.segments[old].b, run.segments[old].X_b = new, now.s, here(run, 1 - k)
         renew(run)
         run.chain[now.first + (now.count - 1 if k == 1 else 0)] = new
         begin(run, k, NEVER)
