@@ -17,7 +17,7 @@ import kvtheory as kv
 from figures import drawing
 from kvtheory.plots import BLACK, BLUE, GREEN, RED
 
-STORED = Path(__file__).with_name("engines.csv")
+STORED = Path(drawing.__file__).with_name("engines.csv")
 SERIES = "time", "depth", "normal_force", "friction_force"
 R, K, TAU, G = 0.1, 1e9, 0.02, 9.80665
 LOAD = 10.0 * G
