@@ -90,9 +90,10 @@ class Transient(TimeSeries):
         The work of the drive, int F_x V dt, and the energy stored at rest equal the sum of the kinetic
         energy, the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, the stored
         energy, int K u^2/2 dx, and the dissipated energy, int int C (du/dt)^2 dx dt; the last two are split
-        into `..._contact` and `..._surface`, the relaxing surface. A spring in the drive adds
-        `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is the residual, a measure of the
-        error.
+        into `..._contact` and `..._surface`, the relaxing surface. On a Prony series each arm, of stress s,
+        also stores int s^2/2K_i dx, and it dissipates int int s^2/(K_i tau_i) dx dt. A spring in the drive
+        adds `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is the residual, a measure of
+        the error.
 
         Examples
         --------

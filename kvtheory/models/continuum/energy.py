@@ -12,6 +12,7 @@ the indenter the integrals over xi are polynomials of the edges, the energy stor
 memory, and since u' = -u there, twice that energy is dissipated per unit of time (F14-surface).
 """
 
+from collections.abc import Callable
 from dataclasses import astuple, dataclass
 from typing import Any
 
@@ -82,32 +83,49 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
         )
         return np.stack(rows, axis=-1).reshape(*t.shape, len(rows))
 
-    starts = np.array([start for start in motion.starts if start <= max(flat, default=0.0)])
-    index = np.searchsorted(starts, flat, side="right") - 1
-    low, high = np.append(starts[:-1], starts[index]), np.append(starts[1:], flat)
-    parts = integrals(powers, low, high)
-    steps = starts.size - 1
-    sums = np.concatenate([np.zeros((1, parts.shape[1])), np.cumsum(parts[:steps], axis=0)])
-    work, in_contact, in_surface, in_damper = (sums[index] + parts[steps:]).T
-
+    sums = accumulated(lambda low, high: integrals(powers, low, high), motion.starts, flat)
     found = motion.states(flat).T
-    d, v, l, r, x, w = found[[e_.DEPTH, e_.RATE, e_.LEFT, e_.RIGHT, e_.ALONG, e_.ALONG_RATE]]
-    eps = 0.0 if given.fixed else given.eps
-    entries = (
-        np.full(flat.shape, _stored(1.0, -1.0, 1.0)),
-        work,
-        0.5 * eps * v**2,
-        1.0 - d,
-        0.5 * given.kappa * (d - 1.0) ** 2,
+    d, l, r = found[[e_.DEPTH, e_.LEFT, e_.RIGHT]]
+    stored = (
         np.where(np.isnan(l), 0.0, _stored(d, l, r)),
         0.375 * relaxing(motion, flat.tolist(), 2, memory),
+    )
+    moving = found[[e_.DEPTH, e_.RATE, e_.ALONG, e_.ALONG_RATE]]
+    return entries(given, moving, sums, stored, times.shape)
+
+
+def accumulated(integrated: Callable[[Array, Array], Array], starts: ArrayLike, s: Array) -> Array:
+    """Return the energies since the start at the times `s`: a row for each power.
+
+    `integrated` returns those between two arrays of times, a column for each power; `starts` are those of
+    the steps.
+    """
+    starts = np.array([start for start in np.asarray(starts) if start <= max(s, default=0.0)])
+    index = np.searchsorted(starts, s, side="right") - 1
+    parts = integrated(np.append(starts[:-1], starts[index]), np.append(starts[1:], s))
+    steps = starts.size - 1
+    sums = np.concatenate([np.zeros((1, parts.shape[1])), np.cumsum(parts[:steps], axis=0)])
+    return np.asarray((sums[index] + parts[steps:]).T)
+
+
+def entries(given: Any, moving: Array, sums: Array, stored: Any, shape: tuple[int, ...]) -> Ledger:
+    """Return the ledger: of d, d', x, x'; of work and dissipated energies; of what the foundation stores."""
+    d, v, x, w = moving
+    work, in_contact, in_surface, in_damper = sums
+    found = (
+        np.full(d.shape, _stored(1.0, -1.0, 1.0)),
+        work,
+        0.5 * (0.0 if given.fixed else given.eps) * v**2,
+        1.0 - d,
+        0.5 * given.kappa * (d - 1.0) ** 2,
+        *stored,
         in_contact,
         in_surface,
         0.5 * given.eps_x * w * w,
         0.5 * given.spring * x * x,
         in_damper,
     )
-    return Ledger(*(entry.reshape(times.shape)[()] for entry in entries))
+    return Ledger(*(entry.reshape(shape)[()] for entry in found))
 
 
 def _stored(d: Any, l: Any, r: Any) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
     FLOOR,
@@ -20,6 +21,7 @@ from kvtheory.models.continuum.error_estimate import (
 )
 from kvtheory.models.continuum.prony import evaluation as e_
 from kvtheory.models.continuum.prony.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.prony.energy import ledger
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solved_scene import ScaledMotion, end_of, scaled_drive
@@ -119,9 +121,9 @@ class SolvedPronyScene(ScaledMotion):
         xi = np.asarray(x, dtype=float) / self.units.half_length
         return self.motion.profile(task, xi, self.scaled(time))
 
-    def energy(self, time: ArrayLike) -> Any:
-        """Refuse: the energies behind the contact are not evaluated."""
-        raise ValueError("`energy` holds for Kelvin-Voigt only")
+    def energy(self, time: ArrayLike) -> Ledger:
+        """Return the energy ledger in J/m at the times (s)."""
+        return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
 
 
 def own_units(scene: Scene) -> StaticState:

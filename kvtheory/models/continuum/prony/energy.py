@@ -1,0 +1,231 @@
+r"""The energy ledger of a transient on a Prony series (facts F14 and F23).
+
+In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_i T_i), in the contact and
+where the surface relaxes behind it. The ledger takes the stresses of each element from the memory, not the
+moments from which the solver computes the forces, so that its balance checks them. Both are integrated by
+Gauss's rule over the ground that the edges passed: between the ends of steps, on panels that double from the
+present backwards, since the stresses of fast arms change there. The powers are integrated over each step.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import polynomial
+from numpy.typing import ArrayLike, NDArray
+
+from kvtheory.models.continuum.energy import Ledger, accumulated, entries
+from kvtheory.models.continuum.prony import evaluation as e_
+from kvtheory.models.continuum.prony.contact import (
+    DEPTHS,
+    EDGES,
+    FALL,
+    FREE,
+    NEVER,
+    PEELING,
+    SHARE,
+    SLIDES,
+    STIFFNESS,
+    STRESSES,
+    TIME,
+)
+from kvtheory.models.continuum.prony.records import SEGMENT
+from kvtheory.models.continuum.prony.trajectory import Trajectory
+from kvtheory.models.continuum.run import readable, structured
+from kvtheory.scene import base_motion as drive_
+
+Array = NDArray[np.float64]
+
+ABSCISSAE, WEIGHTS = (np.polynomial.legendre.leggauss(10) + np.array([[1.0], [0.0]])) * 0.5
+"""Gauss's rule on [0, 1]."""
+HALVINGS = 52
+"""Bisections for the instant at which an edge passed an element."""
+BLOCK = 20
+"""Number of times at which the integrals over the ground are evaluated together."""
+VOLUME, STORED, POWER = range(3)
+"""The integrals over the ground: of u, of u^2 + sum s_i^2/k_i, and of sum s_i^2/(k_i T_i)."""
+
+
+class Ground:
+    """The elements that the edges passed, with their stresses at any time."""
+
+    def __init__(self, motion: Trajectory) -> None:
+        run, self.motion = motion.run, motion
+        count = motion.counts.steps
+        self.steps, self.rows, self.memory = motion.steps, run.rows[:count], run.memory[:count]
+        self.segments = structured(run.segments[: motion.counts.segments], SEGMENT)
+        self.pieces, self.arms = np.asarray(run.pieces), np.asarray(run.arms)
+        self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
+        self.parts = [self._parts(index) for index in range(count)]
+        fastest, longest = 1.0 / float(self.arms[:, FALL].max()), float(motion.counts.s)
+        self.ages = fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
+
+    def step_at(self, s: Array) -> Any:
+        """Return the steps at times."""
+        return np.maximum(np.searchsorted(self.starts, s, side="right") - 1, 0)
+
+    def _parts(self, index: int) -> list[tuple[int, int, bool]]:
+        """Return the segments that a step finds, the edge that cuts each, and whether it is in contact."""
+        step, segments, found = self.steps[index], self.segments, []
+        peeled = [s["segment"] if s["state"] == PEELING else NEVER for s in step["sides"]]
+        for number in self.chain[step["first"] : step["first"] + step["count"]].tolist():
+            cuts = [k for k in range(2) if peeled[k] == number]
+            found.append((number, 2 if len(cuts) == 2 else (cuts or [NEVER])[0], True))
+        for k, side in enumerate(step["sides"]):
+            number = int(side["own"] if side["state"] == PEELING else side["segment"])
+            edge = NEVER if side["state"] in (PEELING, FREE) else k
+            while number != NEVER:
+                if segments[number]["step"] != NEVER:
+                    found.append((number, edge, False))
+                number, edge = int(segments[number]["next"]), NEVER
+        return found
+
+    def place(self, edge: Any, sigma: Array) -> tuple[Array, Array, Any, Array]:
+        """Return X of an edge at instants, dX/dsigma, and step and theta there."""
+        index = self.step_at(sigma)
+        step = self.steps[index]
+        theta = (sigma - step["start"]) / step["span"]
+        Y, number = self.slid(index, theta, sigma)
+        powers = self.rows[index, EDGES + edge].T
+        xi = polynomial.polyval(theta, powers, tensor=False)
+        rate = polynomial.polyval(theta, polynomial.polyder(powers), tensor=False) / step["span"]
+        return xi - Y, rate - number, index, theta
+
+    def slid(self, index: Any, theta: Array, s: Array) -> tuple[Array, Array]:
+        """Return Y and lambda of the base under the indenter."""
+        step = self.steps[index]
+        piece, along = self.pieces[step["piece"]].T, self.rows[index, e_.ALONG].T
+        t, powers = s - piece[drive_.START], piece[drive_.POWERS :]
+        Y = piece[drive_.DISPLACEMENT] + polynomial.polyval(
+            t, polynomial.polyint(powers), tensor=False
+        )
+        Y -= step["along"] + step["span"] * polynomial.polyval(
+            theta, polynomial.polyint(along), tensor=False
+        )
+        number = polynomial.polyval(t, powers, tensor=False)
+        return Y, number - polynomial.polyval(theta, along, tensor=False)
+
+    def instants(self, edge: Any, X: Array, low: Array, high: Array) -> Array:
+        """Return when an edge passed X, for each X, between two instants."""
+        rises = self.place(edge, low)[0] < self.place(edge, high)[0]
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            before = (self.place(edge, middle)[0] < X) == rises
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return high
+
+    def integrals(self, s: Array) -> Array:
+        """Return the three integrals, in the contact and outside it, at times: (2, 3, times)."""
+        blocks = [self._block(s[i : i + BLOCK]) for i in range(0, s.size, BLOCK)]
+        return np.concatenate([np.zeros((2, 3, 0)), *blocks], axis=-1)
+
+    def _block(self, s: Array) -> Array:
+        states = self.motion.states(s, peaks=False)
+        l, r, Y = states[e_.LEFT], states[e_.RIGHT], states[e_.TRAVEL]
+        indices = enumerate(self.step_at(s).tolist())
+        rows = [(i, *part) for i, index in indices for part in self.parts[index]]
+        found = np.zeros((2, 3, s.size))
+        if not rows:
+            return found
+        owner, number, cut, inside = (np.array(column) for column in zip(*rows, strict=True))
+        segment = self.segments[number]
+        rest = segment["step"] == NEVER
+        low, high = segment["a"].copy(), np.minimum(segment["b"], s[owner])
+        for side in range(2):
+            here = np.nonzero(~rest & ((cut == side) | (cut == 2)))[0]
+            X = (l, r)[side][owner[here]] - Y[owner[here]]
+            at = self.instants(segment["edge"][here], X, low[here], np.maximum(high, low)[here])
+            own = segment["edge"][here] == side
+            high[here], low[here] = np.where(own, at, high[here]), np.where(own, low[here], at)
+        low[rest] = np.maximum(segment["X_a"], (l - Y)[owner])[rest]
+        high[rest] = np.minimum(segment["X_b"], (r - Y)[owner])[rest]
+        panels = [self._panels(s[owner[k]], low[k], high[k], rest[k]) for k in range(len(rows))]
+        which = np.repeat(np.arange(len(rows)), [len(p) - 1 for p in panels])
+        a = np.concatenate([p[:-1] for p in panels])
+        width = np.concatenate([np.diff(p) for p in panels])
+        nodes = (a[:, None] + width[:, None] * ABSCISSAE).reshape(-1)
+        weights = (width[:, None] * WEIGHTS).reshape(-1)
+        which = np.repeat(which, ABSCISSAE.size)
+        for contact in (True, False):
+            of = inside[which] == contact
+            k = which[of]
+            values = self._values(
+                s[owner[k]], nodes[of], segment["edge"][k], rest[k], contact, states[:, owner[k]]
+            )
+            for n, value in enumerate(values):
+                found[0 if contact else 1, n] = np.bincount(owner[k], weights[of] * value, s.size)
+        return found
+
+    def _panels(self, s: float, low: float, high: float, rest: bool) -> Array:
+        """Return the ends of the panels of one segment."""
+        if not low < high:
+            return np.zeros(1)
+        if rest:
+            return np.array([low, high])
+        first, last = np.searchsorted(self.starts, [low, high], side="right")
+        ages = s - self.ages
+        inner = np.concatenate([self.starts[first:last], ages[(low < ages) & (ages < high)]])
+        return np.unique(np.concatenate([[low], inner, [high]]))
+
+    def _values(
+        self, s: Array, nodes: Array, edge: Any, rest: Any, contact: bool, states: Array
+    ) -> list[Array]:
+        """Return the three integrands at times `s` for elements that the edges passed at `nodes`.
+
+        Those in contact at rest have X instead of an instant.
+        """
+        k, T = self.arms[:, STIFFNESS, None], self.arms[:, TIME, None]
+        X, rate, index, theta = self.place(edge, np.where(rest, 0.0, nodes))
+        X, rate = np.where(rest, nodes, X), np.where(rest, 1.0, np.abs(rate))
+        past = lambda row: polynomial.polyval(theta, self.memory[index, :, row].T, tensor=False)  # noqa: E731
+        stress = polynomial.polyval(theta, self.memory[index, :, STRESSES + edge].T, tensor=False)
+        if contact:
+            xi, now = X + states[e_.TRAVEL], self.step_at(s)
+            u, xi_e = states[e_.DEPTH] - xi * xi, X + self.slid(index, theta, nodes)[0]
+            left = stress - k * (past(DEPTHS) - xi_e * past(SLIDES))
+            fade = np.exp(np.minimum((nodes - s) / T, 0.0))
+            when = (s - self.starts[now]) / self.steps["span"][now]
+            A, B = (
+                polynomial.polyval(when, self.memory[now, :, row].T, tensor=False)
+                for row in (DEPTHS, SLIDES)
+            )
+            stress = k * (A - xi * B) + np.where(rest, 0.0, left * fade)
+        else:
+            run = self.motion.run
+            modes = np.einsum("mi,iq->mq", run.to_modes, -stress.sum(axis=0) - stress / k)
+            modes = modes * np.exp(np.minimum((nodes - s) * self.arms[:, FALL, None], 0.0))
+            u = np.einsum("m,mq->q", self.arms[:, SHARE], modes)
+            stress = k * (u - np.einsum("im,mq->iq", run.from_modes, modes))
+        squares = stress * stress / k
+        return [u * rate, (u * u + squares.sum(axis=0)) * rate, (squares / T).sum(axis=0) * rate]
+
+
+def volume(motion: Trajectory, s: float) -> float:
+    """Return U = int u dxi over the whole surface; f_z = 3/4 (U + sum S_i), S_i' = k_i U' - S_i/T_i (F14)."""
+    return float(Ground(motion).integrals(np.array([s]))[:, VOLUME, 0].sum())
+
+
+def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
+    """Return the energy ledger at the times `s`, in their shape; its entries are as on Kelvin-Voigt.
+
+    >>> from kvtheory.models.continuum.prony.trajectory import solve
+    >>> from kvtheory.scene.base_motion import BaseMotion
+    >>> motion = solve(BaseMotion.constant(1.0, end=2.0), [(5.0, 1.0)], (0.04, 0.0), 2.0, 1e-9)
+    >>> books = ledger(motion, 1.0)
+    >>> print(f"{books.work:.6f} {books.dissipated_contact:.6f} {abs(books.balance) < 1e-8}")
+    0.705742 0.143332 True
+    """
+    times, ground, given = np.asarray(s, dtype=float), Ground(motion), readable(motion.run.given[0])
+    flat = times.reshape(-1)
+
+    def integrated(low: Array, high: Array) -> Array:
+        t = (low[:, None] + (high - low)[:, None] * ABSCISSAE).reshape(-1)
+        found, power = motion.states(t, peaks=False), 0.75 * ground.integrals(t)[:, POWER]
+        work, damper = found[e_.DRIVE] * found[e_.FRICTION_FORCE], found[e_.ALONG_RATE] ** 2
+        rows = np.stack([work, *power, given.damping * damper], axis=-1)
+        rows = rows.reshape(low.size, ABSCISSAE.size, rows.shape[-1])
+        return np.einsum("n,m,nmc->nc", high - low, WEIGHTS, rows)
+
+    sums = accumulated(integrated, ground.starts, flat)
+    found = motion.states(flat, peaks=False)
+    moving = found[[e_.DEPTH, e_.RATE, e_.ALONG_X, e_.ALONG_RATE]]
+    return entries(given, moving, sums, 0.375 * ground.integrals(flat)[:, STORED], times.shape)
