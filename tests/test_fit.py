@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from scipy.stats import t as student
 
 import kvtheory as kv
+from kvtheory.api._fit import _followed
 from kvtheory.cli import main
 from kvtheory.fitting import friction, records
 from kvtheory.fitting.least_squares import descend
@@ -258,16 +259,46 @@ def test_a_series_that_theory_does_not_follow_says_so():
     assert "the model is off, and the standard errors are too small" in note
 
 
-def test_rows_before_the_start_and_more_than_enough_are_left_out():
-    time = np.linspace(-0.1, 0.1, 6001)
-    force = np.interp(time, np.linspace(0.0, 0.1, 40), series(TABLE1)["friction_force [N/m]"])
-    found = records.read({"t [s]": time, "F_x [N/m]": force, "V [m/s]": 0.1 * (time > 0)}, TABLE1)
-    assert found.notes == (
-        "3000 rows before t = 0, where sliding begins, are not used.",
-        "One row in 2 is used.",
+def test_rows_before_the_start_are_left_out():
+    data = series(TABLE1)
+    time, force = data["t [ms]"] - 20.0, data["friction_force [N/m]"]
+    found = records.read({"t [ms]": time, "F_x [N/m]": force, "V [m/s]": 0.1 * (time > 0)}, TABLE1)
+    before = np.count_nonzero(time < 0.0)
+    assert found.notes == (f"{before} rows before t = 0, where sliding begins, are not used.",)
+    assert found.time == pytest.approx(1e-3 * time[before:])
+
+
+def long_series(scene, size, noise):
+    """Return a transient of many rows, with noise in N/m."""
+    time, rng = np.linspace(0.0, 0.2, size), np.random.default_rng(2)
+    F = kv.transient(scene, at=time, certify=False).friction_force
+    return {"t [s]": time, "F_x [N/m]": F + noise * rng.standard_normal(size)}
+
+
+@pytest.mark.parametrize("noise", [0.0, 50.0])
+def test_theory_over_the_bins_of_a_long_series_is_the_mean_of_its_rows(noise):
+    """Also where a stop of the drive is a jump of the friction force."""
+    stop = [["0 ms", "100 mm/s"], ["80 ms", "100 mm/s"], ["80 ms", "0 mm/s"], ["200 ms", "0 mm/s"]]
+    scene = kv.Scene(drive=kv.Drive(history=stop))
+    data = records.read(long_series(scene, 20_000, noise), scene)
+    assert data.size <= records.MOST_BINS
+    assert data.notes == (
+        f"20,000 rows over time were averaged to {data.size}; the misfit is of these.",
     )
-    assert found.time[0] == 0.0
-    assert found.size == found.time.size == 1501
+    problem = friction.Problem(scene, VOIGT[1:], (data,), METHODS["exact"], _followed)
+    (F,) = data.measured.values()
+    off = problem.residuals(np.log([[0.1]]))[0] * np.sqrt(np.mean(F * F))
+    expected = noise * np.sqrt(data.size / 20_000)
+    assert np.sqrt(np.mean(off * off)) == pytest.approx(expected, rel=0.3, abs=0.02)
+
+
+def test_averages_tell_as_much_as_all_rows(monkeypatch):
+    data = long_series(TABLE1, 600, 50.0)
+    few = kv.fit(TABLE1, data, free=VOIGT[1:]).parameters[VOIGT[1]]
+    monkeypatch.setattr(records, "MOST_BINS", 600)
+    every = kv.fit(TABLE1, data, free=VOIGT[1:]).parameters[VOIGT[1]]
+    assert abs(few.value - every.value) < 0.3 * every.standard_error
+    assert few.standard_error == pytest.approx(every.standard_error, rel=0.2)
 
 
 def test_a_long_record_is_thinned_at_random_so_that_no_condition_drops_out():
