@@ -198,7 +198,8 @@ def _misfit(problem: Any, point: Any) -> float:
 def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     """Return the transient at times (s) within a tolerance, with the friction coefficient."""
     if lacks_quadratic_on_arms(scene):
-        found = dict(vars(cheapest(scene, at=time, rtol=SIMULATED)))
+        series = cheapest(scene, at=time, rtol=SIMULATED)
+        found = {name: getattr(series, name) for name in SERIES_UNITS if hasattr(series, name)}
     else:
         found = dict(METHODS.transient(scene, time, rtol))
     with np.errstate(all="ignore"):
