@@ -364,6 +364,15 @@ def test_sliding_outside_the_measured_frequencies_is_noted(tmp_path):
     assert kv.solve(scene, quantity="friction_force").notes
     swept = kv.sweep(scene, over={"drive.velocity": V}, quantities="friction_force")
     assert "outside the frequencies" in swept.certificate.statement
+    wide = scene.replace(
+        {"foundation.lowest_frequency": "1 nHz", "foundation.highest_frequency": "1 EHz"}
+    )
+    report = kv.asymptotes(wide)
+    assert not report.notes
+    (note,) = kv.asymptotes(wide.replace({"foundation.lowest_frequency": "1 PHz"})).notes
+    assert "At the friction maximum at V = " in note
+    assert "V/c is outside the frequencies" in note
+    assert note.count("m/s") == len(report.maxima)
     path = tmp_path / "scene.toml"
     path.write_text(kv.to_toml(scene))
     assert kv.load_scene(path) == scene
