@@ -367,7 +367,7 @@ def test_what_no_model_follows_over_time_is_refused():
 
 MU = "V [mm/s],mu\n1,0.01\n10,0.05\n100,0.08\n1000,0.04\n"
 BAD = {
-    "no velocity": ("mu\n1\n", VOIGT, "line 2 holds numbers that no row of names precedes"),
+    "no velocity": ("mu\n1\n", VOIGT, 'line 1, "mu": has only friction_coefficient; expected'),
     "misspelt column": (
         MU.replace("mu", "mu,indenter.radus [mm]"),
         VOIGT,

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.fitting.tables import Reader, Table, named
+from kvtheory.fitting.tables import Reader, Table
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Scene
@@ -150,7 +150,7 @@ def read(data: Any, scene: Scene) -> Data:
     spelt = {key: key for key in keys} | {
         name: f"{name}, {own}" for name, own in CONDITIONS.items()
     }
-    names = named(spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT})
+    names = spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT}
     table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
     for head in table.ignored:
         if head.partition(".")[0] in SECTIONS:
