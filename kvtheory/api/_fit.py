@@ -156,13 +156,13 @@ def fit(
     name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
-    errors = np.sqrt(np.diag(best.covariance))
-    scale = np.outer(errors, errors)
+    limits = friction.intervals(problem, best)
+    scale = np.sqrt(np.outer(*[np.diag(best.covariance)] * 2))
     return FrictionFit(
         parameters={
             key: Parameter(value, float(value * error), tuple(np.exp(ends).tolist()))
             for key, value, error, ends in zip(
-                problem.keys, values, errors, friction.intervals(problem, best), strict=True
+                problem.keys, values, friction.standard_errors(best, limits), limits, strict=True
             )
         },
         correlations=tuple(map(tuple, (best.covariance / np.where(scale > 0.0, scale, 1.0)).tolist())),

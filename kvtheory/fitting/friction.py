@@ -356,6 +356,18 @@ def intervals(problem: Problem, found: Fit) -> Array:
     return limits.reshape(2, size).T
 
 
+def standard_errors(found: Fit, limits: Array) -> Array:
+    """Return the standard errors relative to the values.
+
+    They are those of linear theory, or the longer side of the 95 % interval over Student's t where that is
+    larger: where errors are not elliptic, two linear ones hold less than 95 %.
+    """
+    linear = np.sqrt(np.diag(found.covariance))
+    sides = np.abs(np.expm1(limits - found.point[:, None])).max(axis=1)
+    sides /= stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE)
+    return np.where(np.isfinite(sides), np.maximum(sides, linear), linear)
+
+
 def alike(problem: Problem, point: Array) -> list[str]:
     """Return a note on each column over time whose residuals are alike from row to row."""
     names = [(data, name) for data in problem.data for name in data.measured]
