@@ -5,6 +5,7 @@ from functools import reduce
 
 import sympy as sp
 
+from .forms import expanded
 from .identity import vanishes
 from .points import signs
 
@@ -46,7 +47,7 @@ def _lowest(expr: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
 def _series(expr: sp.Expr, h: sp.Symbol, count: int) -> _Series:
     """Return the first coefficients."""
     if not expr.has(h):
-        return [sp.expand(expr), *[sp.S.Zero] * (count - 1)]
+        return [expanded(expr), *[sp.S.Zero] * (count - 1)]
     if expr == h:
         return [sp.S.Zero, sp.S.One, *[sp.S.Zero] * (count - 2)]
     if expr.is_Pow and not expr.exp.has(h):
@@ -69,7 +70,7 @@ def _times(one: _Series, other: _Series) -> _Series:
 
 
 def _total(terms: Iterable[sp.Expr]) -> sp.Expr:
-    return sp.expand(sp.Add(*terms))
+    return expanded(sp.Add(*terms))
 
 
 def _power(u: _Series, exponent: sp.Expr) -> _Series:
@@ -81,7 +82,7 @@ def _power(u: _Series, exponent: sp.Expr) -> _Series:
     f = [u[0] ** exponent]
     for n in range(1, len(u)):
         terms = (((exponent + 1) * k - n) * u[k] * f[n - k] for k in range(1, n + 1))
-        f.append(sp.expand(sp.Add(*terms) / (n * u[0])))
+        f.append(expanded(sp.Add(*terms) / (n * u[0])))
     return f
 
 
