@@ -3,6 +3,7 @@
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import sympy as sp
@@ -10,8 +11,10 @@ from sympy.core.function import AppliedUndef
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
+    NONE,
     Conditions,
     Interval,
+    demands,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
@@ -25,6 +28,8 @@ class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute the statement."""
 
 
+DISTANCE = sp.Dummy("h", positive=True)
+"""The distance from the point of a limit: no other letter, whatever its name, is this one."""
 _SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
 """Functions that have all derivatives wherever their argument is real."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
@@ -275,7 +280,7 @@ def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[
     ]
     demanded = [gap for pair in ends for gap in pair if not gap.has(sp.oo, -sp.oo)]
     demanded += [gap for gap in (sign, *known.positive) if gap is not None and gap.has(variable)]
-    h, open_ones = sp.Symbol("h", positive=True), []
+    h, open_ones = DISTANCE, []
     for side in (-1,) if point == sp.oo else (1, -1) if point == 0 else (-1, 1):
         place = 1 / h if point == sp.oo else point + side * h
         local = (_reduced(gap.subs(variable, place)) for gap in demanded)
@@ -298,8 +303,47 @@ def leading_term(
 
     h is ``1/variable`` at infinity.
     """
-    h = sp.Symbol("h", positive=True)
+    h = DISTANCE
     return _leading(near(expr, variable, point, h, side), h)
+
+
+def limit_at(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions = NONE
+) -> sp.Expr:
+    """Return the limit that an expression has from one side, by its leading term there.
+
+    Only rational functions and power series decide: all else may oscillate. What must not vanish, or be
+    negative, for the expression to be defined must not do so near the point, whatever the other letters are.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> limit_at(sp.sin(x) / x, x, 0, 1), limit_at((x + 1) / (x**2 + 1), x, sp.oo, -1)
+    (1, 0)
+    """
+
+    def leading(part: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        found = _lowest_powers(part, DISTANCE) or leading_of_series(part, DISTANCE)
+        if found is None:
+            raise UndecidedError(f"{part} has no known power series")
+        return found
+
+    def is_sure(base: sp.Expr, proves: Callable[..., bool]) -> bool:
+        return proves(leading(near(base, variable, point, DISTANCE, side))[0], known)
+
+    nonzero, nonnegative = demands(expr)
+    roots = nonnegative - {base for base in nonnegative if base.is_nonnegative}
+    local = near(expr, variable, point, DISTANCE, side)
+    top, bottom = sp.fraction(local)
+    weight, order = leading(bottom)
+    defined = all(is_sure(base, proves_nonzero) for base in nonzero)
+    defined = defined and all(is_sure(base, proves_positive) for base in roots)
+    if not defined or not proves_nonzero(weight, known):
+        raise UndecidedError(f"{expr} may not be defined near {variable} = {point}")
+    if top == 0:
+        return sp.S.Zero
+    factor, power = leading(top)
+    if power < order:
+        raise UndecidedError(f"{expr} is not known to stay finite as {variable} -> {point}")
+    return factor / weight if power == order else sp.S.Zero
 
 
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
@@ -432,7 +476,7 @@ def _next_on(
     ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr, bool]:
     """Return (c, k, r) on one side of the point, and whether eps is positive there."""
-    h = sp.Symbol("h", positive=True)
+    h = DISTANCE
     local = near(ratio, variable, point, h, side)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:

@@ -136,7 +136,9 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         try:
             with _limited():
                 for argument in arguments.values():
-                    book._meant(argument, complex_too=name in _ALGEBRAIC)
+                    book._meant(
+                        argument, complex_too=name in _ALGEBRAIC, limits_too=name == "equal"
+                    )
                 return check(*args, **kwargs)
         except StepError:
             raise
@@ -516,17 +518,21 @@ class Book:
         words = ["argued"] if ARGUED in self._text else []
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
-    def _meant(self, argument: object, *, complex_too: bool = False) -> None:
+    def _meant(
+        self, argument: object, *, complex_too: bool = False, limits_too: bool = False
+    ) -> None:
         """Refuse what is no exact real value, and letters bound to places where they cannot be."""
         if isinstance(argument, tuple | list):
             for part in argument:
-                self._meant(part, complex_too=complex_too)
+                self._meant(part, complex_too=complex_too, limits_too=limits_too)
         if not isinstance(argument, sp.Basic) or not argument.args:
             return
         for node in sp.preorder_traversal(argument):
-            if isinstance(node, sp.Float | sp.Limit | sp.Order | sp.AccumBounds) or node in (
-                sp.zoo,
-                sp.nan,
+            inexact = isinstance(node, sp.Float | sp.Order | sp.AccumBounds)
+            if (
+                inexact
+                or node in (sp.zoo, sp.nan)
+                or (isinstance(node, sp.Limit) and not limits_too)
             ):
                 raise StepError(f"{self.label}: {node} is no exact value")
             if (
@@ -840,7 +846,7 @@ class Book:
                     raise StepError(
                         f"{self.label}: the notation {name} = {meaning} has another meaning here"
                     )
-            names |= {**CONSTANTS, **self.notation}
+            names |= {r"\pi": sp.pi, **CONSTANTS, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:
