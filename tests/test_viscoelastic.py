@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations.chapters import viscoelastic as theory
-from scipy.signal import lfilter
 
 import kvtheory as kv
 from kvtheory.models.steady import viscoelastic
@@ -164,6 +163,8 @@ LOPSIDED = kv.Profile(
 @pytest.mark.parametrize("shape", [*SHAPES, "lopsided"])
 def test_convolution_of_any_shape_agrees_with_a_row_of_elements(shape, side):
     """Elements that follow the shape at a constant depth, each arm exact over a step: order h."""
+    from scipy.signal import lfilter
+
     indenter, depth = SHAPES.get(shape, LOPSIDED), 1e-4 if shape in SHAPES else 1e-5
     fixed = kv.Scene(indenter, ZENER, kv.Fixed(depth), kv.Drive(0.1 * side))
     state = kv.steady(fixed, method="quadrature")
