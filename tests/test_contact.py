@@ -106,14 +106,6 @@ def test_flight_stays_above_all_that_was_left_and_ends_where_it_meets_that(point
         assert np.min(gaps) == pytest.approx(0.0, abs=1e-5) if s == hops[1] else np.min(gaps) > 0.0
 
 
-def test_fixed_indenter_has_the_edges_of_the_paper():
-    for number in (1e-4, 1.0, 1e4):
-        now = solve(BaseMotion.constant(number, 1.0), 1.0, FIXED, 1.0).at(0.7)
-        assert now.left == pytest.approx(-1.0, rel=1e-14)
-        assert now.right == pytest.approx(1 / (math.sqrt(1 + number * number) + number), rel=1e-13)
-        assert (now.left_state, now.right_state) == ("touching", "peeling")
-
-
 def test_an_edge_at_rest_on_ground_left_by_a_jump_follows_the_quadratic():
     """After a stop the right edge meets the strip that the start detached, at d = 1."""
     motion = solve(BaseMotion.from_points([(0, 4), (0.1, 4), (0.1, 0)], END), 1.0, FIXED, END)

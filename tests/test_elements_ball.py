@@ -79,16 +79,6 @@ def test_order_in_both_spacings():
     assert -np.polyfit(np.log(densities), np.log(left), 1)[0] > 1.8
 
 
-def test_profiles_of_revolution():
-    """That of a parabola is the ball."""
-    held = {"support": kv.Fixed(1e-4), "drive": kv.Drive(0.01), "run": kv.Run(0.05)}
-    how = {"per_length": "40 /mm", "at": [0.05], "certify": False}
-    found = kv.elements(kv.Scene(kv.Revolved(kv.Parabola(0.01)), **held), **how)
-    same = kv.elements(kv.Scene(kv.Sphere(0.01), **held), **how)
-    assert found.normal_force == pytest.approx(same.normal_force, rel=1e-12)
-    assert found.friction_force == pytest.approx(same.friction_force, rel=1e-12)
-
-
 def test_extremes_of_a_ball():
     """At rest, without inertia, with huge inertia, in flight: numbers, and no warning."""
     rest = kv.elements(ball(GRIPS["dead-weight"], 0.0, 0.1), at=[0.1], certify=False)

@@ -63,6 +63,14 @@ def test_every_quantity_agrees_with_the_independent_solution(name):
     assert worst(states, COLUMNS, TABLE[name]) <= ALLOWED
 
 
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10])
+def test_the_error_of_a_start_is_in_proportion_to_the_tolerance(rtol):
+    motion = {name: COLUMNS[name] for name in ("d", "v")}
+    for name in ref.TAYLOR | ref.TWO_STATES:
+        states = of_the_table(name, rtol).states(TABLE[name]["times"])
+        assert worst(states, motion, TABLE[name]) <= (4.0 if rtol > 1e-6 else 2.0) * rtol, name
+
+
 def test_table_is_of_these_scenes_with_these_errors():
     keys = "drive", "epsilon", "times", "kappa"
     assert {name: [found[key] for key in keys] for name, found in TABLE.items()} == {
