@@ -49,28 +49,6 @@ def run(*arguments, status=0):
 # Stability
 
 
-def test_contact_lengths_are_those_of_theory():
-    for V in (0.02, 0.1, -0.1):
-        steady, first = contact_lengths(sliding(V))
-        state = kv.steady(sliding(V))
-        assert steady == pytest.approx(abs(state.trailing_edge - state.leading_edge), rel=2e-3)
-        start = kv.transient(sliding(V), at=0.0)
-        expected = abs(start.trailing_edge - start.leading_edge)[0]
-        assert first == pytest.approx(expected, rel=2e-3)
-
-
-@pytest.mark.parametrize(("tau", "stable", "unstable"), [(0.1, 0.0142, 0.0125), (1.0, 0.1, 0.026)])
-def test_the_papers_scheme_diverges_below_some_velocity(tau, stable, unstable):
-    """F15: the theory gives 13.2 mm/s for tau = 0.1 s, and 29.5 mm/s for tau = 1 s."""
-    for V, factor in ((stable, 1.0), (unstable, -1.0)):
-        scene = sliding(V, tau)
-        steady = limit_at(SCHEMES["paper"], Model.of(scene).constants, contact_lengths(scene)[0])
-        assert factor * (steady - 1e-5 / V) > 0.0
-    kv.elements(sliding(stable, tau, duration=0.5), scheme="paper", certify=False)
-    with pytest.raises(DivergenceError, match=r"diverged at t = .* s, where"):
-        kv.elements(sliding(unstable, tau, duration=0.5), scheme="paper", certify=False)
-
-
 @pytest.mark.parametrize("scheme", ["paper", "explicit-euler"])
 def test_measured_stability_limit_is_the_derived_one(scheme):
     """From a steady state on: below the limit a run stays there, a little above it does not."""
@@ -362,22 +340,6 @@ def test_kernels_know_the_shapes_of_the_scene(shape):
     depth = 0.4 * float(shape.height(0.005))
     reached = kernels.extent(surface_of(shape), depth, 1.0)
     assert shape.height(reached) == pytest.approx(depth, rel=1e-13)
-
-
-def test_a_function_moves_the_base_as_the_same_history_does():
-    ramp = [(0.0, 0.0), (0.05, 0.1), (0.1, 0.1), (0.1, -0.05), (0.2, -0.05)]
-
-    def velocity(t):
-        return 2.0 * t if t < 0.05 else 0.1 if t < 0.1 else -0.05
-
-    drives = kv.Drive(history=ramp), kv.Drive(function=velocity, breaks=(0.05, 0.1))
-    one, other = (
-        kv.elements(kv.Scene(drive=drive), certify=False, at=[0.03, 0.1, 0.17]) for drive in drives
-    )
-    for name in TRANSIENT_UNITS:
-        np.testing.assert_allclose(
-            getattr(one, name), getattr(other, name), rtol=1e-7, err_msg=name
-        )
 
 
 def test_steps_that_find_no_element_fly():

@@ -108,18 +108,6 @@ def test_strips_are_added_where_the_ball_sinks():
     assert state.depth == pytest.approx(c.depth, rel=1e-6)
 
 
-def test_compare_judges_the_series_of_a_ball(tmp_path):
-    scene, path = ball(GRIPS["dead-weight"], 0.1, 0.1), tmp_path / "ball.csv"
-    run = kv.elements(scene, per_length="40 /mm", at=np.linspace(0.0, 0.1, 101), certify=False)
-    columns = np.transpose([1e3 * run.time, -1e3 * run.depth, run.normal_force, run.friction_force])
-    np.savetxt(path, columns, delimiter=",", header="t [ms],z_A [mm],F_z [N],F_x [N]", comments="")
-    found = kv.compare(scene, path)
-    assert (found.verdict, found.units["normal_force"]) == ("agrees", "N")
-    path.write_text(path.read_text().replace("F_z [N]", "F_z [N/mm]"))
-    with pytest.raises(ValueError, match=r'"F_z \[N/mm\]": the unit'):
-        kv.compare(scene, path)
-
-
 def test_solve_takes_the_cheapest_model_of_a_ball():
     fixed, risen = ball(GRIPS["fixed"], end=0.05), ball(GRIPS["dead-weight"], end=0.05)
     ramp = replace(fixed, drive=kv.Drive(history=[["0 s", "0 m/s"], ["20 ms", "0.1 m/s"]]))

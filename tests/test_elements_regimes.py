@@ -139,19 +139,6 @@ def test_whole_elements_carry_a_sawtooth_of_the_edge_pressure():
     assert corrected.max() < 2e-3 * predicted
 
 
-def test_table_1_against_the_continuum():
-    times = [0.0, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2]
-    theory = kv.transient(at=times, rtol=1e-10)
-    run = kv.elements(at=times)
-    scale = {"depth": 1e-5, "depth_rate": 2e-4, "normal_force": 2e-4, "friction_force": 2e-4,
-             "leading_edge": 1e-5, "trailing_edge": 3e-4, "peak_pressure": 1e-4}  # fmt: skip
-    for name, bound in scale.items():
-        expected = getattr(theory, name)
-        difference = np.abs(getattr(run, name) - expected).max() / np.abs(expected).max()
-        assert difference < bound, name
-    np.testing.assert_allclose(run.velocity, theory.velocity, rtol=1e-15)
-
-
 def test_a_start_faster_than_elements_pass_is_resolved():
     """The dampers stop the ball in a thirtieth of the time in which two elements pass."""
     scene = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(load="9.8 N"))
