@@ -103,6 +103,19 @@ def test_twenty_arms_over_ten_decades_relax_and_never_grow():
     assert 0.0 <= heights[-1] < 1e-12
 
 
+@pytest.mark.parametrize("h", [1e-4, 0.03, 2.0])
+def test_kelvin_voigt_is_the_limit_of_a_stiff_and_fast_arm_in_first_order(h):
+    """With K_1 tau_1 = C. Of the ways to take the mean, Kelvin-Voigt has that with weights; left is both."""
+    plain, off = Element.of(2.0, 0.5).step(h), []
+    for tau in (1e-6, 1e-7):
+        law = Element.of(2.0, 0.0, [(0.5 / tau, tau)])
+        arm = law.step(h)
+        state = np.array([1.0, -2.0])  # free of pressure: K u + s = 0
+        off.append(abs(left_alone(law, state, h)[0] - plain.fall[0]))
+        assert arm.damping == pytest.approx(plain.damping, rel=10 * tau / h)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+
+
 # Schemes
 
 
