@@ -5,19 +5,16 @@ with the simulator, and `kv.transient`. Scaled scenes have R = 1/2, K = 3/4, tau
 static half length and load are 1.
 """
 
-import json
-import math
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
-from tests.spring_random import of_unit_scales
+from tests.spring_random import in_si
 from tests.test_elements_certificate import errors
+from tests.test_transient_reference import SCENES, TABLE
 
-TABLE = json.loads((Path(__file__).parent / "data" / "transient_reference.json").read_text())
 COLUMNS = {"d": "depth", "v": "depth_rate", "f_z": "normal_force", "f_x": "friction_force",
            "left": "leading_edge", "right": "trailing_edge"}  # fmt: skip
 DENSITY = 60.0
@@ -29,15 +26,7 @@ POINT_SCHEMES = ("paper", "explicit-euler", "semi-implicit", "exponential")
 
 
 def scene(name):
-    entry, drive = TABLE[name], TABLE[name]["drive"]
-    motion = (
-        kv.Drive(history=[tuple(point) for point in drive]) if isinstance(drive, list) else None
-    )
-    if motion is None:
-        mean, amplitude, frequency = drive.values()
-        motion = kv.Drive(function=lambda t: mean + amplitude * math.cos(frequency * t))
-    kappa = math.inf if entry["epsilon"] is None else entry["kappa"]
-    return of_unit_scales(entry["epsilon"] or 1.0, kappa, motion, entry["times"][-1])
+    return in_si(SCENES[name])
 
 
 def simulate(name, density=DENSITY, **options):

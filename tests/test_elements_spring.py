@@ -14,7 +14,7 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.results import SERIES_UNITS
 from tests import spring_reference
-from tests.spring_random import Case, Spring
+from tests.spring_random import in_si
 from tests.test_elements_certificate import errors
 
 TABLE_1 = kv.Scene(
@@ -29,18 +29,10 @@ HARD = (
 """Of the reference scenes: all supports, stops, reversals, stick-slip, backward sliding and flight."""
 
 
-def hard(name):
-    """Return a reference scene and its times."""
-    given = spring_reference.SCENES[name]
-    kappa = math.inf if given.epsilon is None else given.kappa
-    spring = Spring(given.inertia, given.damping, given.stiffness)
-    case = Case(given.drive, given.epsilon or 1.0, kappa, spring, given.times[-1])
-    return case.scene(), list(given.times)
-
-
 @pytest.mark.parametrize("name", HARD)
 def test_elements_agree_with_the_continuum_and_the_certificate_covers(name):
-    scene, times = hard(name)
+    given = spring_reference.SCENES[name]
+    scene, times = in_si(given), given.times
     run = kv.elements(scene, per_length=40.0, at=times)
     truth = kv.transient(scene, at=times, rtol=1e-8, certify=False)
     found, claimed = errors(run, truth, scene), run.certificate.relative_error

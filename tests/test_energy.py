@@ -14,8 +14,9 @@ from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height, volume
 from kvtheory.scene.base_motion import BaseMotion
 from tests import SCENES
+from tests.spring_random import solved
 from tests.test_transient_random import KNOWN_FAILURES, random_case
-from tests.test_transient_reference import TABLE, of_the_table
+from tests.test_transient_reference import SCENES as REFERENCES
 
 RTOL, BALANCE, CHECKS = 1e-10, 1e-9, 6
 """Of each law, relative to what it sums up, at so many times."""
@@ -86,9 +87,9 @@ def unbalanced(motion):
     return float(np.max([impulse(motion), *np.abs(books.balance) / scale]))
 
 
-@pytest.mark.parametrize("name", [*TABLE, *HISTORIES])
+@pytest.mark.parametrize("name", [*REFERENCES, *HISTORIES])
 def test_both_laws_hold_in_each_scene_of_the_tables(name):
-    motion = of(name)[1] if name in HISTORIES else of_the_table(name, RTOL)
+    motion = of(name)[1] if name in HISTORIES else solved(REFERENCES[name], RTOL)
     assert unbalanced(motion) <= BALANCE
 
 

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import math
 
 import numpy as np
 import pytest
@@ -17,10 +16,10 @@ from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from kvtheory.scene.base_motion import BaseMotion, evaluate
-from tests import SCENES
+from tests import SCENES, spring_random
 from tests import spring_reference as ref
-from tests.spring_random import Case, balances, random_case
-from tests.test_transient_reference import drive, worst
+from tests.spring_random import balances, in_si, random_case
+from tests.test_transient_reference import worst
 
 TABLE = json.loads(ref.TABLE.read_text())
 COLUMNS = {
@@ -30,11 +29,7 @@ COLUMNS = {
 
 
 def solved(name, rtol=1e-9):
-    scene = ref.SCENES[name]
-    kappa = math.inf if scene.epsilon is None else scene.kappa
-    spring = Spring(scene.inertia, scene.damping, scene.stiffness)
-    end = scene.times[-1]
-    return solve(drive(scene.drive, end), scene.epsilon or 1.0, kappa, end, rtol, spring=spring)
+    return spring_random.solved(ref.SCENES[name], rtol)
 
 
 @pytest.mark.parametrize("name", ref.SCENES)
@@ -136,10 +131,7 @@ def test_series_of_a_scene_with_a_spring():
 def test_edges_follow_the_sign_of_the_sliding_velocity():
     name = "hop"
     motion = solved(name)
-    given = ref.SCENES[name]
-    spring = Spring(given.inertia, given.damping, given.stiffness)
-    case = Case(given.drive, given.epsilon, given.kappa, spring, given.times[-1])
-    result = kv.transient(case.scene(), rtol=1e-8)
+    result = kv.transient(in_si(ref.SCENES[name]), rtol=1e-8)
     touching = ~np.isnan(result.leading_edge)
     forward = result.sliding_velocity > 0.0
     left = np.minimum(result.leading_edge, result.trailing_edge)
