@@ -1,12 +1,10 @@
 """Anybody's time series, read and held against theory: what agrees, and what cannot be judged."""
 
-import json
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.api._compare import METHODS
@@ -15,12 +13,12 @@ from kvtheory.checks.comparing import verdict
 from kvtheory.checks.comparison_case import make_case
 from kvtheory.checks.hypotheses import scaled_scene
 from kvtheory.checks.theory import Theory
-from kvtheory.cli import main
 from kvtheory.fitting.series import MOST_ROWS, SPELLINGS, read
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
 from tests import SCENES as MANY
 from tests import confusion
+from tests.commands import printed, refused, run
 from tests.confusion import disturbed
 from tests.faulty_simulator import first_order, simulate
 
@@ -204,10 +202,8 @@ def test_our_own_run_that_diverges_disagrees_and_is_written(tmp_path):
     report = tmp_path / "r.html"
     pictures = ["--plot", str(tmp_path / "p.svg"), "--report", str(report)]
     for velocity, outputs in (("12.5 mm/s", pictures), ("0.01 mm/s", [])):
-        given = ["compare", "--scheme", "paper", "--set", f"drive.velocity={velocity}", "--json"]
-        result = CliRunner().invoke(main, given + outputs)
-        assert result.exit_code == 1, result.output
-        record = json.loads(result.stdout)
+        given = "compare", "--scheme", "paper", "--set", f"drive.velocity={velocity}"
+        record = printed(*given, *outputs, status=1)
         assert [check["name"] for check in record["checks"]] == ["run to the end"]
         assert "The time step is unstable (F15): the run diverged at t = " in record["diagnosis"]
     assert "unstable" in report.read_text(encoding="utf-8")
@@ -357,10 +353,8 @@ def test_few_rows_cannot_tell(tmp_path, sound):
     found = kv.compare(data=few)
     assert (found.verdict, found.explanations) == ("cannot tell", ())
     path = write(tmp_path / "few.csv", few)
-    report = ["--report", str(tmp_path / "r.html")]
-    result = CliRunner().invoke(main, ["compare", "--data", str(path), "--json", *report])
-    assert result.exit_code == 0, result.output
-    assert json.loads(result.stdout)["verdict"] == "cannot tell"
+    record = printed("compare", "--data", path, "--report", tmp_path / "r.html")
+    assert record["verdict"] == "cannot tell"
 
 
 # Columns and files
@@ -468,12 +462,8 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
     text, message = BAD[name]
     path = tmp_path / "bad.csv"
     path.write_text(text, encoding="utf-8")
-    outputs = ["--report", str(tmp_path / "r.html"), "--plot", str(tmp_path / "p.png")]
-    given = ["compare", "--data", str(path), *outputs]
-    result = CliRunner().invoke(main, given)
-    assert result.exit_code == 2
-    assert message.replace("diverged", "diverges") in result.stderr
-    assert result.stdout == ""
+    outputs = "--report", tmp_path / "r.html", "--plot", tmp_path / "p.png"
+    refused(["compare", "--data", path, *outputs], [message.replace("diverged", "diverges")])
     assert [file.name for file in tmp_path.iterdir()] == ["bad.csv"]
 
 
@@ -497,10 +487,7 @@ def test_bad_arguments_are_named(sound, options, message):
 def test_the_command(tmp_path, sound):
     path = write(tmp_path / "mine.csv", {**sound, "friction_force": -sound["friction_force"]})
     report, plot = tmp_path / "r.html", tmp_path / "p.svg"
-    given = ["compare", "--data", str(path), "--json", "--report", str(report), "--plot", str(plot)]
-    result = CliRunner().invoke(main, given)
-    assert result.exit_code == 1, result.output
-    record = json.loads(result.stdout)
+    record = printed("compare", "--data", path, "--report", report, "--plot", plot, status=1)
     assert record["verdict"] == "disagrees"
     assert {"name", "measured", "allowed", "ok"} <= set(record["checks"][0])
     assert "wrong sign" in record["diagnosis"]
@@ -509,11 +496,9 @@ def test_the_command(tmp_path, sound):
     assert "<svg" in page
     assert not any(word in page for word in ("<script", "src=", "@import", "<link"))
     assert plot.read_text(encoding="utf-8").startswith("<?xml")
-    backward = ["--data", str(path), "--set", "drive.velocity=-100 mm/s"]
-    again = CliRunner().invoke(main, ["compare", *backward])
-    assert again.exit_code == 0, again.output
+    again = run("compare", "--data", path, "--set", "drive.velocity=-100 mm/s")
     assert "agrees with theory" in again.stdout
-    shown = CliRunner().invoke(main, ["compare", "--help"])
+    shown = run("compare", "--help")
     assert "kvtheory compare" in shown.stdout.split("Example")[1]
 
 

@@ -1,18 +1,15 @@
 """`kv.elements` and `kvtheory elements`: stability, memory, shapes, symmetry, files and errors."""
 
 import csv
-import json
 import math
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts.stability import contact_lengths
-from kvtheory.cli import main
 from kvtheory.models.elements import kernels, row, simulation
 from kvtheory.models.elements.model import Model, surface_of
 from kvtheory.models.elements.row import ElementRow, IndenterState
@@ -20,6 +17,7 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.errors import DivergenceError
+from tests.commands import printed, refused, run
 from tests.test_elements_certificate import errors
 
 IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
@@ -38,12 +36,6 @@ def sliding(velocity, tau=0.1, support="dead-weight", duration=0.2, **changes):
         run=kv.Run(duration),
         **changes,
     )
-
-
-def run(*arguments, status=0):
-    result = CliRunner().invoke(main, ["elements", *arguments])
-    assert result.exit_code == status, result.output
-    return result
 
 
 # Stability
@@ -404,18 +396,18 @@ def test_the_papers_step_needs_motion():
 
 def test_command_prints_and_writes(tmp_path):
     shorter = ["--set", "run.duration=0.1 s"]
-    record = json.loads(run("--json", "--at", "0 ms,1 ms,200 ms").stdout)
+    record = printed("elements", "--at", "0 ms,1 ms,200 ms")
     assert list(record)[: len(TRANSIENT_UNITS)] == list(TRANSIENT_UNITS)
     assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-3)
     assert (record["model"], record["scheme"]) == ("elements", "edge-corrected")
     target = tmp_path / "run.csv"
-    shown = run("-o", str(target), "--per-length", "50 /mm", *shorter).stdout
+    shown = run("elements", "-o", target, "--per-length", "50 /mm", *shorter).stdout
     assert "nan" not in shown
     assert "50 elements per mm" in shown
     with target.open(newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0][:3] == ["time [s]", "velocity [m/s]", "depth [m]"]
-    run("-o", str(tmp_path / "run.nc"), "--per-length", "50 /mm", *shorter)
+    run("elements", "-o", tmp_path / "run.nc", "--per-length", "50 /mm", *shorter)
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as data:
         assert data.attrs["model"] == "elements"
@@ -436,8 +428,5 @@ def test_command_prints_and_writes(tmp_path):
 )  # fmt: skip
 def test_bad_input_costs_status_2_and_writes_nothing(arguments, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = run(*arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
+    refused(["elements", *arguments], words)
     assert not list(tmp_path.iterdir())

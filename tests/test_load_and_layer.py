@@ -1,7 +1,6 @@
 """A load instead of a weight, and a thin layer instead of a stiffness: one scene in other words."""
 
 import copy
-import json
 import pickle
 import re
 import tomllib
@@ -9,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
 from kvtheory.scene.foundations import THIN, layer_stiffness
+from tests.commands import printed, run
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
@@ -150,8 +148,8 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
 def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
     given = [*LAYER_KEYS, f"indenter.shape={shape}"]
     command = ["scene", *(f"--set={each}" for each in given)]
-    told = CliRunner().invoke(main, command, catch_exceptions=False).stdout
-    (note,) = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)["notes"]
+    told = run(*command).stdout
+    (note,) = printed(*command)["notes"]
     assert note in told
     assert (note,) == kv.steady(kv.load_scene(overrides=given), over={"drive.velocity": 0.0}).notes
 

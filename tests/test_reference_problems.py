@@ -8,17 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from figures import reference_problems
-from kvtheory.cli import main
 from kvtheory.reference_problems import problem_text
 from kvtheory.results.table import scales
 from kvtheory.scene.foundations import FOUNDATIONS
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.static_state import StaticState
+from tests import commands
 
 FOLDERS = {
     "paper-fixed": "transient",
@@ -105,19 +104,17 @@ def test_those_on_rubber_have_the_values_of_other_programs(name):
 def test_the_command_prints_what_the_library_loads(tmp_path):
     path = tmp_path / "scene.toml"
     for name, title in kv.problems().items():
-        done = CliRunner().invoke(main, ["scene", "--problem", name])
-        assert done.exit_code == 0
+        done = commands.run("scene", "--problem", name)
         assert done.output == problem_text(name)
         assert title in done.output
         path.write_text(done.output)
         assert kv.load_scene(path) == kv.problem(name)
-    assert "take-off" in CliRunner().invoke(main, ["scene", "--problem", "list"]).output
+    assert "take-off" in commands.run("scene", "--problem", "list").output
 
 
 @pytest.mark.parametrize("options", [["--problem", "wegde"], ["--problem", "wedge", "--json"]])
 def test_a_mistake_costs_one_message(options):
-    done = CliRunner().invoke(main, ["scene", *options])
-    assert done.exit_code == 2
+    done = commands.run("scene", *options, status=2)
     assert done.output.count("\n") == 1
     assert 'did you mean "wedge"' in done.output or "does not go with" in done.output
 
@@ -186,7 +183,7 @@ def test_the_script_of_a_ball_names_a_fault_and_what_cannot_be_read(folders, run
 def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path, run):
     folder = tmp_path / "problem"
     given = ["scene", "--problem", "springpot", "-o", str(folder)]
-    assert CliRunner().invoke(main, given).exit_code == 0
+    commands.run(*given)
     assert {"scene.toml", "reference.csv", "criteria.json", "judge.py"} <= {
         f.name for f in folder.iterdir()
     }
@@ -199,7 +196,5 @@ def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path, run
         (folder / "mine.csv").write_text("\n".join(["V [mm/s];F_x [N/mm]", *rows]))
         assert run(folder / "judge.py", folder / "mine.csv")[0] == status
     assert run(folder / "judge.py", folder / "nothing.csv")[0] == 2
-    again = CliRunner().invoke(main, given)
-    assert (again.exit_code, "is not an empty folder" in again.output) == (2, True)
-    nothing = CliRunner().invoke(main, ["scene", "-o", str(tmp_path / "other")])
-    assert (nothing.exit_code, "--problem NAME" in nothing.output) == (2, True)
+    commands.refused(given, ["is not an empty folder"])
+    commands.refused(["scene", "-o", tmp_path / "other"], ["--problem NAME"])
