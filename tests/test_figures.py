@@ -327,37 +327,19 @@ def test_the_peak_is_that_of_the_fixed_indenter_and_no_inertia_changes_it(made):
     assert data.ratio == pytest.approx(np.tile(ratio, (onset_maps.INERTIAS.size, 1)), rel=1e-9)
 
 
-def test_hops_come_with_speed_and_mass(made):
-    data, _, _ = made["onset_maps"]
+def test_hops_and_settling_come_with_speed_and_mass_as_the_maps_show(made):
+    data, drawn, _ = made["onset_maps"]
     assert not data.hops[:, onset_maps.NUMBERS < 1.0].any()
     assert data.hops[-1, -1] > 1
     assert (data.hops[0] <= 1).all()
-
-
-def test_what_settles_at_once_is_slow_and_what_does_not_is_fast_and_heavy(made):
-    data, _, _ = made["onset_maps"]
-    at_once = data.settling == 0.0
+    at_once, later = data.settling == 0.0, np.isnan(data.settling)
     assert at_once[:, onset_maps.NUMBERS < 0.1].all()
     assert not at_once[:, onset_maps.NUMBERS > 0.2].any()
     inertia, number = np.meshgrid(onset_maps.INERTIAS, onset_maps.NUMBERS, indexing="ij")
-    later = np.isnan(data.settling)
-    assert later.any()
-    assert (number * inertia)[later].min() > 5.0
-
-
-def test_the_columns_of_the_onset_are_its_maps(made):
-    data, _, _ = made["onset_maps"]
-    assert np.array_equal(data.columns["hops [1]"], data.hops.reshape(-1))
-    told = data.columns["settling_time/tau [1]"]
-    assert told.count("later") == np.isnan(data.settling).sum()
-
-
-def test_the_picture_of_the_onset_shows_its_maps(made):
-    data, drawn, _ = made["onset_maps"]
-    shown = drawn.axes[0].collections[0].get_array()
-    assert np.array_equal(np.asarray(shown), data.ratio)
-    hops = drawn.axes[2].collections[0].get_array()
-    assert np.array_equal(np.asarray(hops), data.hops)
+    assert (number * inertia)[later].min(initial=np.inf) > 5.0
+    assert data.columns["settling_time/tau [1]"].count("later") == later.sum() > 0
+    for ax, values in ((0, data.ratio), (2, data.hops)):
+        assert np.array_equal(drawn.axes[ax].collections[0].get_array(), values)
 
 
 def test_on_rubber_sliding_starts_without_the_first_peak_of_kelvin_voigt(made):
