@@ -38,6 +38,7 @@ REFINED, BISECTIONS, SAMPLES = 30, 60, 3
 """Evaluations in the search for the peak between two samples, bisections for the instant at which an edge
 passed a place, and samples in each step of the history."""
 GOLDEN = 0.6180339887498949
+ROUNDING = 1e-12
 
 
 def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
@@ -96,7 +97,9 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
         at_rest = segment.step == NEVER
         low = max(segment.X_a, state[LEFT] - state[TRAVEL]) if at_rest else segment.a
         high = min(segment.X_b, state[RIGHT] - state[TRAVEL]) if at_rest else min(segment.b, s)
-        if not low < high:
+        if not at_rest:
+            low, high = inside(run, s, state, number, low, high)
+        if not high - low > ROUNDING * s:
             continue
         j = NEVER if at_rest else step_at(run, low)
         best, before, place, after, at = -math.inf, low, low, high, low
@@ -111,7 +114,7 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
             if at_rest:
                 at = min(at + (high - low) / (2 * SAMPLES), high)
             else:
-                width = run.steps[j].span / SAMPLES
+                width = min(run.steps[j].span, high - low) / SAMPLES
                 at = min(at + width, high)
                 while j < index and run.steps[j + 1].start <= at:
                     j += 1
@@ -119,6 +122,18 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
         if best > 0.0:
             largest = max(largest, golden(run, s, state, number, before, min(after, high)))
     return largest
+
+
+def inside(
+    run: Run, s: float, state: Any, number: int, low: float, high: float
+) -> tuple[float, float]:
+    """Return the instants between which the elements of a segment entered that are in contact."""
+    first, last = (LEFT, RIGHT) if run.segments[number].edge == 1 else (RIGHT, LEFT)
+    if pressure_of(run, s, state, number, low) == -math.inf:
+        low = instant_of(run, number, s, state[first] - state[TRAVEL])
+    if pressure_of(run, s, state, number, high) == -math.inf:
+        high = instant_of(run, number, s, state[last] - state[TRAVEL])
+    return low, high
 
 
 def last_of(at: float, low: float, place: float) -> float:
