@@ -448,7 +448,9 @@ class Book:
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
         known = self._conditions
-        if check == "equal" and _bare(lhs) == _bare(rhs):  # what the page shows, as it was read back
+        if check == "equal" and _bare(lhs) == _bare(
+            rhs
+        ):  # what the page shows, as it was read back
             lhs, rhs = self._read.get("left", lhs), self._read.get("right", rhs)
         sides = sp.sympify(lhs), sp.sympify(rhs)
         return Claim(check, *sides, arguments, rules, known.positive, known.intervals)
