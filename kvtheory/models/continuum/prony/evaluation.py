@@ -34,9 +34,9 @@ SIZE = 14
 """Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
 both edges, both forces, the largest pressure, Y, and the states of both edges."""
 
-REFINED, BISECTIONS, SAMPLES = 30, 60, 3
-"""Evaluations in the search for the peak between two samples, bisections for the instant at which an edge
-passed a place, and samples in each step of the history."""
+REFINED, BISECTIONS, SAMPLES = 8, 60, 3
+"""Golden sections in the search for the peak between two samples, before a parabola; bisections for the
+instant at which an edge passed a place; samples in each step of the history."""
 GOLDEN = 0.6180339887498949
 ROUNDING = 1e-12
 
@@ -142,20 +142,24 @@ def last_of(at: float, low: float, place: float) -> float:
 
 
 def golden(run: Run, s: float, state: Any, number: int, low: float, high: float) -> float:
-    """Return the largest pressure between two places of a segment, by golden sections."""
+    """Return the largest pressure between two places of a segment: by golden sections, then a parabola."""
     one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     f, g = (pressure_of(run, s, state, number, one), pressure_of(run, s, state, number, two))
-    largest = max(f, g)
+    beside, h = two, g
     for _ in range(REFINED):
         if f > g:
-            high, two, g = two, one, f
+            beside, h, high, two, g = two, g, two, one, f
             one = high - GOLDEN * (high - low)
             f = pressure_of(run, s, state, number, one)
         else:
-            low, one, f = one, two, g
+            beside, h, low, one, f = one, f, one, two, g
             two = low + GOLDEN * (high - low)
             g = pressure_of(run, s, state, number, two)
-        largest = max(largest, f, g)
+    largest = max(f, g)
+    fall, rise = (f - h) * (one - two), (f - g) * (one - beside)
+    if min(f, g, h) > -math.inf and fall != rise:
+        top = one - 0.5 * (fall * (one - two) - rise * (one - beside)) / (fall - rise)
+        largest = max(largest, pressure_of(run, s, state, number, min(max(top, low), high)))
     return largest
 
 
