@@ -14,18 +14,12 @@ from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.plan import Plan, axes_of, columns_of
+from tests.sweep_driver import assert_same
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}
 # The smallest of these velocities underflows in steady sliding; the others do not.
 FAILING = {V: [1e-3, 1e-320, 0.1, 1e300], TAU: [0.1, 1e-300]}
-
-
-def assert_same(a, b):
-    assert a.shape == b.shape
-    assert list(a.values) == list(b.values)
-    for name in a.values:
-        assert np.array_equal(a[name], b[name], equal_nan=a.units[name] != ""), name
 
 
 def test_a_grid_equals_the_steady_states_of_its_points():
@@ -181,6 +175,7 @@ def test_netcdf_is_labelled_and_carries_units_scene_and_failures(tmp_path):
         ({(V, TAU): 1.0}, ["a list for each key"]),
         ({"a.b": [1.0], V: "x", TAU: [-1.0]}, ["a.b", V, TAU]),  # all mistakes at once
         ({"quantities": ["friction_coeficient"]}, ['did you mean "friction_coefficient"']),
+        ({"quantities": ["WRONG"]}, ["expected one of 72 names, such as"]),
         ({"quantities": []}, ["empty"]),
         ({"quantities": "depth.mean"}, ["depth.mean", "depth.min"]),
         ({"at": ["1 s"], "quantities": "depth"}, ["after the end"]),
