@@ -97,7 +97,12 @@ else
 endif
 	@touch $(HELD) $@
 
-$(LOWEST)/.installed: pyproject.toml constraints-lowest.txt
-	$(PYTHON) -m venv $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --no-compile --constraint constraints-lowest.txt --editable '.[fast,data,test]'
+# The pip of the other environment serves this one too: to unpack one for each takes seconds.
+$(LOWEST)/.installed: pyproject.toml constraints-lowest.txt | $(BIN)/python
+	$(PYTHON) -m venv --without-pip $(LOWEST)
+ifdef UV
+	$(UV) pip install --quiet --python $(LOWEST)/bin/python --constraint constraints-lowest.txt --editable '.[fast,data,test]'
+else
+	$(BIN)/python -m pip --python $(LOWEST)/bin/python install --quiet --no-compile --constraint constraints-lowest.txt --editable '.[fast,data,test]'
+endif
 	@touch $@

@@ -4,7 +4,6 @@ Each plant is a run of `tests.faulty_simulator`, changed as its name says, which
 unchanged scene is held against.
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
@@ -143,57 +142,6 @@ def quick():
 
 
 FEW = ("time", "depth", "normal_force", "friction_force")
-BEYOND, HALVINGS = 1.5, 32
-"""How far the points reach on either side of the indenter, in static half lengths; steps of the bisection."""
-
-
-def by_points(points, steps, *, key="", factor=1.0, plant="", value=0.0):
-    """Return a start of Table 1 in SI by a simulator that was written without looking at the diagnosis.
-
-    A row of points with exact memory, u <- max(g, u e^(-h/tau)); what this leaves over, on average over the
-    step, is the pressure, and the new depth is found by bisection. One parameter may be multiplied, and
-    `plant` breaks it.
-    """
-    scene = scaled_scene(kv.Scene(), {key: 1.0}, factor) if key else kv.Scene()
-    R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
-    M, W, V = scene.support.mass, scene.support.mass * scene.support.gravity, scene.drive.velocity
-    depth_0 = (0.75 * W / (K * math.sqrt(2 * R))) ** (2 / 3)
-    R *= value if plant == "radius at the right depth" else 1.0
-    a, h = math.sqrt(2 * R * depth_0), scene.run.duration / steps
-    dx, t = a / points, np.arange(steps + 1) * h
-    X = np.arange(math.floor((-BEYOND * a - V * t[-1]) / dx), math.ceil(BEYOND * a / dx) + 1) * dx
-    rate, rows = 0.0, []
-    depth = depth_0 * {"initial depth": value, "undeformed": 0.0}.get(plant, 1.0)
-    u, decay = np.maximum(depth - X**2 / (2 * R), 0.0), math.exp(-h / tau)
-    inertia, arm = M * (plant != "no inertia"), value if plant == "lever arm" else 0.0
-
-    def press(d, x, free):
-        new = np.maximum(d - x * x / (2 * R), free)
-        return K * (new - free) / -math.expm1(-h / tau), new
-
-    for k in range(steps + 1):
-        near = slice(*np.searchsorted(X + V * t[k], [-BEYOND * a, BEYOND * a]))
-        x, free = X[near] + V * t[k], u[near] * decay
-        if k == 0:
-            p = np.where(u[near] > 0, K * np.maximum(u[near] - tau * x / R * V, 0.0), 0.0)
-        else:
-            low, high = depth - 0.5 * depth_0, depth + 0.5 * depth_0
-            for _ in range(HALVINGS):
-                d = 0.5 * (low + high)
-                change = inertia * ((d - depth) / h - rate) / h
-                low, high = (
-                    (low, d) if change - W + dx * press(d, x, free)[0].sum() > 0 else (d, high)
-                )
-            rate, depth = (d - depth) / h, d
-            p, new = press(depth, x, free)
-            u = u * decay
-            u[near] = new
-        on = np.flatnonzero(p > 1e-9 * K * depth_0)
-        edges = (x[on[0]], x[on[-1]]) if on.size else (math.nan, math.nan)
-        F_x = -dx * ((x - arm) * p).sum() / R
-        rows.append((t[k], depth, dx * p.sum(), F_x, rate, *edges, p.max()))
-    names = (*FEW, "depth_rate", "leading_edge", "trailing_edge", "peak_pressure")
-    return dict(zip(names, np.array(rows).T, strict=True))
 
 
 def disturbed(exact, seed, level, digits=None):

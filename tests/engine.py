@@ -28,7 +28,8 @@ def run(
     """Return a series in SI: the base moves at V(t), whose last argument says which side of a jump counts.
 
     Faults: `slides` or `remembers` false, `hunt` (the damping grows with the compression), `middle` (friction
-    by the normal in the middle of the patch), `share` of the contact, `loaded` (arms at the start).
+    by the normal in the middle of the patch), `share` of the contact, `loaded` (arms at the start), `start`
+    (factor on the initial depth).
     """
     slides, remembers = fault.get("slides", True), fault.get("remembers", True)
     K_i, T_i = np.array(arms, dtype=float).reshape(-1, 2).T[:, :, None, None]
@@ -41,7 +42,8 @@ def run(
     y, area = (np.arange(1.5 * per_a)[:, None] + 0.5) * dx, 2 * dx * dx
     if not ball:
         y, area = np.zeros((1, 1)), dx
-    u = np.maximum(depth - (X**2 + y * y) / (2 * R), 0.0)
+    start = depth * fault.get("start", 1.0)
+    u = np.maximum(start - (X**2 + y * y) / (2 * R), 0.0)
     s = K_i * u * fault.get("loaded", 0.0)
     E, kept = math.exp(-h * K / C) if C else 0.0, np.exp(-h / T_i)
     gain = K_i * T_i / h * (1 - kept)
@@ -70,14 +72,14 @@ def run(
         F_x = -F_z * ends.mean() / R if fault.get("middle") else F_x
         return F_z, F_x, share * (stiff * held).sum(), ends, p.max(), new, new_s
 
-    d, rate, pull, rows = depth, 0.0, 0.0, []
+    d, rate, pull, rows = start, 0.0, 0.0, []
     for k in range(steps + 1):
         if k:
-            start, rate_0, d_0 = pull, rate, d
+            pull_0, rate_0, d_0 = pull, rate, d
             for _ in range(2):
                 d = d_0 + h * (rate_0 + rate) / 2
                 F_z, _, slope, *_ = press(d, rate, k, left[k], True)
-                rate -= (rate - rate_0 - h * (start + (W - F_z) / M) / 2) / (1 + h / 2 * slope / M)
+                rate -= (rate - rate_0 - h * (pull_0 + (W - F_z) / M) / 2) / (1 + h / 2 * slope / M)
             d = d_0 + h * (rate_0 + rate) / 2
             *_, u, s = press(d, rate, k, left[k], True)
         F_z, F_x, _, ends, peak, *_ = press(d, rate, k, right[k], False)

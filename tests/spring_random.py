@@ -1,4 +1,4 @@
-"""Random scenes on a spring, in scaled form, and how well their motions keep the balances."""
+"""Scenes of the reference tables, random ones on a spring, and how well motions keep the balances."""
 
 import math
 from dataclasses import dataclass
@@ -26,6 +26,31 @@ def of_unit_scales(eps, kappa, drive, end=1.0, *, ball=False):
         support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
     shape, K = (kv.Sphere(0.5), 2.0 / math.pi) if ball else (kv.Parabola(0.5), 0.75)
     return kv.Scene(shape, kv.Foundation(K, 1.0), support, drive, kv.Run(end))
+
+
+def solved(given, rtol=1e-9):
+    """Follow a scene of the reference tables (`tests.transient_history.Scene`)."""
+    end, kappa = given.times[-1], math.inf if given.epsilon is None else given.kappa
+    if isinstance(given.drive, list):
+        drive = BaseMotion.from_points(given.drive, end)
+    else:
+        drive = BaseMotion.from_function(swing(**given.drive), end)
+    spring = given.inertia and Spring(given.inertia, given.damping, given.stiffness)
+    return solve(drive, given.epsilon or 1.0, kappa, end, rtol, spring=spring)
+
+
+def in_si(given):
+    """Return such a scene in SI."""
+    drive = {"stiffness": given.stiffness, "damping": given.damping, "mass": given.inertia}
+    drive = drive if given.inertia else {}
+    listed = isinstance(given.drive, list)
+    drive |= {"history": given.drive} if listed else {"function": swing(**given.drive)}
+    kappa = math.inf if given.epsilon is None else given.kappa
+    return of_unit_scales(given.epsilon or 1.0, kappa, kv.Drive(**drive), given.times[-1])
+
+
+def swing(mean, amplitude, frequency):
+    return lambda s: mean + amplitude * math.cos(frequency * s)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ import time
 from contextlib import closing
 from pathlib import Path
 
+import numpy as np
+
 import kvtheory as kv
 
 POINTS, BLOCK, SLOW_POINTS = 3000, 20, 60
@@ -45,6 +47,14 @@ def kept(output):
         tables = base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         asked = "SELECT coalesce(sum(stop - start), 0) FROM blocks" if tables else "SELECT 0"
         return base.execute(asked).fetchone()[0]
+
+
+def assert_same(a, b):
+    """Hold the values of two sweeps against each other, to the last bit."""
+    assert list(a.values) == list(b.values)
+    for name in b.values:
+        assert a[name].dtype == b[name].dtype
+        assert np.array_equal(a[name], b[name], equal_nan=b.units[name] != ""), name
 
 
 def done_of(words):

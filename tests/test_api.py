@@ -3,12 +3,10 @@
 import inspect
 import json
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
-import dask.array
 import numpy as np
-import pandas
 import pytest
-import xarray
 
 import kvtheory as kv
 from kvtheory.results import STEADY_UNITS
@@ -35,34 +33,47 @@ PUBLIC = (
 )  # fmt: skip
 NEVER = (1j, b"x", dict, object(), np.ones((2, 2), complex), np.datetime64("2020"))
 """Right for no argument."""
-ARRAYS = np.array([0.05, 0.1]), pandas.Series([0.05]), xarray.DataArray([0.05]), dask.array.ones(2)
-NUMBERS = (None, True, "1e-3", -1.0, np.nan, np.inf, np.ma.masked, [0.05], {}, *ARRAYS)
-NAMES = (5, 0.1, np.nan, {"load": 1}, ["load", 5], [["load"]], *ARRAYS)
-COUNTS = (0, -1, 1.0, "2", True, np.nan, np.timedelta64(5), *ARRAYS)
-FLAGS = (None, 1, "yes", np.nan, [True], *ARRAYS)
-OVER = (
-    5, "drive.velocity", ["drive.velocity"], {1: 2}, {None: 1}, {(1,): [2]}, pandas.DataFrame(), *ARRAYS,
-)  # fmt: skip
-WRONG = {
-    "rtol": (5, *NUMBERS), "tolerance": NUMBERS, "quantity": NAMES, "quantities": NAMES, "overrides": NAMES,
-    "method": NAMES, "scheme": NAMES, "max_steps": COUNTS, "jobs": COUNTS, "block": COUNTS,
-    "in_flight": COUNTS, "certify": FLAGS, "over_time": FLAGS, "overwrite": FLAGS, "over": OVER,
-    "scene": (5, "scene.toml", {}, *ARRAYS), "progress": (5, "x", True, dict), "warn": (5, "x"),
-    "executor": (5, ThreadPoolExecutor), "output": (5, "", "a\0.csv", *ARRAYS), "path": (5, "", *ARRAYS),
-    "at": ("x", {}, np.nan, np.inf, -1.0, [[1.0], [1.0, 2.0]], [], {1: 2}, xarray.Dataset()),
-    "time_step": (0.0, "1 mm", np.nan, *ARRAYS), "per_length": (0.0, "1 mm", np.nan, *ARRAYS),
-    "name": (5, None, "wegde", *ARRAYS), "data": (5, np.nan, *ARRAYS),
-    "indenter": (5, None), "foundation": (5, None), "support": (5, None), "drive": (5, None),
-    "run": (5, None),
-}  # fmt: skip
-"""What is wrong for an argument of this name beside that."""
+
+
+@cache
+def wrong():
+    """Return what is wrong for an argument of a name beside that; libraries of arrays take long to import."""
+    import dask.array
+    import pandas
+    import xarray
+
+    arrays = (
+        np.array([0.05, 0.1]),
+        pandas.Series([0.05]),
+        xarray.DataArray([0.05]),
+        dask.array.ones(2),
+    )
+    numbers = (None, True, "1e-3", -1.0, np.nan, np.inf, np.ma.masked, [0.05], {}, *arrays)
+    names = (5, 0.1, np.nan, {"load": 1}, ["load", 5], [["load"]], *arrays)
+    counts = (0, -1, 1.0, "2", True, np.nan, np.timedelta64(5), *arrays)
+    flags = (None, 1, "yes", np.nan, [True], *arrays)
+    size = (0.0, "1 mm", np.nan, *arrays)
+    return {
+        "rtol": (5, *numbers), "tolerance": numbers,
+        **dict.fromkeys(("quantity", "quantities", "overrides", "method", "scheme"), names),
+        **dict.fromkeys(("max_steps", "jobs", "block", "in_flight"), counts),
+        **dict.fromkeys(("certify", "over_time", "overwrite"), flags),
+        "over": (5, "drive.velocity", ["drive.velocity"], {1: 2}, {None: 1}, {(1,): [2]},
+                 pandas.DataFrame(), *arrays),
+        "scene": (5, "scene.toml", {}, *arrays), "progress": (5, "x", True, dict), "warn": (5, "x"),
+        "executor": (5, ThreadPoolExecutor), "output": (5, "", "a\0.csv", *arrays), "path": (5, "", *arrays),
+        "at": ("x", {}, np.nan, np.inf, -1.0, [[1.0], [1.0, 2.0]], [], {1: 2}, xarray.Dataset()),
+        "time_step": size, "per_length": size,
+        "name": (5, None, "wegde", *arrays), "data": (5, np.nan, *arrays),
+        **dict.fromkeys(("indenter", "foundation", "support", "drive", "run"), (5, None)),
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("function", PUBLIC)
 def test_a_value_of_a_wrong_kind_is_refused_by_the_name_of_its_argument(function):
     for name in inspect.signature(function).parameters:
         told = "`problem`" if name == "name" else f"`{name}`"
-        for value in (*NEVER, *WRONG[name]):
+        for value in (*NEVER, *wrong()[name]):
             given = {"over": {"drive.velocity": [0.1]}} if function is kv.sweep else {}
             with pytest.raises((ValueError, TypeError), match=told):
                 function(**{**given, name: value})
@@ -98,24 +109,27 @@ def test_masked_values_are_refused_wherever_arrays_enter(given):
     assert kv.transient(at=whole).time.tolist() == [0.01, 0.02]
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
+def test_arrays_of_other_libraries_are_read():
+    import dask.array
+    import pandas
+    import xarray
+
+    plain = kv.steady(over={"drive.velocity": [0.01, 0.02]}).load
+    for given in (
         pandas.Series([0.01, 0.02]), xarray.DataArray([0.01, 0.02]), dask.array.from_array([0.01, 0.02]),
         xarray.DataArray([10.0, 20.0], attrs={"units": "mm/s"}), np.array(["10 mm/s", "2 cm/s"]),
         np.array([0.01, 0.02], dtype=object), ("10 mm/s", 0.02),
-    ],
-)  # fmt: skip
-def test_arrays_of_other_libraries_are_read(given):
-    over = {"drive.velocity": given}
-    plain = kv.steady(over={"drive.velocity": [0.01, 0.02]}).load
-    assert kv.steady(over=over).load.tolist() == plain.tolist()
-    assert kv.sweep(over=over)["drive.velocity"].tolist() == [0.01, 0.02]
+    ):  # fmt: skip
+        over = {"drive.velocity": given}
+        assert kv.steady(over=over).load.tolist() == plain.tolist()
+        assert kv.sweep(over=over)["drive.velocity"].tolist() == [0.01, 0.02]
     times = np.array([1, 2], dtype="timedelta64[ms]")
     assert kv.transient(at=times).time.tolist() == [1e-3, 2e-3]
 
 
 def test_a_table_of_pandas_is_compared_in_the_units_of_its_columns():
+    import pandas
+
     run = kv.transient(at=np.linspace(0.0, 0.2, 101))
     table = pandas.DataFrame({"t [ms]": 1e3 * run.time, "depth": run.depth})
     assert kv.compare(data=table).verdict == "agrees"

@@ -53,14 +53,6 @@ def test_a_cone_at_any_velocity(slope):
     assert (np.diff(found.load) > 0.0).all()
 
 
-def test_a_profile_of_functions_may_stand_for_the_ball():
-    profile = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
-    held = {"support": kv.Fixed(depth=1e-4), "drive": kv.Drive(velocity=0.01)}
-    agree(
-        *(kv.steady(kv.Scene(shape, **held)) for shape in (kv.Revolved(profile), kv.Sphere(0.01)))
-    )
-
-
 def by_definition(profile, l_r, depth, rim, kink=0.0):
     """W/K and F/K of a convex profile of revolution, by adaptive quadrature of p over x and over y."""
 
@@ -124,12 +116,6 @@ def test_profiles_of_revolution_against_their_definition(profile, rim, kink, vel
     for name, value in zip(("load", "friction_force"), sought, strict=True):
         assert getattr(found, name) == pytest.approx(1e10 * value, rel=1e-9)
         assert found.certificate.relative_error[name] < 1e-9
-
-
-def test_a_cone_of_functions_is_a_cone():
-    cone = kv.Profile(lambda x: 0.1 * abs(x), lambda x: math.copysign(0.1, x), kinks=(0.0,))
-    held = {"support": kv.Fixed(depth=1e-4), "drive": kv.Drive(velocity=0.1)}
-    agree(*(kv.steady(kv.Scene(kv.Revolved(profile), **held)) for profile in (cone, kv.Wedge(0.1))))
 
 
 def test_the_maximum_of_a_dead_weight():
@@ -256,15 +242,6 @@ def test_a_drive_that_the_foundation_remembers_is_refused(end, words):
     scene = kv.Scene(WIDER, support=kv.Fixed(depth=1e-4), drive=drive)
     with pytest.raises(ValueError, match=words):
         kv.transient(scene)
-
-
-def test_what_is_not_covered_says_so():
-    with pytest.raises(
-        ValueError, match=r"lifts its rim .* `elements`, or `solve` with `at`, follows"
-    ):
-        kv.transient(BALL)
-    with pytest.raises(ValueError, match=r"parabola only.* `elements`"):
-        kv.sweep(BALL, over={"drive.velocity": [0.1]}, quantities="settling_time")
 
 
 @pytest.mark.parametrize(

@@ -4,17 +4,16 @@ import json
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts import stability
 from kvtheory.charts.stability import CLASSES, contact_lengths, step_map, unwatched, velocity_map
-from kvtheory.cli import main
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
 from kvtheory.plots.stability import draw_stability
 from kvtheory.results.errors import DivergenceError
+from tests.commands import run
 
 EXPLICIT = [name for name, scheme in SCHEMES.items() if scheme.tableau]
 IMPLICIT = [name for name, scheme in SCHEMES.items() if not scheme.tableau]
@@ -104,8 +103,7 @@ def test_command(tmp_path, monkeypatch):
     monkeypatch.setattr(stability, "QUICK_POINTS", (3, 3))
     monkeypatch.setattr(stability, "growth", lambda *_, steady: 0.9 if steady else 1.1)
     path = tmp_path / "map.png"
-    done = CliRunner().invoke(main, ["chart", "stability", "--quick", "-o", str(path)])
-    assert done.exit_code == 0, done.output
+    run("chart", "stability", "--quick", "-o", path)
     assert path.read_bytes().startswith(b"\x89PNG")
     data = json.loads(path.with_suffix(".json").read_text())
     assert [found["scheme"] for found in data["maps"]["step"]] == list(SCHEMES)

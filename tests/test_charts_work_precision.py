@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts import methods
@@ -31,9 +30,9 @@ from kvtheory.charts.work_precision import (
     TimedOutError,
     make_chart,
 )
-from kvtheory.cli import main
 from kvtheory.plots.work_precision import LOOKS, draw_work_precision
 from tests import work_precision_reference as stored
+from tests.commands import run
 
 BRIEF = Effort(repeats=1, longest=60.0, whole=1.0, every=5)
 METHODS = transient_methods()
@@ -233,8 +232,7 @@ def test_picture_shows_what_was_measured():
 def test_command(tmp_path, monkeypatch):
     monkeypatch.setattr("kvtheory.charts.collection.QUICK", Effort(1, 0.3, 0.5, 6))
     given = "--quick", "--set", "run.duration=20 ms", "-o", str(tmp_path)
-    done = CliRunner().invoke(main, ["chart", "work-precision", *given])
-    assert done.exit_code == 0, done.output
+    done = run("chart", "work-precision", *given)
     assert (tmp_path / "work_precision.png").read_bytes().startswith(b"\x89PNG")
     data = json.loads((tmp_path / "work_precision.json").read_text())
     assert [chart["name"] for chart in data["charts"]] == ["this scene, steady", "this scene"]

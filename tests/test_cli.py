@@ -9,32 +9,13 @@ from pathlib import Path
 
 import click
 import pytest
-from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.results import STEADY_UNITS
 from tests import REFUSALS
-
-
-def run(*arguments, status=0):
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == status, result.output
-    assert "Traceback" not in result.output or status == 70
-    return result
-
-
-def printed(*arguments):
-    return json.loads(run(*arguments, "--json").stdout)
-
-
-def refused(arguments, words):
-    result = run(*arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
-    return result.stderr
+from tests.commands import printed, refused, run
 
 
 @pytest.fixture(scope="module")

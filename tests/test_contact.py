@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import kvtheory as kv
 from kvtheory.models.continuum import contact
 from kvtheory.models.continuum.evaluation import DEPTH
 from kvtheory.models.continuum.memory_chains import margin
 from kvtheory.models.continuum.solver import solve
-from kvtheory.models.continuum.surface import height, integrals, volume
+from kvtheory.models.continuum.surface import height, integrals
 from kvtheory.scene.base_motion import BaseMotion
 from tests.test_energy import END, of
 
@@ -106,14 +105,6 @@ def test_flight_stays_above_all_that_was_left_and_ends_where_it_meets_that(point
         assert np.min(gaps) == pytest.approx(0.0, abs=1e-5) if s == hops[1] else np.min(gaps) > 0.0
 
 
-def test_fixed_indenter_has_the_edges_of_the_paper():
-    for number in (1e-4, 1.0, 1e4):
-        now = solve(BaseMotion.constant(number, 1.0), 1.0, FIXED, 1.0).at(0.7)
-        assert now.left == pytest.approx(-1.0, rel=1e-14)
-        assert now.right == pytest.approx(1 / (math.sqrt(1 + number * number) + number), rel=1e-13)
-        assert (now.left_state, now.right_state) == ("touching", "peeling")
-
-
 def test_an_edge_at_rest_on_ground_left_by_a_jump_follows_the_quadratic():
     """After a stop the right edge meets the strip that the start detached, at d = 1."""
     motion = solve(BaseMotion.from_points([(0, 4), (0.1, 4), (0.1, 0)], END), 1.0, FIXED, END)
@@ -172,35 +163,6 @@ def test_height_is_the_highest_of_all_past_instants(solved, s):
     given, motion = solved
     xi = np.random.default_rng(3).uniform(-4, 6, 40)
     assert height(motion, xi, s) == pytest.approx(highest(motion, given, xi, s), abs=1e-9)
-
-
-@pytest.mark.parametrize("s", [0.3, 0.55, 1.37])
-def test_height_integrates_to_the_volume(solved, s):
-    _, motion = solved
-    xi = np.linspace(-12, 14, 100_001)
-    u = height(motion, xi, s)
-    assert u.min() >= -1e-12
-    assert np.trapezoid(u, xi) == pytest.approx(volume(motion, s), abs=2e-7)
-
-
-@pytest.mark.parametrize("slope", [3.0, 300.0, 30_000.0])
-def test_volume_behind_a_fixed_indenter_on_a_ramp(slope):
-    """Fact F14, U = (4/3) (e^-s + int e^(t - s) f_z dt), with f_z and both edges in closed form."""
-
-    def f_z(t):
-        number = slope * t
-        r = 1 / (number + math.sqrt(1 + number * number))
-        return 0.75 * ((1 + r) - (1 + r**3) / 3 + number * (1 - r * r))
-
-    motion = solve(
-        BaseMotion.from_points([(0, 0), (END, slope * END)], END), 1.0, math.inf, END, 1e-10
-    )
-    for s in (1e-3, 0.2, 0.7, END):
-        gained, _ = quad(
-            lambda t: math.exp(t - s) * f_z(t),  # noqa: B023
-            *(0, s), epsabs=0, epsrel=1e-13, limit=200, points=[min(1 / slope, 0.5 * s)],
-        )  # fmt: skip
-        assert volume(motion, s) == pytest.approx(4 / 3 * (math.exp(-s) + gained), rel=1e-12)
 
 
 def test_integrals_adapt_to_each_function():

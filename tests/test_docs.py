@@ -17,6 +17,7 @@ from figures.__main__ import TOPICS
 from kvtheory.charts import collection
 from kvtheory.charts.work_precision import Effort
 from kvtheory.cli import main
+from kvtheory.fitting import friction
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS
@@ -66,8 +67,8 @@ PAGES = {
     if not {"_build", "generated"} & set(path.parts)
     and CODE.search(text := path.read_text("utf-8"))
 }
-BRIEF = Effort(repeats=1, longest=0.1, whole=0.5, every=5)
-"""Of the chart on a page; `test_charts_work_precision` tests what it holds."""
+BRIEF = Effort(repeats=1, longest=0.02, whole=0.1, every=20)
+"""Of the chart on a page, which `test_charts_work_precision` tests; `test_fit` weighs more than one arm."""
 
 
 def sections(text):
@@ -85,6 +86,7 @@ def test_the_code_of_a_page_runs_in_order(name, tmp_path, monkeypatch, offscreen
     """In an empty directory but for a scene: that of the last TOML block, or Table 1."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(collection, "QUICK", BRIEF)
+    monkeypatch.setattr(friction, "MOST_ARMS", 1)
     scene, names = tmp_path / "my-scene.toml", {}
     exec(re.search("```python\n(.*?)```", PAGES["howto/index.md"], re.DOTALL)[1], names)
     scene.write_text(kv.to_toml(kv.Scene()), "utf-8")

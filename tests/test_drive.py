@@ -2,19 +2,17 @@
 
 import dataclasses
 import itertools
-import json
 import math
 import pickle
 from functools import partial
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
+from tests.commands import printed
 
 PLAIN = {
     "start": [(0.0, 0.1)],
@@ -249,11 +247,10 @@ def test_a_function_takes_a_spring_and_the_mass_is_that_of_the_support():
 
 
 def test_scene_prints_the_spring_and_its_numbers_and_of_a_rigid_drive_none():
-    arguments = ["scene", "--set", "drive.stiffness=1 MN/m^2", "--json"]
-    printed = json.loads(CliRunner().invoke(main, arguments).stdout)
-    assert (printed["drive_stiffness"], printed["drive_mass"], printed["mass"]) == (1e6, 1e3, 1e3)
-    assert printed["drive_damping"] == 0.0
-    assert printed["drive_stiffness_number"] > 0.0
+    shown = printed("scene", "--set", "drive.stiffness=1 MN/m^2")
+    assert (shown["drive_stiffness"], shown["drive_mass"], shown["mass"]) == (1e6, 1e3, 1e3)
+    assert shown["drive_damping"] == 0.0
+    assert shown["drive_stiffness_number"] > 0.0
     assert "stiffness" not in kv.to_toml(kv.Scene()).partition("[drive]")[2]
     assert not any(key in kv.Scene().values() for key in ("drive.stiffness", "drive.damping"))
     at_rest = StaticState.of(kv.Scene())

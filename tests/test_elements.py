@@ -1,18 +1,15 @@
 """`kv.elements` and `kvtheory elements`: stability, memory, shapes, symmetry, files and errors."""
 
 import csv
-import json
 import math
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts.stability import contact_lengths
-from kvtheory.cli import main
 from kvtheory.models.elements import kernels, row, simulation
 from kvtheory.models.elements.model import Model, surface_of
 from kvtheory.models.elements.row import ElementRow, IndenterState
@@ -20,6 +17,7 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.errors import DivergenceError
+from tests.commands import printed, refused, run
 from tests.test_elements_certificate import errors
 
 IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
@@ -40,35 +38,7 @@ def sliding(velocity, tau=0.1, support="dead-weight", duration=0.2, **changes):
     )
 
 
-def run(*arguments, status=0):
-    result = CliRunner().invoke(main, ["elements", *arguments])
-    assert result.exit_code == status, result.output
-    return result
-
-
 # Stability
-
-
-def test_contact_lengths_are_those_of_theory():
-    for V in (0.02, 0.1, -0.1):
-        steady, first = contact_lengths(sliding(V))
-        state = kv.steady(sliding(V))
-        assert steady == pytest.approx(abs(state.trailing_edge - state.leading_edge), rel=2e-3)
-        start = kv.transient(sliding(V), at=0.0)
-        expected = abs(start.trailing_edge - start.leading_edge)[0]
-        assert first == pytest.approx(expected, rel=2e-3)
-
-
-@pytest.mark.parametrize(("tau", "stable", "unstable"), [(0.1, 0.0142, 0.0125), (1.0, 0.1, 0.026)])
-def test_the_papers_scheme_diverges_below_some_velocity(tau, stable, unstable):
-    """F15: the theory gives 13.2 mm/s for tau = 0.1 s, and 29.5 mm/s for tau = 1 s."""
-    for V, factor in ((stable, 1.0), (unstable, -1.0)):
-        scene = sliding(V, tau)
-        steady = limit_at(SCHEMES["paper"], Model.of(scene).constants, contact_lengths(scene)[0])
-        assert factor * (steady - 1e-5 / V) > 0.0
-    kv.elements(sliding(stable, tau, duration=0.5), scheme="paper", certify=False)
-    with pytest.raises(DivergenceError, match=r"diverged at t = .* s, where"):
-        kv.elements(sliding(unstable, tau, duration=0.5), scheme="paper", certify=False)
 
 
 @pytest.mark.parametrize("scheme", ["paper", "explicit-euler"])
@@ -364,31 +334,6 @@ def test_kernels_know_the_shapes_of_the_scene(shape):
     assert shape.height(reached) == pytest.approx(depth, rel=1e-13)
 
 
-def test_a_function_moves_the_base_as_the_same_history_does():
-    ramp = [(0.0, 0.0), (0.05, 0.1), (0.1, 0.1), (0.1, -0.05), (0.2, -0.05)]
-
-    def velocity(t):
-        return 2.0 * t if t < 0.05 else 0.1 if t < 0.1 else -0.05
-
-    drives = kv.Drive(history=ramp), kv.Drive(function=velocity, breaks=(0.05, 0.1))
-    one, other = (
-        kv.elements(kv.Scene(drive=drive), certify=False, at=[0.03, 0.1, 0.17]) for drive in drives
-    )
-    for name in TRANSIENT_UNITS:
-        np.testing.assert_allclose(
-            getattr(one, name), getattr(other, name), rtol=1e-7, err_msg=name
-        )
-
-
-def test_momentum_is_balanced_over_every_step():
-    """Eq. 17, by the forces at many instants."""
-    times = np.linspace(0.0, 0.02, 401)
-    result = kv.elements(at=times, certify=False)
-    net = result.normal_force - 1e3 * kv.DeadWeight(1e3).gravity
-    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (net[1:] + net[:-1]) * np.diff(times))])
-    np.testing.assert_allclose(-1e3 * result.depth_rate, impulse, atol=2e-3 * np.abs(impulse).max())
-
-
 def test_steps_that_find_no_element_fly():
     """In flight the indenter falls freely."""
     for scheme in SCHEMES.values():
@@ -451,18 +396,18 @@ def test_the_papers_step_needs_motion():
 
 def test_command_prints_and_writes(tmp_path):
     shorter = ["--set", "run.duration=0.1 s"]
-    record = json.loads(run("--json", "--at", "0 ms,1 ms,200 ms").stdout)
+    record = printed("elements", "--at", "0 ms,1 ms,200 ms")
     assert list(record)[: len(TRANSIENT_UNITS)] == list(TRANSIENT_UNITS)
     assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-3)
     assert (record["model"], record["scheme"]) == ("elements", "edge-corrected")
     target = tmp_path / "run.csv"
-    shown = run("-o", str(target), "--per-length", "50 /mm", *shorter).stdout
+    shown = run("elements", "-o", target, "--per-length", "50 /mm", *shorter).stdout
     assert "nan" not in shown
     assert "50 elements per mm" in shown
     with target.open(newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0][:3] == ["time [s]", "velocity [m/s]", "depth [m]"]
-    run("-o", str(tmp_path / "run.nc"), "--per-length", "50 /mm", *shorter)
+    run("elements", "-o", tmp_path / "run.nc", "--per-length", "50 /mm", *shorter)
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as data:
         assert data.attrs["model"] == "elements"
@@ -483,8 +428,5 @@ def test_command_prints_and_writes(tmp_path):
 )  # fmt: skip
 def test_bad_input_costs_status_2_and_writes_nothing(arguments, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = run(*arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
+    refused(["elements", *arguments], words)
     assert not list(tmp_path.iterdir())

@@ -79,16 +79,6 @@ def test_order_in_both_spacings():
     assert -np.polyfit(np.log(densities), np.log(left), 1)[0] > 1.8
 
 
-def test_profiles_of_revolution():
-    """That of a parabola is the ball."""
-    held = {"support": kv.Fixed(1e-4), "drive": kv.Drive(0.01), "run": kv.Run(0.05)}
-    how = {"per_length": "40 /mm", "at": [0.05], "certify": False}
-    found = kv.elements(kv.Scene(kv.Revolved(kv.Parabola(0.01)), **held), **how)
-    same = kv.elements(kv.Scene(kv.Sphere(0.01), **held), **how)
-    assert found.normal_force == pytest.approx(same.normal_force, rel=1e-12)
-    assert found.friction_force == pytest.approx(same.friction_force, rel=1e-12)
-
-
 def test_extremes_of_a_ball():
     """At rest, without inertia, with huge inertia, in flight: numbers, and no warning."""
     rest = kv.elements(ball(GRIPS["dead-weight"], 0.0, 0.1), at=[0.1], certify=False)
@@ -116,18 +106,6 @@ def test_strips_are_added_where_the_ball_sinks():
     assert begun == 1 + int(rims[0] / c.across)
     assert row.stored.counts[kernels.STRIPS] >= 1 + int(rims[1] / c.across)
     assert state.depth == pytest.approx(c.depth, rel=1e-6)
-
-
-def test_compare_judges_the_series_of_a_ball(tmp_path):
-    scene, path = ball(GRIPS["dead-weight"], 0.1, 0.1), tmp_path / "ball.csv"
-    run = kv.elements(scene, per_length="40 /mm", at=np.linspace(0.0, 0.1, 101), certify=False)
-    columns = np.transpose([1e3 * run.time, -1e3 * run.depth, run.normal_force, run.friction_force])
-    np.savetxt(path, columns, delimiter=",", header="t [ms],z_A [mm],F_z [N],F_x [N]", comments="")
-    found = kv.compare(scene, path)
-    assert (found.verdict, found.units["normal_force"]) == ("agrees", "N")
-    path.write_text(path.read_text().replace("F_z [N]", "F_z [N/mm]"))
-    with pytest.raises(ValueError, match=r'"F_z \[N/mm\]": the unit'):
-        kv.compare(scene, path)
 
 
 def test_solve_takes_the_cheapest_model_of_a_ball():

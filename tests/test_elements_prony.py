@@ -174,14 +174,6 @@ def test_the_transient_is_that_of_brute_force(way, support):
 # Extremes
 
 
-def test_no_force_jumps_with_the_drive():
-    """Without a damper the pressure is continuous: at t = 0 it is that of rest."""
-    scene = kv.Scene(foundation=RUBBER)
-    result = kv.elements(scene, at=[0.0, 1e-9], per_length="50 /mm", certify=False)
-    assert result.normal_force == pytest.approx([9806.65] * 2, rel=1e-4)
-    assert np.abs(result.friction_force).max() < 1e-3
-
-
 def test_a_hundred_arms_cost_no_more_elements_than_three():
     """All quantities at one instant; progress goes on until the last run is over."""
     told = []

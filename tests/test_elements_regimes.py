@@ -5,19 +5,16 @@ with the simulator, and `kv.transient`. Scaled scenes have R = 1/2, K = 3/4, tau
 static half length and load are 1.
 """
 
-import json
-import math
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
-from tests.spring_random import of_unit_scales
+from tests.spring_random import in_si
 from tests.test_elements_certificate import errors
+from tests.test_transient_reference import SCENES, TABLE
 
-TABLE = json.loads((Path(__file__).parent / "data" / "transient_reference.json").read_text())
 COLUMNS = {"d": "depth", "v": "depth_rate", "f_z": "normal_force", "f_x": "friction_force",
            "left": "leading_edge", "right": "trailing_edge"}  # fmt: skip
 DENSITY = 60.0
@@ -29,15 +26,7 @@ POINT_SCHEMES = ("paper", "explicit-euler", "semi-implicit", "exponential")
 
 
 def scene(name):
-    entry, drive = TABLE[name], TABLE[name]["drive"]
-    motion = (
-        kv.Drive(history=[tuple(point) for point in drive]) if isinstance(drive, list) else None
-    )
-    if motion is None:
-        mean, amplitude, frequency = drive.values()
-        motion = kv.Drive(function=lambda t: mean + amplitude * math.cos(frequency * t))
-    kappa = math.inf if entry["epsilon"] is None else entry["kappa"]
-    return of_unit_scales(entry["epsilon"] or 1.0, kappa, motion, entry["times"][-1])
+    return in_si(SCENES[name])
 
 
 def simulate(name, density=DENSITY, **options):
@@ -137,19 +126,6 @@ def test_whole_elements_carry_a_sawtooth_of_the_edge_pressure():
         assert excess.min() == pytest.approx(-predicted, rel=0.1)
     corrected = np.abs(runs["edge-corrected"].normal_force - steady.load)
     assert corrected.max() < 2e-3 * predicted
-
-
-def test_table_1_against_the_continuum():
-    times = [0.0, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2]
-    theory = kv.transient(at=times, rtol=1e-10)
-    run = kv.elements(at=times)
-    scale = {"depth": 1e-5, "depth_rate": 2e-4, "normal_force": 2e-4, "friction_force": 2e-4,
-             "leading_edge": 1e-5, "trailing_edge": 3e-4, "peak_pressure": 1e-4}  # fmt: skip
-    for name, bound in scale.items():
-        expected = getattr(theory, name)
-        difference = np.abs(getattr(run, name) - expected).max() / np.abs(expected).max()
-        assert difference < bound, name
-    np.testing.assert_allclose(run.velocity, theory.velocity, rtol=1e-15)
 
 
 def test_a_start_faster_than_elements_pass_is_resolved():

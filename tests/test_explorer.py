@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.charts.naive import two_states
 from kvtheory.explorer import save_explorer
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
@@ -192,22 +191,6 @@ def test_limits_and_every_maximum_of_a_prony_series_are_those_of_python(browser)
     for top, (velocity, friction) in zip(tops, right, strict=True):
         assert top["friction"] == pytest.approx(friction, rel=1e-10)
         assert top["V"] == pytest.approx(velocity, rel=1e-4)
-
-
-@pytest.mark.parametrize("velocity", [0.003, 0.1, 0.4])
-@pytest.mark.parametrize("support", ["dead-weight", "suspended"])
-def test_rates_are_those_of_the_motion_linearised_by_differences(browser, support, velocity):
-    scene = kv.Scene(support=kv.Scene.table1(support).support, drive=kv.Drive(velocity))
-    rest = StaticState.of(scene)
-    law = two_states(rest.drive_number, rest.inertia_number, rest.support_number)
-    d, h = kv.steady(scene).depth / rest.depth, 1e-6
-    jacobian = np.array(
-        [(np.array(law(0.0, plus)) - law(0.0, minus)) / (2 * h) for plus, minus in (
-            ((d + h, 0.0), (d - h, 0.0)), ((d, h), (d, -h)))]
-    ).T  # fmt: skip
-    right = np.sort_complex(np.linalg.eigvals(jacobian) / rest.time)
-    pairs = ask(browser, "s => rates(s, slide(s))", scene)
-    assert np.sort_complex([complex(*pair) for pair in pairs]) == pytest.approx(right, rel=1e-5)
 
 
 def on_springs(count, ball, rubber):

@@ -5,13 +5,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.explorer import explorer_page, save_explorer
 from kvtheory.explorer.controls import controls, quantities
 from kvtheory.explorer.page import formulas
+from tests.commands import run
 
 TABLE1 = kv.Scene()
 
@@ -135,6 +134,5 @@ def test_a_scene_that_the_page_does_not_know_is_refused():
 
 def test_the_command_writes_the_page(tmp_path):
     path = tmp_path / "explorer.html"
-    done = CliRunner().invoke(main, ["explore", "-o", str(path)])
-    assert done.exit_code == 0, done.output
+    run("explore", "-o", path)
     assert path.read_text(encoding="utf-8") == explorer_page(TABLE1)

@@ -3,22 +3,20 @@
 What is right is held against numbers from elsewhere too: the paper, theorems, the other methods.
 """
 
-import json
 import math
 import re
 
 import generators
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from generators import atlas
 from matplotlib.figure import Figure
 
 import kvtheory as kv
 from kvtheory.charts import naive
 from kvtheory.charts.failures import ATLAS, findings
-from kvtheory.cli import main
 from kvtheory.plots.failures import plot_failure, shown
+from tests.commands import printed, run
 
 LEAST_ERROR = {
     "instability": 0.05, "sawtooth": 0.02, "grid-resonance": 0.02, "step-at-rest": 0.9,
@@ -127,17 +125,12 @@ def test_pages_hold_every_entry_and_load_nothing(found, site):
 
 
 def test_each_entry_runs_alone(tmp_path):
-    def invoke(*arguments):
-        done = CliRunner().invoke(main, ["chart", "failures", "--only", *arguments])
-        assert done.exit_code == 0, done.output
-        return done.output
-
-    path = tmp_path / "one.html"
-    told = invoke("cancellation,asymptote", "-o", str(path))
+    command, path = ("chart", "failures", "--only"), tmp_path / "one.html"
+    told = run(*command, "cancellation,asymptote", "-o", path).output
     assert "0.001225 nm" in told
     assert "How to notice" in told
     assert path.read_text(encoding="utf-8").count("<article") == 2
-    (entry,) = json.loads(invoke("asymptote", "--json"))["failures"]
+    (entry,) = printed(*command, "asymptote")["failures"]
     assert entry["wrong_value"] == pytest.approx(0.20580506)
     assert entry["right_value"] == pytest.approx(0.1008743)
     assert 'use "exact"' in entry["said"]

@@ -5,10 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.results import QUANTITIES
 from kvtheory.scene import template
 from kvtheory.scene.indenters import SHAPES
@@ -16,6 +14,7 @@ from kvtheory.scene.mistakes import MEANT, closest
 from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.quantities import quantities
 from tests import REFUSALS
+from tests.commands import run
 
 V = "drive.velocity"
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1")
@@ -70,8 +69,7 @@ HOSTILE = {
 def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text):
     path = tmp_path / "scene.toml"
     path.write_text(text)
-    found = CliRunner().invoke(main, ["scene", str(path)])
-    assert found.exit_code == 2
+    found = run("scene", path, status=2)
     assert len(found.output) < 6000
     assert found.output.replace("\n", "").isprintable()
     assert "recursion" not in found.output

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from kvtheory.scene.indenters import SHAPES, Circle, Parabola, PowerLaw, Profile, Wedge
+from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
 
 INDENTERS = [
     Parabola(radius=0.01),
@@ -56,8 +56,3 @@ def test_circle_ends_with_a_vertical_surface():
 def test_power_law_contains_the_parabola_and_the_wedge():
     np.testing.assert_allclose(PowerLaw(0.01, 2.0).height(X), Parabola(0.01).height(X), rtol=4e-16)
     np.testing.assert_array_equal(PowerLaw(0.01, 1.0).height(X), Wedge(1.0).height(X))
-
-
-def test_registry_names_the_shapes_of_scene_files():
-    assert {name: cls.shape for name, cls in SHAPES.items()} == {n: n for n in SHAPES}
-    assert set(SHAPES) == {"parabola", "circle", "power-law", "wedge", "sphere"}

@@ -9,14 +9,10 @@ from scipy.integrate import solve_ivp
 
 import kvtheory as kv
 from kvtheory.ladder import stiff_drive
-from kvtheory.ladder.climbing import Request
-from kvtheory.ladder.series import ODD, ON_RIGID, SOLVED, Models, rungs
-from kvtheory.models.continuum.solver import solve
+from kvtheory.ladder.series import ODD, ON_RIGID, SOLVED
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
-from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales as scales_of
-from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
 from tests.spring_random import of_unit_scales
 
@@ -90,16 +86,6 @@ def test_the_estimate_covers_what_the_slow_manifold_neglects():
     assert np.median(close) > 0.3
 
 
-def test_the_neglected_inertia_is_of_first_order():
-    times, errors = np.array([0.3, 1.0]), []
-    for eps in (1e-3, 1e-4, 1e-5):
-        given = slow_start.start(4.0, eps, 0.0)
-        slow = slow_motion.follow(given, times, 1e-10).values["depth"]
-        truth = solve(BaseMotion.constant(4.0, 1.0), eps, 0.0, 1.0, 1e-12)
-        errors.append(abs(slow[1] - truth.at(1.0).depth))
-    assert np.diff(np.log10(errors)) == pytest.approx([-1.0, -1.0], abs=0.05)
-
-
 def test_the_slow_manifold_is_used_where_it_is_enough_and_only_there():
     late, early = [0.1, 1.0], [0.0, 1.0]
     slow = kv.solve(light(), at=late, rtol=1e-3)
@@ -145,23 +131,6 @@ def test_a_history_climbs_to_the_continuum_and_what_is_not_asked_for_is_not_give
     assert max(found.certificate.relative_error.values()) <= 1e-9
     with pytest.raises(AttributeError, match="no `load`"):
         found.load  # noqa: B018
-
-
-@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
-def test_the_elements_are_as_good_as_they_say(rtol):
-    """The last rung on a parabola, where the continuum tells the truth; fast at first, at 1 ms."""
-    at = [1e-3, 5e-3, 0.05]
-    request = Request(SOLVED, rtol, at, TRANSIENT_UNITS)
-    scene = kv.Scene(run=kv.Run(0.05))
-    answer = (
-        rungs(Models(kv.steady, kv.transient, kv.elements, kv.fewer_arms))[-1]
-        .judge(scene, request)
-        .run()
-    )
-    truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
-    for name in SOLVED:
-        error = np.max(np.abs(answer.values[name] - getattr(truth, name))) / scales[name]
-        assert error <= answer.certificate.relative_error[name] <= rtol, name
 
 
 def test_other_shapes_climb_to_the_elements():

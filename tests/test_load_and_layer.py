@@ -1,7 +1,6 @@
 """A load instead of a weight, and a thin layer instead of a stiffness: one scene in other words."""
 
 import copy
-import json
 import pickle
 import re
 import tomllib
@@ -9,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
 from kvtheory.scene.foundations import THIN, layer_stiffness
+from tests.commands import printed, run
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
@@ -49,13 +47,7 @@ def test_a_load_alone_is_the_weight_of_its_mass(kind):
     by_load, by_mass = scene(kind, load=1000.0 * G), scene(kind, mass=1000.0)
     assert by_load.support.mass == 1000.0
     assert_same_motion(kv.transient(by_load), kv.transient(by_mass))
-    for shape in (kv.Parabola(0.01), kv.Circle(0.01), kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)):
-        a, b = (replace(each, indenter=shape) for each in (by_load, by_mass))
-        for method in ("exact", "quadrature", "asymptote"):
-            if method == "quadrature" or shape.shape != "circle":
-                assert kv.steady(a, method=method) == kv.steady(b, method=method)
-        a, b = (kv.solve(each, quantity="friction_coefficient", rtol=1e-3) for each in (a, b))
-        assert a.friction_coefficient == pytest.approx(b.friction_coefficient, rel=1e-14)
+    assert kv.steady(by_load) == kv.steady(by_mass)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -156,20 +148,10 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
 def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
     given = [*LAYER_KEYS, f"indenter.shape={shape}"]
     command = ["scene", *(f"--set={each}" for each in given)]
-    told = CliRunner().invoke(main, command, catch_exceptions=False).stdout
-    (note,) = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)["notes"]
+    told = run(*command).stdout
+    (note,) = printed(*command)["notes"]
     assert note in told
     assert (note,) == kv.steady(kv.load_scene(overrides=given), over={"drive.velocity": 0.0}).notes
-
-
-def test_a_layer_is_the_foundation_of_its_stiffness_in_every_function():
-    by_layer = kv.Scene(foundation=LAYER)
-    plain = kv.Scene(foundation=kv.Foundation(float(LAYER.stiffness), 0.1))
-    assert kv.steady(by_layer) == kv.steady(plain)
-    assert kv.steady(by_layer, method="quadrature") == kv.steady(plain, method="quadrature")
-    assert kv.asymptotes(by_layer).critical_velocity == kv.asymptotes(plain).critical_velocity
-    assert_same_motion(kv.transient(by_layer), kv.transient(plain))
-    assert kv.compare(by_layer, per_length="50 /mm").verdict == "agrees"
 
 
 def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():

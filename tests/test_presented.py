@@ -4,7 +4,6 @@ import csv
 
 import numpy as np
 import pytest
-import xarray
 
 import kvtheory as kv
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
@@ -41,6 +40,8 @@ def test_text_and_table_are_short_and_name_quantities_units_model_and_error(resu
 
 def test_files_hold_what_the_result_holds(result, tmp_path):
     """CSV, NetCDF and `Dataset`: first what varies, then the quantities."""
+    import xarray
+
     for name in ("result.csv", "result.NC"):
         result.save(tmp_path / name)
     result.to_csv(tmp_path / "again.csv")

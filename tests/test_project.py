@@ -29,29 +29,12 @@ def python(code):
     return done.stdout.strip()
 
 
-def test_importing_pulls_in_neither_sympy_nor_matplotlib_nor_scipy():
-    heavy = python(
-        "import sys, kvtheory\n"
-        "print([name for name in sys.modules if name.split('.')[0] in "
-        "('sympy', 'matplotlib', 'scipy', 'pint', 'click', 'derivations')])"
-    )
-    assert heavy == "[]"
-
-
 def test_help_needs_click_alone():
     heavy = python(
         "import sys\nfrom click.testing import CliRunner\nfrom kvtheory.cli import main\n"
         "assert CliRunner().invoke(main, ['--help']).exit_code == 0\n"
         "print([name for name in sys.modules if name.split('.')[0] in "
         "('sympy', 'matplotlib', 'scipy', 'pint', 'derivations')])"
-    )
-    assert heavy == "[]"
-
-
-def test_the_exact_solution_needs_numpy_alone():
-    heavy = python(
-        "import sys, kvtheory\nkvtheory.steady()\n"
-        "print([name for name in sys.modules if name.split('.')[0] in ('sympy', 'matplotlib', 'scipy')])"
     )
     assert heavy == "[]"
 

@@ -1,23 +1,23 @@
 """The reference problems: what they cover, and the folders by which others judge their simulations."""
 
 import json
+import runpy
 import subprocess
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
 from figures import reference_problems
-from kvtheory.cli import main
 from kvtheory.reference_problems import problem_text
 from kvtheory.results.table import scales
 from kvtheory.scene.foundations import FOUNDATIONS
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.static_state import StaticState
+from tests import commands
 
 FOLDERS = {
     "paper-fixed": "transient",
@@ -53,9 +53,19 @@ def folders(tmp_path_factory):
     return directory
 
 
-def run(*arguments):
-    command = [sys.executable, "-W", "error", *arguments]
-    return subprocess.run(command, check=False, capture_output=True, text=True)
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """A function that runs a script in this process, and returns its exit status and what it prints."""
+
+    def script(path, *arguments):
+        monkeypatch.setattr(sys, "argv", [str(path), *map(str, arguments)])
+        try:
+            runpy.run_path(str(path), run_name="__main__")
+        except SystemExit as end:
+            return int(end.code or 0), "".join(capsys.readouterr())
+        return 0, "".join(capsys.readouterr())
+
+    return script
 
 
 def test_there_is_one_for_each_shape_support_and_foundation():
@@ -94,19 +104,17 @@ def test_those_on_rubber_have_the_values_of_other_programs(name):
 def test_the_command_prints_what_the_library_loads(tmp_path):
     path = tmp_path / "scene.toml"
     for name, title in kv.problems().items():
-        done = CliRunner().invoke(main, ["scene", "--problem", name])
-        assert done.exit_code == 0
+        done = commands.run("scene", "--problem", name)
         assert done.output == problem_text(name)
         assert title in done.output
         path.write_text(done.output)
         assert kv.load_scene(path) == kv.problem(name)
-    assert "take-off" in CliRunner().invoke(main, ["scene", "--problem", "list"]).output
+    assert "take-off" in commands.run("scene", "--problem", "list").output
 
 
 @pytest.mark.parametrize("options", [["--problem", "wegde"], ["--problem", "wedge", "--json"]])
 def test_a_mistake_costs_one_message(options):
-    done = CliRunner().invoke(main, ["scene", *options])
-    assert done.exit_code == 2
+    done = commands.run("scene", *options, status=2)
     assert done.output.count("\n") == 1
     assert 'did you mean "wedge"' in done.output or "does not go with" in done.output
 
@@ -134,7 +142,7 @@ def test_a_folder_holds_scene_reference_certificate_criteria_and_picture(folders
 
 
 @pytest.mark.parametrize("name", ["wedge", "springpot", "paper-fixed"])
-def test_a_folder_judges_the_right_series_right_and_a_wrong_one_wrong(folders, name, tmp_path):
+def test_a_folder_judges_the_right_series_right_and_a_wrong_one_wrong(folders, name, tmp_path, run):
     head, *rows = (folders / name / "reference.csv").read_text().splitlines()
     drag = head.split(",").index("friction_force [N/m]")
     right = [row.split(",") for row in rows[:: 1 if name == "springpot" else 8]]
@@ -142,13 +150,12 @@ def test_a_folder_judges_the_right_series_right_and_a_wrong_one_wrong(folders, n
     path = tmp_path / "series.csv"
     for series, status in ((right, 0), (wrong, 1)):
         path.write_text("\n".join([head, *map(",".join, series)]) + "\n")
-        done = run(folders / name / "judge.py", path)
-        assert done.returncode == status, done.stdout + done.stderr
+        assert run(folders / name / "judge.py", path)[0] == status
 
 
 def test_a_point_contact_is_found_to_disagree(folders):
     folder = folders / "point-contact"
-    assert run(folder / "simulate.py").returncode == 0
+    subprocess.run([sys.executable, "-W", "error", folder / "simulate.py"], check=True)
     data = np.loadtxt(folder / "point-contact.csv", delimiter=",", skiprows=1)[::20]
     names = ("time", "depth", "normal_force", "friction_force")
     series = dict(zip(names, (data * [1, -1, 1, 1]).T, strict=True))
@@ -157,7 +164,7 @@ def test_a_point_contact_is_found_to_disagree(folders):
     assert "depth, largest" in {check.name for check in found.checks if check.ok is False}
 
 
-def test_the_script_of_a_ball_names_a_fault_and_what_cannot_be_read(folders):
+def test_the_script_of_a_ball_names_a_fault_and_what_cannot_be_read(folders, run):
     """Theory is a simulation by elements there, and judges as for a line."""
     folder = folders / "ball"
     assert "F_z [N],F_x [N]" in (folder / "README.md").read_text()
@@ -169,15 +176,14 @@ def test_the_script_of_a_ball_names_a_fault_and_what_cannot_be_read(folders):
         head = f"t [s],depth [m],F_z [N],{drag}"
         table = rows[::8] * [1.0, 1.0, 1.0, 0.5]
         np.savetxt(folder / "mine.csv", table, delimiter=",", header=head, comments="")
-        done = run(folder / "judge.py", folder / "mine.csv")
-        assert (done.returncode, "Traceback" in done.stderr) == (status, False)
-        assert told in done.stdout + done.stderr
+        found, printed = run(folder / "judge.py", folder / "mine.csv")
+        assert (found, told in printed) == (status, True), printed
 
 
-def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path):
+def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path, run):
     folder = tmp_path / "problem"
     given = ["scene", "--problem", "springpot", "-o", str(folder)]
-    assert CliRunner().invoke(main, given).exit_code == 0
+    commands.run(*given)
     assert {"scene.toml", "reference.csv", "criteria.json", "judge.py"} <= {
         f.name for f in folder.iterdir()
     }
@@ -188,10 +194,7 @@ def test_the_command_writes_the_folder_whose_script_reads_any_unit(tmp_path):
             f"{v!r};{factor * f!r}" for v, f in zip(*(c.tolist() for c in columns), strict=True)
         ]
         (folder / "mine.csv").write_text("\n".join(["V [mm/s];F_x [N/mm]", *rows]))
-        assert run(folder / "judge.py", folder / "mine.csv").returncode == status
-    done = run(folder / "judge.py", folder / "nothing.csv")
-    assert (done.returncode, "Traceback" in done.stderr) == (2, False)
-    again = CliRunner().invoke(main, given)
-    assert (again.exit_code, "is not an empty folder" in again.output) == (2, True)
-    nothing = CliRunner().invoke(main, ["scene", "-o", str(tmp_path / "other")])
-    assert (nothing.exit_code, "--problem NAME" in nothing.output) == (2, True)
+        assert run(folder / "judge.py", folder / "mine.csv")[0] == status
+    assert run(folder / "judge.py", folder / "nothing.csv")[0] == 2
+    commands.refused(given, ["is not an empty folder"])
+    commands.refused(["scene", "-o", tmp_path / "other"], ["--problem NAME"])

@@ -59,7 +59,7 @@ POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", q_root: "0.6", s.C: "1", s.V: "1"}
 
 
 @pytest.mark.parametrize(
-    "text", ["c*x**4", "c*abs(x)", "x**2/(2*R)", "2*x^2 + c*x^4", "c*|x|**1.5", "0.3*abs(x) + x**2"]
+    "text", ["c*x**4", "c*abs(x)", "x**2/(2*R)", "c*|x| + 2*x^2", "c*|x|**1.5"]
 )
 def test_load_and_friction_are_the_integrals_of_the_pressure(text):
     found, forms = results(text)
@@ -100,7 +100,7 @@ def test_it_says_where_closed_forms_end():
     for text, label, said in (
         ("c*x**4", "shape-trailing", True),
         ("c*x**4", "shape-leading", False),
-        ("2*x^2 + c*x^4", "shape-leading", True),
+        ("c*|x| + 2*x^2", "shape-leading", True),
         ("x**2/(2*R)", "shape-trailing", False),
     ):
         assert ("no closed form" in results(text)[0][label].text) == said

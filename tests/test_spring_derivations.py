@@ -1,7 +1,6 @@
 """Derivations F22 against equations written on their own, with many digits."""
 
 from functools import cache
-from itertools import pairwise
 
 import mpmath as mp
 import pytest
@@ -14,7 +13,9 @@ from kvtheory.derivations.chapters import (
     spring_stability,
 )
 
+import kvtheory as kv
 from tests import reference_stability as reference
+from tests.test_rubber_stability import TWO, forces, rubber
 
 SCENES = (  # drive, inertia and support number, then inertia, damper and spring number along x
     ("0.3", "0.01", "0", "0.2", "0", "1.5"),
@@ -99,68 +100,32 @@ def test_the_dampers_of_a_contact_take_no_less_than_those_of_a_depth_that_follow
     assert min(power(follows + step) for step in (-1, -0.01, 0.01, 1)) > least
 
 
-RUBBER = (  # arms, velocity in m/s; critical stiffness in N/m^2 and frequency in rad/s, of another program
-    ([("50e9", "0.1")], "0.05", "4.533990e6", "66.6002"),
-    ([("50e9", "0.1")], "0.3", "146.7647e6", None),
-    ([("30e9", "0.01"), ("5e9", "0.5")], "0.2", "44.7401e6", None),
-    ([("30e9", "0.01"), ("5e9", "0.5")], "0.05", None, None),  # stable for every stiffness
-)
+def kernel(n, m):
+    """Return the function n at -m, by its recurrence."""
+    return (1 / mp.fac(n - 1) - kernel(n - 1, m)) / m if n > 1 else (1 - mp.exp(-m)) / m
 
 
-@pytest.mark.parametrize(("arms", "speed", "stiffness", "frequency"), RUBBER)
-def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffness, frequency):
-    K, R, M, V = mp.mpf("10e9"), mp.mpf("0.01"), mp.mpf(1000), mp.mpf(speed)
-    series = [(mp.mpf(k), mp.mpf(time)) for k, time in arms]
-    weight = M * mp.mpf("9.80665")
-
-    def moments(c):
-        """Return the moments of F17 of the whole series, by quadrature."""
-
-        def relaxation(w):
-            return K + sum(k * mp.exp(-w * c / (V * time)) for k, time in series)
-
-        return [mp.quad(lambda w, f=weight: f(w) * relaxation(w), [0, 1]) for weight in
-                (lambda w: 1 - w, lambda w: w, lambda w: w * (1 - w) / 2)]  # fmt: skip
-
-    def kernel(n, m):
-        """Return the function n at -m, by its recurrence."""
-        return (1 / mp.fac(n - 1) - kernel(n - 1, m)) / m if n > 1 else (1 - mp.exp(-m)) / m
-
-    def load(c):
-        P, Q, D = moments(c)
-        return c**3 / R * (D + (P - Q) / (2 * (P + Q)) * P)
-
-    with mp.workdps(30):
-        c = mp.findroot(lambda c: load(c) / weight - 1, mp.mpf("0.001"))
-        P, Q, _ = moments(c)
-        eta = (P - Q) / (2 * (P + Q))
-
-        def spring(omega):
-            """Return k_x at i omega from the proved forces."""
-            rate = mp.mpc(0, omega)
-            total = {name: mp.mpf(0) for name in rubber_drive.FORCES}
-            for k, time in series:
-                z, w = c / (V * time), rate * c / V
-                known = {
-                    s.arm_number: z, s.rate_number: w, s.excess_share: eta,
-                    **{name: kernel(n, z + w) for n, name in enumerate(s.kernels, 1)},
-                    **{name: kernel(n, z) for n, name in enumerate(s.kernels_still, 1)},
-                }  # fmt: skip
-                for name, form in rubber_drive.FORCES.items():
-                    total[name] += k * value(form, known)
-            A = c * (K + total[s.normal_per_depth])
-            B = c**2 / R * total[s.normal_per_drag]
-            C = c**2 / R * (K * eta + total[s.rubbing_per_depth])
-            D = c**3 / R**2 * total[s.rubbing_per_drag]
-            return D - M * rate**2 - B * C / (M * rate**2 + A)
-
-        if stiffness is None:
-            values = [spring(mp.mpf(10) ** (mp.mpf(k) / 10)) for k in range(41)]
-            pairs = [pair for pair in pairwise(values) if mp.im(pair[0]) * mp.im(pair[1]) <= 0]
-            assert all(mp.re(each) < 0 for pair in pairs for each in pair)
-            return
-        guess = mp.mpf(frequency or mp.sqrt(mp.mpf(stiffness) / M))
-        omega = mp.findroot(lambda omega: mp.im(spring(omega)) / K, (guess, guess * mp.mpf("1.01")))
-        assert mp.re(spring(omega)) == pytest.approx(float(stiffness), rel=2e-6)
-        if frequency:
-            assert omega == pytest.approx(float(frequency), rel=2e-6)
+@pytest.mark.parametrize("rate", [40j, 3.0 + 200j])
+def test_f24_sums_the_history_of_each_element(rate):
+    """The forces of small motions in the derived form and by quadrature, of which stability is then found."""
+    scene = rubber(TWO, 0.2)
+    state, K, R, V = kv.steady(scene), 1e10, 0.01, 0.2
+    c = state.trailing_edge - state.leading_edge
+    eta, total = state.half_length / c - 0.5, dict.fromkeys(rubber_drive.FORCES, 0.0)
+    for stiffness, time in TWO:
+        z, w = c / (V * time), mp.mpc(rate) * c / V
+        known = {
+            s.arm_number: z, s.rate_number: w, s.excess_share: eta,
+            **{name: kernel(n, z + w) for n, name in enumerate(s.kernels, 1)},
+            **{name: kernel(n, z) for n, name in enumerate(s.kernels_still, 1)},
+        }  # fmt: skip
+        for name, form in rubber_drive.FORCES.items():
+            total[name] += stiffness * complex(value(form, known))
+    total[s.normal_per_depth] += K
+    total[s.rubbing_per_depth] += K * eta
+    units = {
+        s.normal_per_depth: c, s.normal_per_drag: c**2 / R,
+        s.rubbing_per_depth: c**2 / R, s.rubbing_per_drag: c**3 / R**2,
+    }  # fmt: skip
+    derived = [unit * total[name] for name, unit in units.items()]
+    assert derived == pytest.approx(forces(scene, state.half_length, rate), rel=1e-9)

@@ -7,11 +7,10 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from tests import reference_stability as reference
+from tests.commands import printed, run
 
 TABLE1 = {0.02: None, 0.039: 0.1722e6, 0.091: 6.879e6, 0.214: 101.95e6}
 """Critical stiffness in N/m^2 by velocity in m/s, to four digits (fact F22)."""
@@ -306,26 +305,26 @@ def test_extremes_give_numbers_without_a_warning(support):
 
 def test_the_command_prints_a_table_and_json():
     command = ["stability", "--set", "drive.velocity=91 mm/s", "--set", "drive.stiffness=1 MN/m^2"]
-    told = CliRunner().invoke(main, command).stdout
+    told = run(*command).stdout
     assert "unstable, below the critical stiffness" in told  # the lower one is 0
     assert re.search(r"velocity at the onset of instability +53\.6258 +mm/s", told)
-    assert "critical velocity" not in CliRunner().invoke(main, ["asymptotes"]).stdout
+    assert "critical velocity" not in run("asymptotes").stdout
     assert re.search(r"critical_stiffness +6\.87857 +MN/m\^2", told)
     assert re.search(r"frequency +12\.9277 +Hz", told)
-    record = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)
+    record = printed(*command)
     assert record["critical_stiffness"] == pytest.approx(6.879e6, rel=1e-3)
     assert len(record["rates"]) == len(record["time_constants"]) == 4
     assert record["stable"] is False
-    rigid = json.loads(CliRunner().invoke(main, ["stability", "--json"]).stdout)
+    rigid = printed("stability")
     assert rigid["rigid_drive"]
     assert rigid["critical_velocity"] is None
     ball = ["stability", "--set", "indenter.shape=sphere", "--set", "support.mass=1 kg"]
-    told = CliRunner().invoke(main, ball).stdout
+    told = run(*ball).stdout
     assert "N/mm " in told
     assert "N/m^2" not in told
-    steady = CliRunner().invoke(main, ["steady", *command[1:]]).stdout.splitlines()
+    steady = run("steady", *command[1:]).stdout.splitlines()
     assert steady[-1].startswith("Steady sliding is unstable")
-    record = json.loads(CliRunner().invoke(main, ["steady", *command[1:], "--json"]).stdout)
+    record = printed("steady", *command[1:])
     assert record["stable"] is False
 
 

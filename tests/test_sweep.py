@@ -14,18 +14,12 @@ from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.plan import Plan, axes_of, columns_of
+from tests.sweep_driver import assert_same
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}
 # The smallest of these velocities underflows in steady sliding; the others do not.
 FAILING = {V: [1e-3, 1e-320, 0.1, 1e300], TAU: [0.1, 1e-300]}
-
-
-def assert_same(a, b):
-    assert a.shape == b.shape
-    assert list(a.values) == list(b.values)
-    for name in a.values:
-        assert np.array_equal(a[name], b[name], equal_nan=a.units[name] != ""), name
 
 
 def test_a_grid_equals_the_steady_states_of_its_points():

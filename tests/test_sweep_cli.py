@@ -2,13 +2,13 @@
 
 import json
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
+from tests import commands
 
 OVER = [
     "--over", "drive.velocity=1 mm/s:10 m/s:4:log", "--over", "foundation.retardation_time=10 ms,1 s",
@@ -16,11 +16,7 @@ OVER = [
 THREADS = "concurrent.futures:ThreadPoolExecutor"
 
 
-def run(*arguments, status=0):
-    result = CliRunner().invoke(main, ["sweep", *arguments])
-    assert result.exit_code == status, result.output
-    assert "Traceback" not in result.output
-    return result
+run = partial(commands.run, "sweep")
 
 
 @pytest.fixture

@@ -14,7 +14,16 @@ import psutil
 import pytest
 
 import kvtheory as kv
-from tests.sweep_driver import OVER, POINTS, SLOW_POINTS, done_of, kept, run, run_slowly
+from tests.sweep_driver import (
+    OVER,
+    POINTS,
+    SLOW_POINTS,
+    assert_same,
+    done_of,
+    kept,
+    run,
+    run_slowly,
+)
 
 ROOT = Path(__file__).parent.parent
 V, TAU = "drive.velocity", "foundation.retardation_time"
@@ -52,12 +61,6 @@ def flipped(content, at):
 
 def names(folder):
     return [item.name for item in folder.iterdir()]
-
-
-def same(a, b):
-    for name in b.values:
-        assert a[name].dtype == b[name].dtype
-        assert np.array_equal(a[name], b[name], equal_nan=b.units[name] != ""), name
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +123,7 @@ def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_
             assert known.tolist() == [True] * 60 + [False] * 60
     found = small(path, progress=lambda share, words: before.append(done_of(words)))
     assert (before[0], found.computed) == (60, 60)
-    same(found, kv.sweep(over=SMALL))
+    assert_same(found, kv.sweep(over=SMALL))
     assert names(tmp_path) == [path.name]
 
 
@@ -326,7 +329,7 @@ def test_every_mixture_of_columns_is_kept_written_and_read(tmp_path, suffix):
         saved = kv.sweep(output=copy, **asked)
         assert (held.failed, stored.computed, saved.computed) == (1, 2, 0)
         for other in (stored, saved):
-            same(other, held)
+            assert_same(other, held)
         if "peak" in chosen:
             assert np.isnan(held["peak_to_steady_friction"][1:]).all()  # no friction at rest
         if "text" in chosen:

@@ -70,7 +70,7 @@ def forces(depth, l_r, shape, slope, leading):
         return depth - shape(x) - l_r * slope(x)
 
     guess = mp.sqrt(2 * depth + l_r**2) - l_r
-    trailing = mp.findroot(pressure, guess, tol=mp.mpf(10) ** -90)
+    trailing = mp.findroot(pressure, guess, tol=mp.mpf(10) ** (-1.8 * mp.mp.dps))
     # Two pieces: the outlet side may have almost peeled off.
     pieces = [leading, 0, trailing]
     return mp.quad(pressure, pieces), mp.quad(lambda x: -slope(x) * pressure(x), pieces)
@@ -246,6 +246,7 @@ def second_order(corrected, coarse="1e-3"):
 
 
 @pytest.mark.parametrize("number", ["0.1", "4"])
+@mp.workdps(20)
 def test_the_circle_at_given_depth(number):
     known = state(number)
 
@@ -284,6 +285,7 @@ def test_the_place_of_the_peak_pressure_of_a_circle(number):
 
 
 @pytest.mark.parametrize("number", ["0.1", "4"])
+@mp.workdps(20)
 def test_the_circle_at_given_load(number):
     known = state(number)
 
@@ -291,7 +293,7 @@ def test_the_circle_at_given_load(number):
         l_r = known[l] * mp.sqrt(eps)
         load, friction = parabola(l_r, eps / 2)
         excess, guesses = (lambda d: true_circle(l_r, d)[0] / load - 1), (eps / 2, eps / 1.98)
-        depth = mp.findroot(excess, guesses, tol=mp.mpf(10) ** -60)
+        depth = mp.findroot(excess, guesses, tol=mp.mpf(10) ** (-1.2 * mp.mp.dps))
         return depth / (eps / 2) - 1, true_circle(l_r, depth)[1] / friction - 1
 
     for index, symbol in enumerate((sym.c_delta_load, sym.c_mu_load)):

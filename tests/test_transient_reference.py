@@ -5,15 +5,13 @@ form, and the supremum over the whole past at points of the foundation; it state
 """
 
 import json
-import math
 
 import numpy as np
 import pytest
 
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.solver import solve
-from kvtheory.scene.base_motion import BaseMotion
 from tests import transient_reference as ref
+from tests.spring_random import solved
 from tests.transient_history import QUANTITIES
 
 TABLE = json.loads(ref.TABLE.read_text())
@@ -28,19 +26,6 @@ COLUMNS = {
 
 def column(name, quantity, part="values"):
     return np.array(TABLE[name][part][quantity], dtype=float)
-
-
-def drive(found, end):
-    if isinstance(found, list):
-        return BaseMotion.from_points(found, end)
-    mean, amplitude, frequency = (found[k] for k in ("mean", "amplitude", "frequency"))
-    return BaseMotion.from_function(lambda s: mean + amplitude * math.cos(frequency * s), end)
-
-
-def of_the_table(name, rtol):
-    scene = SCENES[name]
-    end, kappa = scene.times[-1], math.inf if scene.epsilon is None else scene.kappa
-    return solve(drive(scene.drive, end), scene.epsilon or 1.0, kappa, end, rtol)
 
 
 def worst(states, columns, entry, times_stated=1.0):
@@ -59,8 +44,16 @@ def worst(states, columns, entry, times_stated=1.0):
 
 @pytest.mark.parametrize("name", TABLE)
 def test_every_quantity_agrees_with_the_independent_solution(name):
-    states = of_the_table(name, RTOL).states(TABLE[name]["times"])
+    states = solved(SCENES[name], RTOL).states(TABLE[name]["times"])
     assert worst(states, COLUMNS, TABLE[name]) <= ALLOWED
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10])
+def test_the_error_of_a_start_is_in_proportion_to_the_tolerance(rtol):
+    motion = {name: COLUMNS[name] for name in ("d", "v")}
+    for name in ref.TAYLOR | ref.TWO_STATES:
+        states = solved(SCENES[name], rtol).states(TABLE[name]["times"])
+        assert worst(states, motion, TABLE[name]) <= (4.0 if rtol > 1e-6 else 2.0) * rtol, name
 
 
 def test_table_is_of_these_scenes_with_these_errors():

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations.chapters import viscoelastic as theory
-from scipy.signal import lfilter
 
 import kvtheory as kv
 from kvtheory.models.steady import viscoelastic
@@ -94,18 +93,6 @@ def test_kelvin_voigt_is_a_damper_and_the_springpot_of_order_one(support):
             assert sign * value == pytest.approx(getattr(truth, name), rel=2e-14, abs=0), name
 
 
-def test_arms_can_be_swept_and_broadcast():
-    over = {"foundation.arms[0].stiffness": [1e9, 3e10], "drive.velocity": [[0.1], [0.2], [0.0]]}
-    state = kv.steady(scene(ZENER), over=over)
-    assert state.depth.shape == (3, 2)
-    single = kv.steady(scene(ZENER), over={"drive.velocity": 0.2})
-    assert state.depth[1, 1] == single.depth
-    swept = kv.sweep(scene(ZENER), over={"foundation.arms[1].relaxation_time": ["1 ms", "1 s"]})
-    assert swept["friction_force"][1] == kv.steady(scene(ZENER)).friction_force
-    orders = kv.sweep(scene(HALF), over={"foundation.order": [0.5, 1.0]})
-    assert orders["depth"][1] == pytest.approx(kv.steady().depth, rel=1e-14)
-
-
 def test_mistakes_of_arms_are_listed_together():
     arms = [["30 GN/m^3", "10 mm"], [-1.0, 2.0], 3, [1.0, 5.0], [2.0, 5.0], [1.0, 1e-3]]
     with pytest.raises(kv.SceneError) as caught:
@@ -164,6 +151,8 @@ LOPSIDED = kv.Profile(
 @pytest.mark.parametrize("shape", [*SHAPES, "lopsided"])
 def test_convolution_of_any_shape_agrees_with_a_row_of_elements(shape, side):
     """Elements that follow the shape at a constant depth, each arm exact over a step: order h."""
+    from scipy.signal import lfilter
+
     indenter, depth = SHAPES.get(shape, LOPSIDED), 1e-4 if shape in SHAPES else 1e-5
     fixed = kv.Scene(indenter, ZENER, kv.Fixed(depth), kv.Drive(0.1 * side))
     state = kv.steady(fixed, method="quadrature")
