@@ -31,7 +31,7 @@ def scene_output(command: Any) -> Any:
 @click.option(
     "--thickness", metavar='"2 mm"', help="Thickness of the layer that is the foundation."
 )
-@click.option("--poisson-ratio", metavar="0.3", help="Its Poisson's ratio.")
+@click.option("--poisson-ratio", type=float, metavar="0.3", help="Its Poisson's ratio.")
 @click.option("--temperature", metavar='"60 degC"', help="Temperature of the foundation.")
 @click.option(
     "--shift-factors", type=FILE, help="CSV of T [degC],log10 a_T; default: fitted to the sweeps."
@@ -60,21 +60,10 @@ def foundation(
     from kvtheory.scene import load_scene
 
     with console.progress_bar("foundation"):
-        if how["poisson_ratio"] is not None:
-            how["poisson_ratio"] = _number(how["poisson_ratio"])
         found = fit_foundation(data, load_scene(scene), **how)
-        text = found.to_toml() if output else ""
-    _finish(found, text, output, plot, as_json=as_json)
+    _finish(found, output, plot, as_json=as_json)
     if found.scene is None and not as_json:
         click.echo("Give --thickness and --poisson-ratio for the foundation of a scene.")
-
-
-def _number(text: str) -> Any:
-    """Return a number, or the text for a message."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 @main.command(
@@ -109,13 +98,12 @@ def fit(
         found = find(
             checked, list(data), free=console.split(free or ""), models=models, progress=progress
         )
-    _finish(found, found.to_toml() if output else "", output, plot, as_json=as_json)
+    _finish(found, output, plot, as_json=as_json)
 
 
-def _finish(
-    found: Any, text: str, output: Path | None, plot: Path | None, *, as_json: bool
-) -> None:
+def _finish(found: Any, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
     """Write the files, and print the result."""
+    text = found.to_toml() if output else ""
 
     def save(path: Path) -> None:
         path.write_text(text, encoding="utf-8")

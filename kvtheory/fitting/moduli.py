@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.fitting.spectrum import Array, Moduli
-from kvtheory.fitting.tables import Reader, Table
+from kvtheory.scene.columns import Reader, Table
 
 SPELLINGS = {
     "frequency": "f, freq, frequency, Frequenz",

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.fitting.tables import Reader, Table
+from kvtheory.scene.columns import Reader, Table
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Scene

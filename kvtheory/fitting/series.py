@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.fitting.tables import Array, Reader, Table
 from kvtheory.results.table import SERIES_UNITS
+from kvtheory.scene.columns import Array, Reader, Table
 
 PRESSURE = {"peak_pressure": "N/m^2"}
 """The unit as `kvtheory.scene.units` spells it."""

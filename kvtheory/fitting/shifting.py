@@ -16,7 +16,7 @@ from scipy.optimize import curve_fit, minimize_scalar
 
 from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.spectrum import Array, Moduli
-from kvtheory.fitting.tables import Reader
+from kvtheory.scene.columns import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT
 
 STEPS = 200

@@ -229,28 +229,26 @@ def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
 
     The pairs that change the moduli least are tried, and the best one is refined.
     """
-    mean, cost = _mergers(data, series)
-    tau = series.time
-    tried = [np.delete(np.where(np.arange(tau.size) == i, mean[i], tau), i + 1)
-             for i in np.argsort(cost)[:TRIED]]  # fmt: skip
-    found = min((_solved(data, times) for times in [*tried, tau[:-1], tau[1:]]), key=itemgetter(0))
+    cost, tau = _merging_costs(data, series), series.time
+    merged = [_gathered(series, np.arange(cost.size) == i).time for i in np.argsort(cost)[:TRIED]]
+    found = min((_solved(data, times) for times in [*merged, tau[:-1], tau[1:]]), key=itemgetter(0))
     return refined(data, found[1], steps)
 
 
-def _mergers(data: Moduli, series: Series) -> tuple[Array, Array]:
-    """Return the time of each pair of neighbours as one arm, and by how much that changes the moduli."""
+def _merging_costs(data: Moduli, series: Series) -> Array:
+    """Return the sum of squares by which the moduli change where a pair of neighbours becomes one arm."""
     E, tau = series.modulus, series.time
     both = E[:-1] + E[1:]
     mean = np.exp((E[:-1] * np.log(tau[:-1]) + E[1:] * np.log(tau[1:])) / both)
     own, merged = data.kernel(tau) * E, data.kernel(mean) * both
-    return mean, ((own[:, :-1] + own[:, 1:] - merged) ** 2).sum(axis=0)
+    return np.asarray(((own[:, :-1] + own[:, 1:] - merged) ** 2).sum(axis=0))
 
 
 def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Series:
     """Return the series of the fewest arms with a misfit of at most `target`, or of at most `count` arms."""
     kept = start
     while count is not None and (excess := kept.time.size - count - SPARE) > 0:
-        _, cost = _mergers(data, kept)
+        cost = _merging_costs(data, kept)
         around = np.pad(cost, 1, constant_values=np.inf)
         least = np.flatnonzero((cost <= around[2:]) & (cost < around[:-2]))  # these share no arm
         least = least[np.argsort(cost[least])[:excess]]

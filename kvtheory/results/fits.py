@@ -115,10 +115,11 @@ class FoundationFit(Exported):
 
 
 class Parameter(NamedTuple):
-    """A fitted quantity of a scene, in SI, and its standard error, of linear theory at the minimum.
+    """A fitted quantity of a scene, in SI, and its standard error.
 
     `interval` is that of 95 % confidence, by the profile of the sum of squares; a limit that the data do not
-    give is 0 or infinite.
+    give is 0 or infinite. The standard error is that of linear theory at the minimum, or the longer side of
+    the interval over Student's t where that is larger.
     """
 
     value: float

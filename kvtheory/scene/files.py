@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.arguments import a_scene, checked, file_name, names
+from kvtheory.scene.columns import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
@@ -26,7 +27,7 @@ from kvtheory.scene.mistakes import (
 )
 from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
 from kvtheory.scene.quantities import as_given, given, missing, quantities, required
-from kvtheory.scene.tables import history_from, read_text
+from kvtheory.scene.tables import read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
 SECTIONS = ("indenter", "foundation", "support", "drive", "run")

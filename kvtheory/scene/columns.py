@@ -21,7 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.mistakes import shown
+from kvtheory.scene.drives import history_points
+from kvtheory.scene.mistakes import mistake, shown
 from kvtheory.scene.tables import SEPARATED, SEPARATORS, number, parts, plain, read_text
 from kvtheory.scene.units import bare, to_si
 
@@ -362,3 +363,30 @@ def _numbers(
             row.append(value)
         values.append(row)
     return dict(zip(names, np.array(values).T, strict=True))
+
+
+KEY = "drive.file"
+HISTORY = Reader(
+    {
+        "time": "t, time, Zeit",
+        "velocity": "V, v, velocity, speed, drive velocity, v_drive, Geschwindigkeit",
+    },
+    {"time", "velocity"}.issubset,
+    'a first line such as "t [ms],V [mm/s]", and then numbers',
+)
+
+
+def history_from(path: Path) -> tuple[tuple[float, float], ...]:
+    """Return the points (t, V) in SI of a table of time and velocity; other columns are ignored.
+
+    It raises SceneError if the file cannot be read; the message says in which line.
+    """
+    try:
+        table = HISTORY.read(path)
+        t, V = table.si("time", "s")[0], table.si("velocity", "m/s")[0]
+    except OSError as error:
+        raise mistake(KEY, str(path), f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise mistake(KEY, str(path), str(error).removeprefix(f"{path}: ")) from None
+    points = zip(t.tolist(), V.tolist(), strict=True)
+    return history_points(list(points), f"{KEY} ({path.name})")
