@@ -42,7 +42,9 @@ def test_no_claim_is_refuted_and_every_known_kind_is_decided(records):
     verdicts = recheck(records)
     assert having(verdicts, "refuted") == {}
     undecided = [each for each in having(verdicts, "unconfirmed").values() if each.kind in _CHECKS]
-    assert undecided == []  # a claim about two forms of one expression is about them as they are printed
+    assert (
+        undecided == []
+    )  # a claim about two forms of one expression is about them as they are printed
     weaker = Counter(each.kind for each in having(verdicts, "supported").values())
     assert set(weaker) <= {"limit", "inequality", "integral", "maximum", "crossing"}
     assert counts(verdicts)["confirmed"] > 5 * sum(weaker.values())
