@@ -80,15 +80,16 @@ def symbols(table: str) -> tuple[Any, ...]:
     A row without a name declares a letter alone.
 
     >>> table = r'''
-    ...     n_1  \check n_1  1  number of layers, the lowest
+    ...     n_9  \Xi_9       1  number of layers, the lowest
     ...             included  integer positive  from F1
-    ...     -    \check m    m  thickness of a layer
+    ...     -    \Upsilon_9  m  thickness of a layer
     ... '''
-    >>> symbols(table)
-    (n_1,)
-    >>> rows = [BY_LATEX.pop(latex) for latex in (r"\check n_1", r"\check m")]
+    >>> (n_9,) = symbols(table)
+    >>> n_9.is_integer, TEX.pop(n_9)
+    (True, '\\Xi_9')
+    >>> rows = [BY_LATEX.pop(latex) for latex in (r"\Xi_9", r"\Upsilon_9")]
     >>> [(row.latex, row.unit, row.source) for row in rows]
-    [('\\check n_1', '1', 'F1'), ('\\check m', 'm', None)]
+    [('\\Xi_9', '1', 'F1'), ('\\Upsilon_9', 'm', None)]
     >>> rows[0].meaning
     'number of layers, the lowest included'
     """
