@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
 from .steady import l, q
 from .theorems import (
@@ -29,67 +29,31 @@ from .theorems import (
     w,
 )
 
-gap = symbol("gap", "$1 - q$", latex=r"\bar q")
-e_l1 = symbol(
-    "e_L1",
-    "relative error of the asymptote of the friction coefficient for low velocity",
-    latex=r"e_{\mathrm{L1}}",
-    real=True,
-)
-e_l2_fixed = symbol(
-    "e_L2",
-    "relative error of the friction coefficient for high velocity, fixed indenter",
-    latex=r"e_{\mathrm{L2\text{-}FI}}",
-    real=True,
-)
-e_l2_weight = symbol(
-    "e_L2_weight",
-    "relative error of the friction coefficient for high velocity, dead weight",
-    latex=r"e_{\mathrm{L2\text{-}MI}}",
-    real=True,
-)
-e_load_low = symbol(
-    "e_W_low", "relative error of the load for low velocity", latex=r"e_{W\!,\,V\to0}", real=True
-)
-e_load_high = symbol(
-    "e_W_high",
-    "relative error of the load for high velocity",
-    latex=r"e_{W\!,\,V\to\infty}",
-    real=True,
-)
-e_friction_low = symbol(
-    "e_F_low",
-    "relative error of the friction force for low velocity",
-    latex=r"e_{F\!,\,V\to0}",
-    real=True,
-)
-e_friction_high = symbol(
-    "e_F_high",
-    "relative error of the friction force for high velocity",
-    latex=r"e_{F\!,\,V\to\infty}",
-    real=True,
-)
-e_depth_low = symbol(
-    "e_depth_low",
-    "relative error of the static depth for low velocity",
-    latex=r"e_{\delta,\,V\to0}",
-    real=True,
-)
-e_depth_high = symbol(
-    "e_depth_high",
-    "relative error of the depth for high velocity",
-    latex=r"e_{\delta,\,V\to\infty}",
-    real=True,
-)
-e_load_spring = symbol(
-    "e_W", "relative error of the static load of a suspended indenter", latex="e_{W}", real=True
-)
-S = symbol("S", r"$\sqrt{1 + e_{\delta,\,V\to\infty}} - 1$, the error of the root of the depth")
-b = symbol(
-    "b", r"root of the static depth over the depth, $(1 + E_\delta)^{1/3}$", printed=r"b_\delta"
-)
-E = symbol("E", "relative excess of the load over the static one", printed=r"E_\delta")
-letter("L_2", "asymptote of the friction coefficient for high velocity")
+(
+    gap, e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high,
+    e_depth_low, e_depth_high, e_load_spring, S, b, E,
+) = symbols(r"""
+    gap         \bar q            1  $1 - q$
+    e_L1        e_{\mathrm{L1}}   1  relative error of the asymptote of the friction coefficient for low
+            velocity  real
+    e_L2        e_{\mathrm{L2\text{-}FI}}  1  relative error of the friction coefficient for high
+            velocity, fixed indenter  real
+    e_L2_weight  e_{\mathrm{L2\text{-}MI}}  1  relative error of the friction coefficient for high
+            velocity, dead weight  real
+    e_W_low     e_{W\!,\,V\to0}   1  relative error of the load for low velocity  real
+    e_W_high    e_{W\!,\,V\to\infty}  1  relative error of the load for high velocity  real
+    e_F_low     e_{F\!,\,V\to0}   1  relative error of the friction force for low velocity  real
+    e_F_high    e_{F\!,\,V\to\infty}  1  relative error of the friction force for high velocity  real
+    e_depth_low  e_{\delta,\,V\to0}  1  relative error of the static depth for low velocity  real
+    e_depth_high  e_{\delta,\,V\to\infty}  1  relative error of the depth for high velocity  real
+    e_W         e_{W}             1  relative error of the static load of a suspended indenter  real
+    S           -                 1  $\sqrt{1 + e_{\delta,\,V\to\infty}} - 1$, the error of the root of
+            the depth
+    b           -                 1  root of the static depth over the depth, $(1 +
+            E_\delta)^{1/3}$  prints b_\delta
+    E           -                 1  relative excess of the load over the static one  prints E_\delta
+    -           L_2               1  asymptote of the friction coefficient for high velocity
+""")  # fmt: skip
 
 result = Chapter("Errors of the asymptotes")
 

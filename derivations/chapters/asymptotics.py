@@ -7,20 +7,16 @@ evaluated here as given, and compared with the exact load and with the friction 
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import constant, symbol
+from ..engine.nomenclature import constant, symbols
 from ..engine.step import Proof
 from . import friction_identity
 from .model import C, K, R, V, delta, h, x
 from .steady import F, W, a, l, l_r, mu, q
 
-load_excess = symbol("W_e", "elastic part of the load", "N/m", latex=r"W_{\mathrm{e}}", real=True)
-V_star = symbol(
-    "V_star",
-    "crossing velocity, where the two asymptotes meet",
-    "m/s",
-    latex="V^{*}",
-    source="eq47",
-)
+load_excess, V_star = symbols(r"""
+    W_e     W_{\mathrm{e}}  N/m  elastic part of the load  real
+    V_star  V^{*}           m/s  crossing velocity, where the two asymptotes meet  from eq47
+""")
 alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
 
 

@@ -11,97 +11,50 @@ from collections.abc import Mapping
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .steady import l
 from .theorems import kappa, lam
 
-s = symbol("s", r"scaled time, $t/\tau$", source="scaled-pressure")
-aside = symbol(
-    "y_b",
-    r"place of a strip of a ball over the half width $a \sqrt{R_{\mathrm{y}}/R}$",
-    latex=r"\tilde \zeta",
-    source="coordinate",
-)
-letter(r"R_{\mathrm{y}}", "radius of a ball across the sliding direction", "m", source="")
-ball_angle = symbol("theta_b", r"$\arctan(1/l)$", latex=r"\tilde \theta")
-ball_load = symbol(
-    "w_b", r"scaled load of a ball, $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$", latex=r"\tilde w"
-)
-ball_mean = symbol("g_b", r"$(\pi + \tilde T)/4$", latex=r"\tilde g")
-ball_rest = symbol("K_b", r"$\frac{2}{15} - l^2 \tilde D$", latex=r"\tilde K")
-ball_kept = symbol("M_b", r"$\tilde D - \tilde N$", latex=r"\tilde M")
-ball_lost = symbol("N_b", r"half of $- l \frac{d \tilde D}{d l}$", latex=r"\tilde N")
-ball_tail = symbol(
-    "T_b", "part of the load of a ball that vanishes at high velocity", latex=r"\tilde T"
-)
-ball_loss = symbol("D_b", "integral by which a ball leaves energy behind", latex=r"\tilde D")
-ball_depth = symbol("I_b", "integral of the depths of the strips", latex=r"\tilde I")
-ball_friction = symbol(
-    "phi_b",
-    r"scaled friction force of a ball, $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$",
-    latex=r"\tilde \varphi",
-)
-ball_coefficient = symbol(
-    "m_b", r"scaled friction coefficient of a ball, $\mu R/a$", latex=r"\tilde m"
-)
-ball_share = symbol(
-    "eta_b",
-    "fraction of the power dissipated inside the contact of a ball",
-    latex=r"\tilde \eta",
-    real=True,
-)
-ball_scaled = symbol("f_b", "scaled load of a ball that has been lifted", latex=r"\tilde f")
-ball_scaled_s = symbol("f_b_s", latex=r"\tilde f'")
-ball_scaled_ss = symbol("f_b_ss", latex=r"\tilde f''")
-ball_cross = symbol(
-    "l_b", "scaled crossing velocity of a ball at a given depth", latex=r"\tilde l^{*}"
-)
-ball_lam_cross = symbol(
-    "lambda_b", "scaled crossing velocity of a ball at a given load", latex=r"\tilde \lambda^{*}"
-)
-ball_slip = symbol(
-    "E_b",
-    "slope of the friction coefficient of a ball at a given load, scaled",
-    latex=r"\tilde E",
-    real=True,
-)
-ball_l1 = symbol(
-    "e_b_L1",
-    "relative error of the low asymptote, ball",
-    latex=r"\tilde e_{\mathrm{L1}}",
-    real=True,
-)
-ball_l2 = symbol(
-    "e_b_L2",
-    "relative error of the high asymptote, ball",
-    latex=r"\tilde e_{\mathrm{L2}}",
-    real=True,
-)
-ball_load_low = symbol(
-    "e_b_W_low",
-    "relative error of the load at rest, ball",
-    latex=r"\tilde e_{W\!,\,V\to0}",
-    real=True,
-)
-ball_load_high = symbol(
-    "e_b_W_high",
-    "relative error of the load at high velocity, ball",
-    latex=r"\tilde e_{W\!,\,V\to\infty}",
-    real=True,
-)
-ball_friction_low = symbol(
-    "e_b_F_low",
-    "relative error of the friction force at low velocity, ball",
-    latex=r"\tilde e_{F\!,\,V\to0}",
-    real=True,
-)
-ball_friction_high = symbol(
-    "e_b_F_high",
-    "relative error of the friction force at high velocity, ball",
-    latex=r"\tilde e_{F\!,\,V\to\infty}",
-    real=True,
-)
+(
+    s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
+    ball_loss, ball_depth, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
+    ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
+    ball_load_high, ball_friction_low, ball_friction_high,
+) = symbols(r"""
+    s           -                 1  scaled time, $t/\tau$  from scaled-pressure
+    y_b         \tilde \zeta      1  place of a strip of a ball over the half width $a
+            \sqrt{R_{\mathrm{y}}/R}$  from coordinate
+    -           R_{\mathrm{y}}    m  radius of a ball across the sliding direction  from scene
+    theta_b     \tilde \theta     1  $\arctan(1/l)$
+    w_b         \tilde w          1  scaled load of a ball, $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$
+    g_b         \tilde g          1  $(\pi + \tilde T)/4$
+    K_b         \tilde K          1  $\frac{2}{15} - l^2 \tilde D$
+    M_b         \tilde M          1  $\tilde D - \tilde N$
+    N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
+    T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
+    D_b         \tilde D          1  integral by which a ball leaves energy behind
+    I_b         \tilde I          1  integral of the depths of the strips
+    phi_b       \tilde \varphi    1  scaled friction force of a ball, $F R/(K \delta a^3
+            \sqrt{R_{\mathrm{y}}/R})$
+    m_b         \tilde m          1  scaled friction coefficient of a ball, $\mu R/a$
+    eta_b       \tilde \eta       1  fraction of the power dissipated inside the contact of a ball  real
+    f_b         \tilde f          1  scaled load of a ball that has been lifted
+    f_b_s       \tilde f'         1  -
+    f_b_ss      \tilde f''        1  -
+    l_b         \tilde l^{*}      1  scaled crossing velocity of a ball at a given depth
+    lambda_b    \tilde \lambda^{*}  1  scaled crossing velocity of a ball at a given load
+    E_b         \tilde E          1  slope of the friction coefficient of a ball at a given load,
+            scaled  real
+    e_b_L1      \tilde e_{\mathrm{L1}}  1  relative error of the low asymptote, ball  real
+    e_b_L2      \tilde e_{\mathrm{L2}}  1  relative error of the high asymptote, ball  real
+    e_b_W_low   \tilde e_{W\!,\,V\to0}  1  relative error of the load at rest, ball  real
+    e_b_W_high  \tilde e_{W\!,\,V\to\infty}  1  relative error of the load at high velocity, ball  real
+    e_b_F_low   \tilde e_{F\!,\,V\to0}  1  relative error of the friction force at low velocity,
+            ball  real
+    e_b_F_high  \tilde e_{F\!,\,V\to\infty}  1  relative error of the friction force at high velocity,
+            ball  real
+""")  # fmt: skip
 
 SECTION = "Ball"
 

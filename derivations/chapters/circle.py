@@ -9,7 +9,7 @@ dissipates inside its contact has a closed form, by which the explorer computes 
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import R, delta, x
 from .steady import a, l, q
@@ -28,35 +28,28 @@ from .theorems import (
     xi,
 )
 
-eps = symbol("epsilon", "$(a/R)^2$ of a true circle", latex=r"\varepsilon", printed=r"\gamma")
-W_1 = symbol("W_1", "first-order change of the scaled load by the circle", real=True)
-F_1 = symbol("F_1", "first-order change of the scaled friction force by the circle", real=True)
-c_w = symbol("c_W", "coefficient of the circle in the load", real=True)
-c_f = symbol("c_F", "coefficient of the circle in the friction force", real=True)
-c_mu = symbol("c_mu", "coefficient of the circle in the friction coefficient", real=True)
-c_delta_load = symbol(
-    "c_delta_W",
-    "coefficient of the circle in the depth at given load",
-    latex=r"c_{\delta,W}",
-    real=True,
-)
-c_mu_load = symbol(
-    "c_mu_W",
-    "coefficient of the circle in the friction coefficient at given load",
-    latex=r"c_{\mu,W}",
-    real=True,
-)
-letter(r"\hat h", "height of a true circle over $R$")
-tilt = symbol("slope", latex=r"\hat h'")
-letter(r"\hat v", "slope of a true circle")
-circle_number = symbol("v_c", r"$l_{\mathrm{r}}/R$ of a true circle", latex=r"\hat l")
-turning = symbol("s_c", "$-x/R$ at the peak pressure of a true circle", latex=r"\hat s")
-turning_angle = symbol("angle", r"angle that gives $\hat s$", latex=r"\hat \theta")
-slope_square = symbol(
-    "slope_square", "integral of $h'^2$ over a contact, over $R$", latex=r"\hat S", real=True
-)
-letter(r"\hat t", r"shift of the trailing edge of a circle, over $\gamma a$")
-letter("m_l", "logarithmic slope of $m$ over $l$")
+(
+    eps, W_1, F_1, c_w, c_f, c_mu, c_delta_load, c_mu_load, tilt, circle_number, turning,
+    turning_angle, slope_square,
+) = symbols(r"""
+    epsilon     \varepsilon   1  $(a/R)^2$ of a true circle  prints \gamma
+    W_1         -             1  first-order change of the scaled load by the circle  real
+    F_1         -             1  first-order change of the scaled friction force by the circle  real
+    c_W         -             1  coefficient of the circle in the load  real
+    c_F         -             1  coefficient of the circle in the friction force  real
+    c_mu        -             1  coefficient of the circle in the friction coefficient  real
+    c_delta_W   c_{\delta,W}  1  coefficient of the circle in the depth at given load  real
+    c_mu_W      c_{\mu,W}     1  coefficient of the circle in the friction coefficient at given load  real
+    -           \hat h        1  height of a true circle over $R$
+    slope       \hat h'       1  -
+    -           \hat v        1  slope of a true circle
+    v_c         \hat l        1  $l_{\mathrm{r}}/R$ of a true circle
+    s_c         \hat s        1  $-x/R$ at the peak pressure of a true circle
+    angle       \hat \theta   1  angle that gives $\hat s$
+    slope_square  \hat S        1  integral of $h'^2$ over a contact, over $R$  real
+    -           \hat t        1  shift of the trailing edge of a circle, over $\gamma a$
+    -           m_l           1  logarithmic slope of $m$ over $l$
+""")  # fmt: skip
 
 
 CONTACT = (xi, -1, q)

@@ -64,15 +64,15 @@ def _rule(proof: Proof) -> None:
     r"""Order of the rule over the strips of a ball.
 
     Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and
-    the load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for
-    the load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, $\frac{1}{2}
-    \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge 0}
+    the load begins as $p_1 y + p_2 y^{3/2}$. The error of the trapezoidal rule is due to the rim alone,
+    since the load is even about the middle plane. For $y^{3/2}$ it is, in units of $\Delta^{5/2}$,
+    $\frac{1}{2} \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge 0}
     Q(\vartheta + j)$, where $Q$ makes the sum converge.
 
     Argued: This solves the last equation, as Hurwitz's $\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$
-    does; their difference has the period 1 and vanishes for great $\vartheta$, so that they are the same.
-    With the correction the rule over strips has $p_2 \Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2},
-    \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + \frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and
+    does; their difference has period 1 and vanishes for large $\vartheta$, so that they are equal.
+    With the correction, the error of the rule over strips is $p_2 \Delta^{5/2} [\zeta_{\mathrm{H}}(
+    -\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + \frac{1}{6}) \sqrt{1 + \vartheta}]$ and
     terms of the order of $\Delta^3$: its order is $\frac{5}{2}$.
     """
     over = (_y, 0, _share * _spacing)
@@ -81,10 +81,10 @@ def _rule(proof: Proof) -> None:
     proof.integral(line, _y, over, _y**2 / 2, "before the first strip", value=begun)
     surplus = _share * _spacing**2 / 2 - _spacing**2 / 12 - line
     lacks = -(_spacing**2) * BERNOULLI / 2
-    proof.equal(surplus, lacks, r"what the rule has too much for the load $y$")
+    proof.equal(surplus, lacks, r"error of the rule for the load $y$")
     second = _spacing * BERNOULLI / (2 * (1 + _share))
     proof.equal(lacks + second * (1 + _share) * _spacing, 0,
-                "the last strip but one counts more: nothing is left",
+                "with a larger weight of the second strip no error is left",
                 left=rf"{tex(lacks)} + {_MORE} (1 + \vartheta) \Delta")  # fmt: skip
     proof.equal(second * ((1 + _share) * _spacing) ** POWER, _spacing ** (POWER + 1) * SECOND,
                 r"the same for the load $y^{3/2}$",
@@ -102,7 +102,7 @@ _MORE = r"\frac{\Delta (\vartheta^2 - \vartheta + \frac{1}{6})}{2 (1 + \vartheta
 
 
 def _cell(proof: Proof) -> None:
-    """Prove what trapezoids have too little of y^(3/2) from one strip to the next, with Delta = 1."""
+    """Prove the error of the trapezoidal rule for y^(3/2) from one strip to the next, with Delta = 1."""
     over, u = (_x, 0, 1), (_v + _x) ** POWER
     kernel = _x**2 * (1 - _x) ** 2 / 24
     integrand = kernel * sp.diff(u, _x, 4)
@@ -110,7 +110,9 @@ def _cell(proof: Proof) -> None:
         (-1) ** order * sp.diff(kernel, _x, order) * sp.diff(u, _x, 3 - order) for order in range(4)
     ) + sp.Rational(2, 5) * (_v + _x) ** sp.Rational(5, 2)
     value = START - START.subs(_v, _v + 1) - _v**POWER
-    proof.holds(integrand, ">=", 0, "what element-trapezoids leaves between two strips")
+    proof.holds(
+        integrand, ">=", 0, "integrand of the error between two strips, by element-trapezoids"
+    )
     proof.integral(_rest, integrand, over, primitive, "by parts, four times", value=value)
     proof.equal(sp.Subs(value, _v, 0), sp.Rational(1, 40), "its greatest value: it falls with $v$")
     least = 9 * kernel / 16

@@ -3,20 +3,18 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, R, V, delta, h, x
 from .steady import F, a, l, l_r, q, x_le, x_te
 from .theorems import NUMBER, RATIO, UNIT, B, phi
 
-letter(r"u_{\mathrm{TE}}", "compression at the trailing edge", "m")
-F_elastic = symbol(
-    "F_elastic", "elastic part of the friction force", "N/m", latex=r"F_{\mathrm{e}}", real=True
-)
-F_viscous = symbol(
-    "F_viscous", "viscous part of the friction force", "N/m", latex=r"F_{\mathrm{v}}", real=True
-)
-eta = symbol("eta", "part of the power $F V$ that is dissipated inside the contact")
+F_elastic, F_viscous, eta = symbols(r"""
+    -          u_{\mathrm{TE}}  m    compression at the trailing edge
+    F_elastic  F_{\mathrm{e}}   N/m  elastic part of the friction force  real
+    F_viscous  F_{\mathrm{v}}   N/m  viscous part of the friction force  real
+    eta        -                1    part of the power $F V$ that is dissipated inside the contact
+""")
 
 
 _shape = h(x)

@@ -7,26 +7,20 @@ So x p is a multiple of p plus a derivative of p**2, and the friction force need
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from . import steady
 from .model import C, F_x, F_z, K, R, V, delta, h, x
 from .steady import F, W, a, l, l_r, mu, x_le, x_te
 
-depth_rate_now = symbol("delta_t", latex=r"\dot\delta", real=True)
-p_le = symbol(
-    "p_LE", "pressure at the leading edge", "Pa", latex=r"p_{\mathrm{LE}}", nonnegative=True
-)
-p_te = symbol(
-    "p_TE", "pressure at the trailing edge", "Pa", latex=r"p_{\mathrm{TE}}", nonnegative=True
-)
-r = symbol(
-    "r",
-    r"half the distance of the zeros of the pressure, $\sqrt{a^2 + l_{\mathrm{r}}^2}$",
-    "m",
-    printed=r"\bar r",
-)
-letter("I_p", "integral of $2 p p'$ over the contact", "Pa²")
+depth_rate_now, p_le, p_te, r = symbols(r"""
+    delta_t  \dot\delta       1    -  real
+    p_LE     p_{\mathrm{LE}}  Pa   pressure at the leading edge  nonnegative
+    p_TE     p_{\mathrm{TE}}  Pa   pressure at the trailing edge  nonnegative
+    r        -                m    half the distance of the zeros of the pressure, $\sqrt{a^2 +
+            l_{\mathrm{r}}^2}$  prints \bar r
+    -        I_p              Pa²  integral of $2 p p'$ over the contact
+""")
 
 
 LOAD = K * (a**3 + r**3 - l_r**3) / (3 * R)

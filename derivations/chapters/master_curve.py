@@ -7,7 +7,7 @@ import sympy as sp
 
 from ..engine.book import established
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbols
 from ..engine.record import Table
 from ..engine.step import Proof
 from .asymptotics import alpha
@@ -15,35 +15,21 @@ from .model import C, K, R, V, delta, tau
 from .steady import Lambda, W, a, l, l_r, mu, q
 from .theorems import RATIO, SECTION, UNIT, A, B, m, w
 
-Lambda_peak = symbol(
-    "Lambda_peak",
-    "scaled velocity at the friction maximum of a dead weight",
-    latex=r"\Lambda_{\max}",
-)
-mu_peak = symbol(
-    "mu_peak",
-    r"scaled friction maximum of a dead weight, $\mu (K R^2/W)^{1/3}$",
-    latex=r"\hat\mu_{\max}",
-)
-Lambda_fixed = symbol(
-    "Lambda_fixed",
-    r"scaled crossing velocity, fixed indenter, $V^{*} \tau/\sqrt{R \delta}$",
-    latex=r"\Lambda^{*}_{\mathrm{FI}}",
-)
-Lambda_weight = symbol(
-    "Lambda_weight",
-    r"scaled crossing velocity, dead weight, $V^{*} \tau (K/(R W))^{1/3}$",
-    latex=r"\Lambda^{*}_{\mathrm{MI}}",
-)
-X = symbol("X", r"$\Lambda^3$", printed=r"\hat X")
-Y = symbol("Y", r"cube of the scaled friction coefficient, $\mu^3 K R^2/W$", printed=r"\hat Y")
-T = symbol(
-    "T", "ratio of the friction coefficient to its low-velocity asymptote", printed=r"\hat T"
-)
-mu_max = symbol(
-    "mu_max", "friction maximum of a dead weight over its velocity", latex=r"\mu_{\max}", source=""
-)
-V_max = symbol("V_max", "velocity of the friction maximum", "m/s", latex=r"V_{\max}", source="")
+Lambda_peak, mu_peak, Lambda_fixed, Lambda_weight, X, Y, T, mu_max, V_max = symbols(r"""
+    Lambda_peak  \Lambda_{\max}    1    scaled velocity at the friction maximum of a dead weight
+    mu_peak     \hat\mu_{\max}    1    scaled friction maximum of a dead weight, $\mu (K R^2/W)^{1/3}$
+    Lambda_fixed  \Lambda^{*}_{\mathrm{FI}}  1    scaled crossing velocity, fixed indenter, $V^{*}
+            \tau/\sqrt{R \delta}$
+    Lambda_weight  \Lambda^{*}_{\mathrm{MI}}  1    scaled crossing velocity, dead weight, $V^{*} \tau
+            (K/(R W))^{1/3}$
+    X           -                 1    $\Lambda^3$  prints \hat X
+    Y           -                 1    cube of the scaled friction coefficient, $\mu^3 K R^2/W$  prints
+            \hat Y
+    T           -                 1    ratio of the friction coefficient to its low-velocity
+            asymptote  prints \hat T
+    mu_max      \mu_{\max}        1    friction maximum of a dead weight over its velocity  from scene
+    V_max       V_{\max}          m/s  velocity of the friction maximum  from scene
+""")
 
 DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
 FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, letter, symbol, symbols
 from ..engine.step import Proof
 
 R = symbol("R", "radius of the indenter", "m", source="")
@@ -24,27 +24,17 @@ letter("i", "index of an element", source="counter")
 h = function("h", "shape function of the indenter", "m", real=True)
 x_i = function("x_i", "position of an element", "m", real=True)(t)
 u_i = function("u_i", "compression of an element", "m", real=True)(t)
-letter("u", "compression of the foundation", "m", source="eq4")
-theta = symbol("theta_i", "inclination of the indenter at an element", real=True)
-f_n = symbol(
-    "f_Ni", "normal force on an element per unit width", "N/m", latex=r"f_{\mathrm{N}i}", real=True
-)
-f_c = symbol(
-    "f_Ci",
-    "constraint force on an element per unit width",
-    "N/m",
-    latex=r"f_{\mathrm{C}i}",
-    real=True,
-)
-f_z = symbol(
-    "f_zi", "vertical force of an element per unit width", "N/m", latex="f_{zi}", real=True
-)
-f_x = symbol(
-    "f_xi", "horizontal force of an element per unit width", "N/m", latex="f_{xi}", real=True
-)
-F_z = symbol("F_z", "vertical force per unit width", "N/m", real=True)
-F_x = symbol("F_x", "horizontal force per unit width", "N/m", real=True)
-delta = symbol("delta", "indentation depth", "m")
+theta, f_n, f_c, f_z, f_x, F_z, F_x, delta = symbols(r"""
+    -        u                m    compression of the foundation  from eq4
+    theta_i  -                1    inclination of the indenter at an element  real
+    f_Ni     f_{\mathrm{N}i}  N/m  normal force on an element per unit width  real
+    f_Ci     f_{\mathrm{C}i}  N/m  constraint force on an element per unit width  real
+    f_zi     f_{zi}           N/m  vertical force of an element per unit width  real
+    f_xi     f_{xi}           N/m  horizontal force of an element per unit width  real
+    F_z      -                N/m  vertical force per unit width  real
+    F_x      -                N/m  horizontal force per unit width  real
+    delta    -                m    indentation depth
+""")
 delta_t = function("delta", positive=True)(t)
 letter("e", "base of natural logarithms", source="constant")
 letter(r"\pi", "ratio of a circle", source="constant")

@@ -8,49 +8,35 @@ overflow. They hold for n = 1 as well, the wedge, where q = max(0, 1 - l); `deri
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, V, delta
 from .steady import F, W, a, l, l_r, mu, q
 from .theorems import P
 
-z_peeled = symbol("peeled", latex="z")
-exponent = symbol("n", "exponent of a power law", source="F19-pressure")
-excess = symbol("nu", "$n - 1$", latex=r"\nu")
-L = symbol("L", "length that gives the size of a shape", "m")
-Q = symbol("Q", "$q^{n - 1}$")
-y = symbol("y", "distance from the lowest line in half lengths, $|x|/a$")
-w_n = symbol("w_n", "scaled load of a power law")
-w_ahead = symbol(
-    "w_ahead", "part of the scaled load ahead of the lowest line", latex=r"w_{\mathrm{a}}"
-)
-w_behind = symbol(
-    "w_behind",
-    "part of the scaled load behind the lowest line",
-    latex=r"w_{\mathrm{b}}",
-    nonnegative=True,
-)
-phi_n = symbol("phi_n", "scaled friction force of a power law", latex=r"\varphi_n")
-phi_ahead = symbol(
-    "phi_ahead",
-    "part of the scaled friction force ahead of the lowest line",
-    latex=r"\varphi_{\mathrm{a}}",
-)
-phi_behind = symbol(
-    "phi_behind",
-    "part of the scaled friction force behind the lowest line",
-    latex=r"\varphi_{\mathrm{b}}",
-    nonnegative=True,
-)
-m_n = symbol("m_n", "scaled friction coefficient of a power law")
-eta_n = symbol("eta_n", "dissipated part inside the contact of a power law")
-lost_ahead = symbol("e_ahead", "dissipation ahead of the lowest line", latex=r"\eta_{\mathrm{a}}")
-lost_behind = symbol(
-    "e_behind", "dissipation behind the lowest line", latex=r"\eta_{\mathrm{b}}", nonnegative=True
-)
-P_n = symbol(
-    "P_n", "maximum of the scaled pressure of a power law", latex=r"\hat p_{\max,n}", real=True
-)
+(
+    z_peeled, exponent, excess, L, Q, y, w_n, w_ahead, w_behind, phi_n, phi_ahead, phi_behind, m_n,
+    eta_n, lost_ahead, lost_behind, P_n,
+) = symbols(r"""
+    peeled      z                 1  -
+    n           -                 1  exponent of a power law  from F19-pressure
+    nu          \nu               1  $n - 1$
+    L           -                 m  length that gives the size of a shape
+    Q           -                 1  $q^{n - 1}$
+    y           -                 1  distance from the lowest line in half lengths, $|x|/a$
+    w_n         -                 1  scaled load of a power law
+    w_ahead     w_{\mathrm{a}}    1  part of the scaled load ahead of the lowest line
+    w_behind    w_{\mathrm{b}}    1  part of the scaled load behind the lowest line  nonnegative
+    phi_n       \varphi_n         1  scaled friction force of a power law
+    phi_ahead   \varphi_{\mathrm{a}}  1  part of the scaled friction force ahead of the lowest line
+    phi_behind  \varphi_{\mathrm{b}}  1  part of the scaled friction force behind the lowest
+            line  nonnegative
+    m_n         -                 1  scaled friction coefficient of a power law
+    eta_n       -                 1  dissipated part inside the contact of a power law
+    e_ahead     \eta_{\mathrm{a}}  1  dissipation ahead of the lowest line
+    e_behind    \eta_{\mathrm{b}}  1  dissipation behind the lowest line  nonnegative
+    P_n         \hat p_{\max,n}   1  maximum of the scaled pressure of a power law  real
+""")  # fmt: skip
 
 SECTION = "Power law and wedge"
 

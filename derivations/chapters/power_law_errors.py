@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
 from .power_law import (
     FRICTION_FORCE,
@@ -28,71 +28,38 @@ from .power_law import (
 from .power_law_weight import AT_REST
 from .steady import l, q
 
-gap_edge = symbol("gap_q", latex=r"\bar q")
-gap_slope = symbol("gap_Q", "$1 - Q$", latex=r"\bar Q")
-bend = symbol("bend", "$l - (1 - q)$, the difference of $l$ and $1 - q$", latex="b_n", real=True)
-letter(r"\phi_2", r"$\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators")
-phi_rise = symbol("phi_rise", r"$\phi_2$ at a positive argument", latex=r"\phi_{2,+}")
-phi_fall = symbol("phi_fall", r"$\phi_2$ at a negative argument", latex=r"\phi_{2,-}")
-psi = symbol("psi", r"logarithmic slope of $\varphi_n$ over $l$")
-omega = symbol("omega", "logarithmic slope of $w_n$ over $l$")
-letter(r"\varrho", r"$1 - \psi$, positive because $\varphi_n/l$ falls")
-blunt = symbol(
-    "blunt",
-    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that vanishes for a wedge",
-    latex=r"D_{\mathrm{b}}",
-)
-damped = symbol("damped", r"$(2 n - 1) \varphi_n/(n^2 l)$", latex=r"D_{\mathrm{d}}")
-sharp = symbol(
-    "sharp",
-    r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that remains for a wedge",
-    latex=r"D_{\mathrm{s}}",
-)
-tip = symbol("tip", "$n (n + 1) (w_n - l)$", latex=r"D_{\mathrm{t}}")
-whole = symbol("whole", "$(n + 1) w_n/n$", latex=r"D_{\mathrm{w}}")
-e_n_l1 = symbol(
-    "e_L1_n",
-    "relative error of the asymptote for low velocity, power law",
-    latex=r"e_{\mathrm{L1},n}",
-    real=True,
-)
-e_n_l2 = symbol(
-    "e_L2_n",
-    "relative error of the asymptote for high velocity, power law",
-    latex=r"e_{\mathrm{L2},n}",
-    real=True,
-)
-e_n_load_low = symbol(
-    "e_W_low_n",
-    "relative error of the load for low velocity, power law",
-    latex=r"e_{W\!,\,V\to0,n}",
-    real=True,
-)
-e_n_load_high = symbol(
-    "e_W_high_n",
-    "relative error of the load for high velocity, power law",
-    latex=r"e_{W\!,\,V\to\infty,n}",
-    real=True,
-)
-e_n_friction_low = symbol(
-    "e_F_low_n",
-    "relative error of the friction force for low velocity, power law",
-    latex=r"e_{F\!,\,V\to0,n}",
-    real=True,
-)
-e_n_friction_high = symbol(
-    "e_F_high_n",
-    "relative error of the friction force for high velocity, power law",
-    latex=r"e_{F\!,\,V\to\infty,n}",
-    real=True,
-)
-e_n_depth_high = symbol(
-    "e_depth_high_n",
-    "relative error of the depth for high velocity, power law",
-    latex=r"e_{\delta,\,V\to\infty,n}",
-    real=True,
-)
-letter("j", "counter", source="counter")
+(
+    gap_edge, gap_slope, bend, phi_rise, phi_fall, psi, omega, blunt, damped, sharp, tip, whole,
+    e_n_l1, e_n_l2, e_n_load_low, e_n_load_high, e_n_friction_low, e_n_friction_high,
+    e_n_depth_high,
+) = symbols(r"""
+    gap_q       \bar q            1  -
+    gap_Q       \bar Q            1  $1 - Q$
+    bend        b_n               1  $l - (1 - q)$, the difference of $l$ and $1 - q$  real
+    -           \phi_2            1  $\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators
+    phi_rise    \phi_{2,+}        1  $\phi_2$ at a positive argument
+    phi_fall    \phi_{2,-}        1  $\phi_2$ at a negative argument
+    psi         -                 1  logarithmic slope of $\varphi_n$ over $l$
+    omega       -                 1  logarithmic slope of $w_n$ over $l$
+    -           \varrho           1  $1 - \psi$, positive because $\varphi_n/l$ falls
+    blunt       D_{\mathrm{b}}    1  part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that vanishes for a
+            wedge
+    damped      D_{\mathrm{d}}    1  $(2 n - 1) \varphi_n/(n^2 l)$
+    sharp       D_{\mathrm{s}}    1  part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that remains for a wedge
+    tip         D_{\mathrm{t}}    1  $n (n + 1) (w_n - l)$
+    whole       D_{\mathrm{w}}    1  $(n + 1) w_n/n$
+    e_L1_n      e_{\mathrm{L1},n}  1  relative error of the asymptote for low velocity, power law  real
+    e_L2_n      e_{\mathrm{L2},n}  1  relative error of the asymptote for high velocity, power law  real
+    e_W_low_n   e_{W\!,\,V\to0,n}  1  relative error of the load for low velocity, power law  real
+    e_W_high_n  e_{W\!,\,V\to\infty,n}  1  relative error of the load for high velocity, power law  real
+    e_F_low_n   e_{F\!,\,V\to0,n}  1  relative error of the friction force for low velocity, power
+            law  real
+    e_F_high_n  e_{F\!,\,V\to\infty,n}  1  relative error of the friction force for high velocity, power
+            law  real
+    e_depth_high_n  e_{\delta,\,V\to\infty,n}  1  relative error of the depth for high velocity, power
+            law  real
+    -           j                 1  counter  from counter
+""")  # fmt: skip
 
 _SHORT = {
     damped: 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2,

@@ -3,7 +3,7 @@ r"""A power law at a given depth over velocity: monotonicity, both limits, and t
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
     FRICTION_COEFFICIENT,
@@ -23,15 +23,13 @@ from .power_law import (
 )
 from .steady import l, q
 
-letter(r"\bar z", "$1 - q^n$")
-w_rest = symbol("w_rest", "scaled load of a power law at rest", latex="w_{n,0}")
-m_low = symbol(
-    "m_low", "friction coefficient of a power law at low velocity, over $l$", latex="m_{n,0}'"
-)
-m_high = symbol(
-    "m_high", "friction coefficient of a power law at high velocity", latex=r"m_{n,\infty}"
-)
-l_cross = symbol("l_cross", "scaled retardation length where the asymptotes meet", latex="l^{*}")
+w_rest, m_low, m_high, l_cross = symbols(r"""
+    -        \bar z        1  $1 - q^n$
+    w_rest   w_{n,0}       1  scaled load of a power law at rest
+    m_low    m_{n,0}'      1  friction coefficient of a power law at low velocity, over $l$
+    m_high   m_{n,\infty}  1  friction coefficient of a power law at high velocity
+    l_cross  l^{*}         1  scaled retardation length where the asymptotes meet
+""")
 
 result = Chapter(SECTION)
 

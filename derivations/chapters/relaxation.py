@@ -9,7 +9,7 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, letter, symbol, symbols
 from ..engine.step import Proof, tex
 from .model import K, R
 from .steady import a, x_te
@@ -45,47 +45,28 @@ fading = function(
     printed=r"\breve H",
     nonnegative=True,
 )
-other_trailing = symbol("v_v", r"as $\breve w$, of another position", latex=r"\breve v")
-felt = symbol("J_v", "part of a double integral", latex=r"\breve J", real=True)
-shift = symbol("h_v", r"$\breve a - 1$", latex=r"\breve h", real=True)
-left_behind = symbol("u_v", "compression of the free surface", "m", latex=r"\breve u")
-arm_ratio = symbol(
-    "beta_v", "stiffness of the one arm over that of the spring", latex=r"\breve \beta"
-)
-parting = symbol(
-    "sigma_v", "angle between indenter and surface behind the contact", latex=r"\breve \sigma"
-)
-slope_free = symbol("s_vf", "slope of the free surface", latex=r"\breve \chi_0", real=True)
-pressed = symbol(
-    "g_v", "depth of the indenter below the undisturbed surface", "m", latex=r"\breve g", real=True
-)
-damper_1 = symbol(
-    "u_v1", "extension of the dashpot of an arm", "m", latex=r"\breve u_1", nonnegative=True
-)
-damper_2 = symbol(
-    "u_v2", "extension of the dashpot of another arm", "m", latex=r"\breve u_2", nonnegative=True
-)
-spring_1 = symbol("K_v1", "stiffness of one arm per unit area", "N/m³", latex="K_1")
-spring_2 = symbol("K_v2", "stiffness of another arm per unit area", "N/m³", latex="K_2")
-share_1 = symbol(
-    "gamma_v1",
-    "share of an arm in the glassy stiffness",
-    latex=r"\breve \gamma_1",
-    nonnegative=True,
-)
-share_2 = symbol("gamma_v2", "share of another arm", latex=r"\breve \gamma_2", nonnegative=True)
-on_off = symbol(
-    "theta_v",
-    "weight of the indenter relative to the free surface",
-    latex=r"\breve \theta",
-    nonnegative=True,
-)
-spare_1 = symbol(
-    "omega_v1", "remainder of a bound, not negative", latex=r"\breve \omega_1", nonnegative=True
-)
-spare_2 = symbol(
-    "omega_v2", "remainder of another bound", latex=r"\breve \omega_2", nonnegative=True
-)
+(
+    other_trailing, felt, shift, left_behind, arm_ratio, parting, slope_free, pressed, damper_1,
+    damper_2, spring_1, spring_2, share_1, share_2, on_off, spare_1, spare_2,
+) = symbols(r"""
+    v_v       \breve v         1     as $\breve w$, of another position
+    J_v       \breve J         1     part of a double integral  real
+    h_v       \breve h         1     $\breve a - 1$  real
+    u_v       \breve u         m     compression of the free surface
+    beta_v    \breve \beta     1     stiffness of the one arm over that of the spring
+    sigma_v   \breve \sigma    1     angle between indenter and surface behind the contact
+    s_vf      \breve \chi_0    1     slope of the free surface  real
+    g_v       \breve g         m     depth of the indenter below the undisturbed surface  real
+    u_v1      \breve u_1       m     extension of the dashpot of an arm  nonnegative
+    u_v2      \breve u_2       m     extension of the dashpot of another arm  nonnegative
+    K_v1      K_1              N/m³  stiffness of one arm per unit area
+    K_v2      K_2              N/m³  stiffness of another arm per unit area
+    gamma_v1  \breve \gamma_1  1     share of an arm in the glassy stiffness  nonnegative
+    gamma_v2  \breve \gamma_2  1     share of another arm  nonnegative
+    theta_v   \breve \theta    1     weight of the indenter relative to the free surface  nonnegative
+    omega_v1  \breve \omega_1  1     remainder of a bound, not negative  nonnegative
+    omega_v2  \breve \omega_2  1     remainder of another bound  nonnegative
+""")  # fmt: skip
 repeated = tuple(function(f"G_v{n}", nonnegative=True) for n in range(1, 5))
 
 y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length

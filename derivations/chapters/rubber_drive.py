@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, symbol
+from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .groups import k_s
 from .model import M, R, V, delta, t, x
@@ -30,66 +30,33 @@ kernels_still = tuple(
     )
     for n in range(1, 5)
 )  # fmt: skip
-swing_rate = symbol(
-    "s_r", "rate of a small motion; complex where it oscillates", "1/s", latex=r"\tilde s"
-)
-time_back = symbol("t_r", "time back", "s", latex=r"\tilde t")
-delta_swing = symbol(
-    "delta_r", "change of the depth, at the time 0", "m", latex=r"\tilde \delta", real=True
-)
-x_swing = symbol(
-    "X_r", "displacement of the indenter, at the time 0", "m", latex=r"\tilde X", real=True
-)
-rate_number = symbol("sigma_r", r"$\tilde s \breve c/V$", latex=r"\tilde \sigma")
-shifted_number = symbol("z_r", r"$\breve z + \tilde \sigma$", latex=r"\tilde z")
-age = symbol("v_r", r"time back, in units of $\breve c/V$", latex=r"\tilde v")
-fading_depth = symbol(
-    "alpha_r",
-    "change of an arm's pressure with the depth, over $K_i$",
-    latex=r"\tilde \alpha",
-    real=True,
-)
-fading_drag = symbol(
-    "beta_r",
-    r"change of the pressure of an arm with the displacement, in units of $K_i \breve c/R$",
-    latex=r"\tilde \beta",
-    real=True,
-)
-normal_per_depth = symbol(
-    "f_zd", r"change of $F_z$ of an arm with the depth, over $K_i \breve c$", latex=r"f_{z\delta}"
-)
-rubbing_per_depth = symbol(
-    "f_xd",
-    r"change of $F_x$ with the depth, over $K_i \breve c^2/R$",
-    latex=r"f_{x\delta}",
-    real=True,
-)
-normal_per_drag = symbol(
-    "f_zX",
-    r"change of $F_z$ with the displacement, over $K_i \breve c^2/R$",
-    latex="f_{zX}",
-    real=True,
-)
-rubbing_per_drag = symbol(
-    "f_xX",
-    r"change of $F_x$ with the displacement, over $K_i \breve c^3/R^2$",
-    latex="f_{xX}",
-    real=True,
-)
-total_normal_per_depth = symbol(
-    "F_zd", "change of $F_z$ with the depth", "N/m²", latex=r"F_{z\delta}"
-)
-total_rubbing_per_depth = symbol(
-    "F_xd", "change of $F_x$ with the depth", "N/m²", latex=r"F_{x\delta}", real=True
-)
-total_normal_per_drag = symbol(
-    "F_zX", "change of $F_z$ with the displacement", "N/m²", latex="F_{zX}", real=True
-)
-total_rubbing_per_drag = symbol(
-    "F_xX", "change of $F_x$ with the displacement", "N/m²", latex="F_{xX}", real=True
-)
-shift_factor = symbol("a_T", "shift factor of all times by temperature", source="")
-stiffer = symbol("b_T", "factor of all moduli by temperature", source="")
+(
+    swing_rate, time_back, delta_swing, x_swing, rate_number, shifted_number, age, fading_depth,
+    fading_drag, normal_per_depth, rubbing_per_depth, normal_per_drag, rubbing_per_drag,
+    total_normal_per_depth, total_rubbing_per_depth, total_normal_per_drag, total_rubbing_per_drag,
+    shift_factor, stiffer,
+) = symbols(r"""
+    s_r      \tilde s       1/s   rate of a small motion; complex where it oscillates
+    t_r      \tilde t       s     time back
+    delta_r  \tilde \delta  m     change of the depth, at the time 0  real
+    X_r      \tilde X       m     displacement of the indenter, at the time 0  real
+    sigma_r  \tilde \sigma  1     $\tilde s \breve c/V$
+    z_r      \tilde z       1     $\breve z + \tilde \sigma$
+    v_r      \tilde v       1     time back, in units of $\breve c/V$
+    alpha_r  \tilde \alpha  1     change of an arm's pressure with the depth, over $K_i$  real
+    beta_r   \tilde \beta   1     change of the pressure of an arm with the displacement, in units of
+            $K_i \breve c/R$  real
+    f_zd     f_{z\delta}    1     change of $F_z$ of an arm with the depth, over $K_i \breve c$
+    f_xd     f_{x\delta}    1     change of $F_x$ with the depth, over $K_i \breve c^2/R$  real
+    f_zX     f_{zX}         1     change of $F_z$ with the displacement, over $K_i \breve c^2/R$  real
+    f_xX     f_{xX}         1     change of $F_x$ with the displacement, over $K_i \breve c^3/R^2$  real
+    F_zd     F_{z\delta}    N/m²  change of $F_z$ with the depth
+    F_xd     F_{x\delta}    N/m²  change of $F_x$ with the depth  real
+    F_zX     F_{zX}         N/m²  change of $F_z$ with the displacement  real
+    F_xX     F_{xX}         N/m²  change of $F_x$ with the displacement  real
+    a_T      -              1     shift factor of all times by temperature  from scene
+    b_T      -              1     factor of all moduli by temperature  from scene
+""")  # fmt: skip
 memory_warm = function("G_T", "relaxation function at another temperature", "N/m³", real=True)
 memory_cold = function(
     "G",
@@ -99,16 +66,14 @@ memory_cold = function(
     source="",
     real=True,
 )
-temperature = symbol("T", "temperature", "K", source="")
-T_ref = symbol(
-    "T_r", "temperature at which the times were measured", "K", latex=r"T_{\mathrm{r}}", source=""
-)
-wlf_1 = symbol("C_1", "first coefficient of Williams, Landel and Ferry", source="")
-wlf_2 = symbol("C_2", "second coefficient of Williams, Landel and Ferry", "K", source="")
-activation = symbol("E_A", "activation energy", "J/mol", latex=r"E_{\mathrm{A}}", source="")
-gas_constant = symbol(
-    "R_g", "gas constant", "J/(mol K)", latex=r"R_{\mathrm{g}}", source="constant"
-)
+temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = symbols(r"""
+    T    -               K        temperature  from scene
+    T_r  T_{\mathrm{r}}  K        temperature at which the times were measured  from scene
+    C_1  -               1        first coefficient of Williams, Landel and Ferry  from scene
+    C_2  -               K        second coefficient of Williams, Landel and Ferry  from scene
+    E_A  E_{\mathrm{A}}  J/mol    activation energy  from scene
+    R_g  R_{\mathrm{g}}  J/(mol K)  gas constant  from constant
+""")
 
 result = Chapter("A drive with a spring on rubber")
 

@@ -8,7 +8,7 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, symbol
+from ..engine.nomenclature import function, symbol, symbols
 from ..engine.rules import Computed
 from ..engine.step import Proof
 from .model import K, R, delta_t, t
@@ -26,18 +26,11 @@ I_n = (
 )
 Y_t = function("Y", "distance slid", "m", printed=r"X_{\mathrm{s}}", real=True)(t)
 v_t = function("v", "sliding velocity", "m/s", printed=r"V_{\mathrm{s}}", source="", real=True)(t)
-xi = symbol(
-    "xi",
-    r"element of the foundation, $x - X_{\mathrm{s}}$",
-    "m",
-    latex=r"\xi",
-    printed=r"\tilde \xi",
-    real=True,
-)
-t_1 = symbol("t_1", "present time", "s", real=True)
-t_in = symbol(
-    "t_in", "time at which an element entered the contact", "s", latex=r"t_{\mathrm{in}}", real=True
-)
+xi, t_1, t_in = symbols(r"""
+    xi    \xi              m  element of the foundation, $x - X_{\mathrm{s}}$  prints \tilde \xi  real
+    t_1   -                s  present time  real
+    t_in  t_{\mathrm{in}}  s  time at which an element entered the contact  real
+""")
 alpha_i = function("alpha_i", "accumulated depth that an arm remembers", "m", real=True)
 beta_i = function("beta_i", "accumulated sliding distance that an arm remembers", "m", real=True)
 E_i = symbol("E_i", "share of a stress at entry that an arm still has")

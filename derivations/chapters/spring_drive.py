@@ -4,7 +4,7 @@ import sympy as sp
 
 from ..engine.book import established
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
 from .model import F_x, V, t, tau
 from .power_law_weight import a_0
@@ -16,29 +16,25 @@ from .transient_motion import JACOBIAN, START, a, f_friction
 from .transient_rates import QUADRATIC, change, per_depth, per_rate, sigma
 from .transient_scaling import W_0, d, d_s, eps, f_normal
 
-M_x = symbol("M_x", "mass per unit width that moves along the foundation", "kg/m", source="")
-k_x = symbol("k_x", "stiffness of the spring in the drive per unit width", "N/m²", source="")
-C_x = symbol(
-    "C_x", "damping of the damper beside it per unit width", "N s/m²", source="", nonnegative=True
-)
-letter(r"x_{\mathrm{A}}", "how far the indenter has been dragged along the foundation", "m")
-eps_x = symbol("epsilon_x", "inertia number along the foundation", latex=r"\varepsilon_x")
-damper = symbol("c_x", "damper number", nonnegative=True)
-kappa_x = symbol("kappa_x", "spring number", latex=r"\kappa_x")
-lam_0 = symbol("lambda_0", "drive number of the drive itself", real=True)
-along = symbol("x_d", r"$x_{\mathrm{A}}/a_0$", latex=r"\check x", real=True)
-along_s = symbol("x_ds", latex=r"\check x'", real=True)
-along_ss = symbol("x_dss", latex=r"\check x''", real=True)
-along_0 = symbol("x_d0", r"$\check x$ in steady sliding", latex=r"\check x_0", real=True)
-swing = symbol(
-    "x_d1",
-    "amplitude of the change of the position along the foundation",
-    latex=r"\check x_1",
-    real=True,
-)
-small = symbol(
-    "theta_d", "small number that multiplies both amplitudes", latex=r"\check \theta", real=True
-)
+(
+    M_x, k_x, C_x, eps_x, damper, kappa_x, lam_0, along, along_s, along_ss, along_0, swing, small,
+) = symbols(r"""
+    M_x        -               kg/m    mass per unit width that moves along the foundation  from scene
+    k_x        -               N/m²    stiffness of the spring in the drive per unit width  from scene
+    C_x        -               N s/m²  damping of the damper beside it per unit width  from
+            scene  nonnegative
+    -          x_{\mathrm{A}}  m       how far the indenter has been dragged along the foundation
+    epsilon_x  \varepsilon_x   1       inertia number along the foundation
+    c_x        -               1       damper number  nonnegative
+    kappa_x    \kappa_x        1       spring number
+    lambda_0   -               1       drive number of the drive itself  real
+    x_d        \check x        1       $x_{\mathrm{A}}/a_0$  real
+    x_ds       \check x'       1       -  real
+    x_dss      \check x''      1       -  real
+    x_d0       \check x_0      1       $\check x$ in steady sliding  real
+    x_d1       \check x_1      1       amplitude of the change of the position along the foundation  real
+    theta_d    \check \theta   1       small number that multiplies both amplitudes  real
+""")  # fmt: skip
 x_a = function("x_A", real=True)(t)
 
 SECTION = "A drive with a spring"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.record import Table
 from ..engine.step import Proof, tex
 from . import tables
@@ -44,14 +44,12 @@ from .transient_edges import right
 from .transient_motion import a
 from .transient_rates import QUADRATIC, per_depth, steady_sliding
 
-letter("P", "the quartic of the rates")
-lag_minus = symbol("p_m", r"$\varrho_z - \vartheta_z \Omega_{-}$", latex=r"\check p_{-}")
-T_flutter = symbol(
-    "T_f", r"$\vartheta_z$ from which on there is flutter", latex=r"\vartheta_{\mathrm{f}}"
-)
-sinks = symbol(
-    "d_l", "change of the scaled depth with the drive number", latex=r"d_\lambda", real=True
-)
+lag_minus, T_flutter, sinks = symbols(r"""
+    -    P                 1  the quartic of the rates
+    p_m  \check p_{-}      1  $\varrho_z - \vartheta_z \Omega_{-}$
+    T_f  \vartheta_{\mathrm{f}}  1  $\vartheta_z$ from which on there is flutter
+    d_l  d_\lambda         1  change of the scaled depth with the drive number  real
+""")
 
 result = Chapter(SECTION)
 

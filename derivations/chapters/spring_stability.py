@@ -3,7 +3,7 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbol, symbols
 from ..engine.step import Proof
 from .spring_drive import COUPLING, LONGITUDINAL, SECTION, damper, eps_x, kappa_x
 from .steady import l, q
@@ -13,53 +13,34 @@ from .transient_motion import a
 from .transient_rates import QUADRATIC, sigma, steady_sliding
 from .transient_scaling import eps
 
-B_z = symbol("B_z", "damping of the contact across the foundation, scaled")
-B_x = symbol("B_x", "damping of the contact along the foundation, scaled")
-damper_share = symbol("n_x", "damper over the damping of the contact", nonnegative=True)
-T_z = symbol("T_z", r"time of inertia across, over $\tau$", latex=r"\vartheta_z")
-T_x = symbol("T_x", r"time of inertia along, over $\tau$", latex=r"\vartheta_x")
-S_z = symbol("S_z", r"rate of stiffness across, times $\tau$", latex=r"\varrho_z")
-S_x = symbol("S_x", r"rate of stiffness along, times $\tau$", latex=r"\varrho_x")
-support_rate = symbol(
-    "S_s",
-    r"part of $\varrho_z$ due to the suspension",
-    latex=r"\varrho_{\mathrm{s}}",
-    nonnegative=True,
-)
-S_c = symbol("S_c", r"rate of the coupling, times $\tau$", latex=r"\varrho_{\mathrm{c}}")
-coupling = symbol("g_c", "strength of the coupling of both motions", latex=r"\check g")
-uncoupled = symbol("h_c", r"$1 - \check g$", latex=r"\check h")
-rise = symbol(
-    "e_c", "quantity with the sign of $dF/dV$, damper included", latex=r"\check e", real=True
-)
-own_rise = symbol(
-    "e_0", r"$\check e$ of a dead weight without a damper", latex=r"\check e_0", real=True
-)
-hurwitz = symbol("H_c", "determinant of Hurwitz", latex=r"\check H", real=True)
-Omega = symbol("Omega", r"square of the frequency at onset, times $\tau^2$", latex=r"\Omega")
-Omega_plus = symbol(
-    "Omega_p", r"larger root $\Omega$ of the quadratic of onset", latex=r"\Omega_{+}", real=True
-)
-Omega_minus = symbol(
-    "Omega_m", r"smaller root $\Omega$ of the quadratic of onset", latex=r"\Omega_{-}", real=True
-)
-bias = symbol(
-    "m_c", r"$\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$", latex=r"\check m", real=True
-)
-onset_square = symbol(
-    "D_c",
-    r"discriminant of the quadratic in $\Omega$, over $\vartheta_z^{4}$",
-    latex=r"\check D",
-    real=True,
-)
-spread = symbol(
-    "s_c",
-    r"root of the discriminant of the quadratic in $\Omega$",
-    latex=r"\check w",
-    nonnegative=True,
-)
-onset_sum = symbol("n_c", r"$\check m - 2 \vartheta_z \check e$", latex=r"\check n", real=True)
-lag_plus = symbol("p_p", r"$\varrho_z - \vartheta_z \Omega_{+}$", latex=r"\check p_{+}")
+(
+    B_z, B_x, damper_share, T_z, T_x, S_z, S_x, support_rate, S_c, coupling, uncoupled, rise,
+    own_rise, hurwitz, Omega, Omega_plus, Omega_minus, bias, onset_square, spread, onset_sum,
+    lag_plus,
+) = symbols(r"""
+    B_z      -                 1  damping of the contact across the foundation, scaled
+    B_x      -                 1  damping of the contact along the foundation, scaled
+    n_x      -                 1  damper over the damping of the contact  nonnegative
+    T_z      \vartheta_z       1  time of inertia across, over $\tau$
+    T_x      \vartheta_x       1  time of inertia along, over $\tau$
+    S_z      \varrho_z         1  rate of stiffness across, times $\tau$
+    S_x      \varrho_x         1  rate of stiffness along, times $\tau$
+    S_s      \varrho_{\mathrm{s}}  1  part of $\varrho_z$ due to the suspension  nonnegative
+    S_c      \varrho_{\mathrm{c}}  1  rate of the coupling, times $\tau$
+    g_c      \check g          1  strength of the coupling of both motions
+    h_c      \check h          1  $1 - \check g$
+    e_c      \check e          1  quantity with the sign of $dF/dV$, damper included  real
+    e_0      \check e_0        1  $\check e$ of a dead weight without a damper  real
+    H_c      \check H          1  determinant of Hurwitz  real
+    Omega    \Omega            1  square of the frequency at onset, times $\tau^2$
+    Omega_p  \Omega_{+}        1  larger root $\Omega$ of the quadratic of onset  real
+    Omega_m  \Omega_{-}        1  smaller root $\Omega$ of the quadratic of onset  real
+    m_c      \check m          1  $\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$  real
+    D_c      \check D          1  discriminant of the quadratic in $\Omega$, over $\vartheta_z^{4}$  real
+    s_c      \check w          1  root of the discriminant of the quadratic in $\Omega$  nonnegative
+    n_c      \check n          1  $\check m - 2 \vartheta_z \check e$  real
+    p_p      \check p_{+}      1  $\varrho_z - \vartheta_z \Omega_{+}$
+""")  # fmt: skip
 constant = tuple(
     symbol(f"c_h{n}", "coefficient of a quadratic factor", latex=rf"\check c_{n}", real=True)
     for n in (1, 2)

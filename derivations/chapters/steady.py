@@ -3,7 +3,7 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import (
     C,
@@ -24,23 +24,22 @@ from .model import (
     x_i,
 )
 
-a = symbol("a", r"half length of the stationary contact, $\sqrt{2 R \delta}$", "m")
-l_r = symbol("l_r", r"retardation length, $V \tau$", "m", latex=r"l_{\mathrm{r}}")
-x_le = symbol("x_LE", "leading edge of the contact", "m", latex=r"x_{\mathrm{LE}}", negative=True)
-x_te = symbol(
-    "x_TE", "trailing edge of the contact", "m", latex=r"x_{\mathrm{TE}}", nonnegative=True
-)
-p = symbol("p", "contact pressure", "Pa", real=True)
-W = symbol("W", "load in steady sliding per unit width", "N/m")
-F = symbol("F", "friction force in steady sliding per unit width", "N/m")
-mu = symbol("mu", "friction coefficient, $F/W$")
-l = symbol("l", r"scaled retardation length, $l_{\mathrm{r}}/a$")
-q = symbol(
-    "q", r"scaled trailing edge, $x_{\mathrm{TE}}/a$, from 1 at rest down to 0 at high velocity"
-)
-letter(r"\bar s", "distance ahead of the leading edge, over the half length")
-Lambda = symbol("Lambda", r"scaled velocity of the dead-weight model, $V \tau (K/(R W))^{1/3}$")
-letter("O", "order of a remainder", "that of its argument", source="sign")
+a, l_r, x_le, x_te, p, W, F, mu, l, q, Lambda = symbols(r"""
+    a       -                m        half length of the stationary contact, $\sqrt{2 R \delta}$
+    l_r     l_{\mathrm{r}}   m        retardation length, $V \tau$
+    x_LE    x_{\mathrm{LE}}  m        leading edge of the contact  negative
+    x_TE    x_{\mathrm{TE}}  m        trailing edge of the contact  nonnegative
+    p       -                Pa       contact pressure  real
+    W       -                N/m      load in steady sliding per unit width
+    F       -                N/m      friction force in steady sliding per unit width
+    mu      -                1        friction coefficient, $F/W$
+    l       -                1        scaled retardation length, $l_{\mathrm{r}}/a$
+    q       -                1        scaled trailing edge, $x_{\mathrm{TE}}/a$, from 1 at rest down to 0
+            at high velocity
+    -       \bar s           1        distance ahead of the leading edge, over the half length
+    Lambda  -                1        scaled velocity of the dead-weight model, $V \tau (K/(R W))^{1/3}$
+    -       O                that of its argument  order of a remainder  from sign
+""")
 
 half_length = sp.sqrt(2 * R * delta)
 trailing_edge = sp.sqrt(a**2 + l_r**2) - l_r

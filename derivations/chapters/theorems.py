@@ -8,40 +8,32 @@ difference of nearly equal numbers, no overflow.
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import K, R, delta, x
 from .steady import F, W, a, l, l_r, mu, p, q
 
-xi = symbol(
-    "xi", "scaled coordinate, $x/a$", latex=r"\xi", printed=r"\hat x", source="F16", real=True
-)
-P = symbol("P", r"scaled pressure, $p/(K \delta)$", latex=r"\hat p", real=True)
-P_max = symbol("P_max", "maximum of the scaled pressure", latex=r"\hat p_{\max}")
-n = symbol(
-    "n",
-    "position of the greatest pressure ahead of the lowest line, over the half length",
-    printed=r"\hat n",
-)
-w = symbol("w", r"scaled load, $W/(K \delta a)$")
-phi = symbol("phi", r"scaled friction force, $F R/(K \delta a^{2})$", latex=r"\varphi")
-m = symbol("m", r"scaled friction coefficient, $\mu R/a$")
-s = symbol(
-    "s",
-    r"half length in units of the static one, $a/a_0 = \sqrt{d}$",
-    printed=r"\hat a",
-    source="scaled-load",
-)
-r = symbol("r", r"$\sqrt{\hat a^2 + \lambda^2}$", printed=r"\hat r")
-f = symbol("f", "scaled load of an indenter that has been lifted, $W/W_0$", printed=r"\hat f")
-f_s = symbol("f_s", latex="f'")
-f_ss = symbol("f_ss", latex="f''")
-G = symbol(
-    "G", "excess of the supporting forces over the load, in units of the static load", real=True
-)
-G_s = symbol("G_s", latex="G'", real=True)
-lam = symbol("lambda", r"drive number, $V \tau/a_0$", source="scaled-pressure")
-kappa = symbol("kappa", r"support number, $k_s \delta_0/W_0$", nonnegative=True)
+xi, P, P_max, n, w, phi, m, s, r, f, f_s, f_ss, G, G_s, lam, kappa = symbols(r"""
+    xi      \xi            1  scaled coordinate, $x/a$  prints \hat x  from F16  real
+    P       \hat p         1  scaled pressure, $p/(K \delta)$  real
+    P_max   \hat p_{\max}  1  maximum of the scaled pressure
+    n       -              1  position of the greatest pressure ahead of the lowest line, over the half
+            length  prints \hat n
+    w       -              1  scaled load, $W/(K \delta a)$
+    phi     \varphi        1  scaled friction force, $F R/(K \delta a^{2})$
+    m       -              1  scaled friction coefficient, $\mu R/a$
+    s       -              1  half length in units of the static one, $a/a_0 = \sqrt{d}$  prints \hat
+            a  from scaled-load
+    r       -              1  $\sqrt{\hat a^2 + \lambda^2}$  prints \hat r
+    f       -              1  scaled load of an indenter that has been lifted, $W/W_0$  prints \hat f
+    f_s     f'             1  -
+    f_ss    f''            1  -
+    G       -              1  excess of the supporting forces over the load, in units of the static
+            load  real
+    G_s     G'             1  -  real
+    lambda  -              1  drive number, $V \tau/a_0$  from scaled-pressure
+    kappa   -              1  support number, $k_s \delta_0/W_0$  nonnegative
+""")
 
 SECTION = "Exact steady sliding"
 

@@ -7,7 +7,7 @@ outward: onto undisturbed ground, or onto ground that it left before and that ha
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .contact_interval import E
 from .theorems import lam
@@ -25,27 +25,23 @@ from .transient_memory import (
 )
 from .transient_scaling import PRESSURE, P, d, d_s, xi
 
-start = symbol("s_0", "instant at which ground is left or an edge turns", real=True)
-letter("d_0", "depth at an earlier instant or at the beginning of a step")
-letter(r"X_{\mathrm{e}}", "element at an edge")
-left = symbol("ell", "scaled left edge of the contact", real=True)
-right = symbol("r", "scaled right edge of the contact", real=True)
-b = symbol("b", "scaled length of the contact, from edge to edge", source="F11-peel")
-rho = symbol("rho", r"$\sqrt{d + d' + \lambda^2}$, which is $r + \lambda$ at an edge that peels")
-drift = symbol(
-    "lambda_bar",
-    "mean drive number since an earlier instant, weighted by memory",
-    latex=r"\bar\lambda",
-    real=True,
-)
-lift = symbol(
-    "d_bar", "mean depth since an earlier instant, weighted by memory", latex=r"\bar d", real=True
-)
-c = symbol("c", "rate at which an edge turns", printed=r"c_{\mathrm{t}}")
-letter(r"\bar k_1", "bounded factor of the remainder after the leading order")
-letter(r"\bar k_2", "second bounded factor")
-letter(r"\bar k_3", "third bounded factor")
-letter(r"\bar y", r"earlier instant over the time since the turn, $\bar \sigma/\Delta s$")
+start, left, right, b, rho, drift, lift, c = symbols(r"""
+    s_0         -               1  instant at which ground is left or an edge turns  real
+    -           d_0             1  depth at an earlier instant or at the beginning of a step
+    -           X_{\mathrm{e}}  1  element at an edge
+    ell         -               1  scaled left edge of the contact  real
+    r           -               1  scaled right edge of the contact  real
+    b           -               1  scaled length of the contact, from edge to edge  from F11-peel
+    rho         -               1  $\sqrt{d + d' + \lambda^2}$, which is $r + \lambda$ at an edge that
+            peels
+    lambda_bar  \bar\lambda     1  mean drive number since an earlier instant, weighted by memory  real
+    d_bar       \bar d          1  mean depth since an earlier instant, weighted by memory  real
+    c           -               1  rate at which an edge turns  prints c_{\mathrm{t}}
+    -           \bar k_1        1  bounded factor of the remainder after the leading order
+    -           \bar k_2        1  second bounded factor
+    -           \bar k_3        1  third bounded factor
+    -           \bar y          1  earlier instant over the time since the turn, $\bar \sigma/\Delta s$
+""")
 
 RADICAND = d + d_s + lam**2
 """rho**2 of the edges that peel."""

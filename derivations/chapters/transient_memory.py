@@ -7,7 +7,7 @@ at the compression g(X, s) = d - xi**2: negative where it hangs above the undist
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, letter, symbol, symbols
 from ..engine.step import Proof, tex
 from .theorems import lam
 from .transient_scaling import PRESSURE, d, d_s, xi
@@ -31,28 +31,25 @@ letter("X_2", "second of two elements")
 travel = function("Y", r"scaled displacement of the foundation, with $Y' = \lambda$", real=True)(
     time
 )
-sigma = symbol(
-    "sigma",
-    "earlier instant, at which an element was at an edge",
-    printed=r"\bar \sigma",
-    real=True,
-)
-eta = symbol("eta", "position of an element then", printed=r"\bar \eta")
-zeta = symbol("zeta", "variable of integration", source="F8", real=True)
-letter(r"\bar c", "rate of a motion within a step")
-letter(r"\check f", "memory $e^{s} g$ within a step, over the exponential at its end")
-letter(r"\check v", r"slope of $\check f$")
-letter(r"\check c", r"difference of $\check M$ and the decrease of that slope")
-letter(r"\check b", "time from the nearer end of a step to the largest value")
-letter(r"\check y", "time from the nearer end of a step")
-letter(r"\check k", "half of the additional distance to the other end")
-letter(r"\check M", r"greatest magnitude of the second derivative of $\check f$")
-letter("J", "jump that a proof excludes")
-letter("D", r"$e^{s} \bar g$ of an element less $e^{s_1} \bar g$ at an earlier instant")
-letter("D_1", "difference $D$ at one position")
-mix = symbol("theta", "share of two elements in one between them", printed=r"\bar \theta")
-letter(r"\Delta s", "scaled step in time")
-letter("D_2", "difference $D$ at another position")
+sigma, eta, zeta, mix = symbols(r"""
+    sigma  -         1  earlier instant, at which an element was at an edge  prints \bar \sigma  real
+    eta    -         1  position of an element then  prints \bar \eta
+    zeta   -         1  variable of integration  from F8  real
+    -      \bar c    1  rate of a motion within a step
+    -      \check f  1  memory $e^{s} g$ within a step, over the exponential at its end
+    -      \check v  1  slope of $\check f$
+    -      \check c  1  difference of $\check M$ and the decrease of that slope
+    -      \check b  1  time from the nearer end of a step to the largest value
+    -      \check y  1  time from the nearer end of a step
+    -      \check k  1  half of the additional distance to the other end
+    -      \check M  1  greatest magnitude of the second derivative of $\check f$
+    -      J         1  jump that a proof excludes
+    -      D         1  $e^{s} \bar g$ of an element less $e^{s_1} \bar g$ at an earlier instant
+    -      D_1       1  difference $D$ at one position
+    theta  -         1  share of two elements in one between them  prints \bar \theta
+    -      \Delta s  1  scaled step in time
+    -      D_2       1  difference $D$ at another position
+""")
 
 SECTION = "Transient: theorems"
 

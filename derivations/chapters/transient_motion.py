@@ -4,7 +4,7 @@ import sympy as sp
 
 from ..engine.book import established
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
 from .contact_interval import E
 from .theorems import lam
@@ -12,14 +12,10 @@ from .transient_edges import RADICAND, b, edge_path, left, rho, right
 from .transient_memory import SECTION, eta, time
 from .transient_scaling import PRESSURE, P, d, d_s, f_normal, xi
 
-a = symbol("a")
-f_friction = symbol(
-    "f_friction",
-    r"scaled friction force, $F_x a_0/(W_0 \delta_0)$",
-    latex="f_x",
-    source="eq15",
-    real=True,
-)
+a, f_friction = symbols(r"""
+    a           -    1  -
+    f_friction  f_x  1  scaled friction force, $F_x a_0/(W_0 \delta_0)$  from eq15  real
+""")
 
 CONTACT = (xi, left, right)
 _LOAD_SHARE, _FRICTION_SHARE = sp.Rational(3, 4), -sp.Rational(3, 2)

@@ -4,7 +4,7 @@ import sympy as sp
 
 from ..engine.book import established
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
+from ..engine.nomenclature import symbols
 from ..engine.record import Table
 from ..engine.step import Proof
 from . import tables
@@ -17,36 +17,24 @@ from .transient_memory import SECTION, time
 from .transient_motion import PEELING_NORMAL_FORCE, START, a
 from .transient_scaling import P, d, d_s, eps, f_normal, xi
 
-eps_critical = symbol(
-    "epsilon_c",
-    "inertia number between monotone and oscillating motion",
-    latex=r"\varepsilon_{\mathrm{c}}",
-)
-f = symbol(
-    "f",
-    r"scaled force that balances weight and spring, $1 - \kappa (d - 1)$",
-    printed=r"f_{\mathrm{b}}",
-)
-letter(r"\tilde d", "scaled depth near that of steady sliding")
-change = symbol("d_hat", "amplitude of the change of depth", latex=r"\hat d", real=True)
-per_depth = symbol("A", "stiffness of the contact, scaled")
-per_rate = symbol("B", "damping of the contact, scaled")
-sigma = symbol("sigma", "scaled rate of a small motion about steady sliding", real=True)
-letter(r"\sigma_1", "faster of two rates")
-letter(r"\sigma_2", "slower of two rates")
-letter("T_1", "shorter time constant", "s")
-letter("T_2", "longer time constant", "s")
-drive_excess = symbol(
-    "n",
-    r"parameter of the slow manifold, $(\lambda - \hat a)/(2 f_{\mathrm{b}})^{1/3}$",
-    printed=r"\bar n",
-    real=True,
-)
-beta = symbol(
-    "beta",
-    r"scaled length of the contact on the slow manifold, $b/(2 f_{\mathrm{b}})^{1/3}$",
-    printed=r"\bar b",
-)
+eps_critical, f, change, per_depth, per_rate, sigma, drive_excess, beta = symbols(r"""
+    epsilon_c  \varepsilon_{\mathrm{c}}  1  inertia number between monotone and oscillating motion
+    f          -                 1  scaled force that balances weight and spring, $1 - \kappa (d -
+            1)$  prints f_{\mathrm{b}}
+    -          \tilde d          1  scaled depth near that of steady sliding
+    d_hat      \hat d            1  amplitude of the change of depth  real
+    A          -                 1  stiffness of the contact, scaled
+    B          -                 1  damping of the contact, scaled
+    sigma      -                 1  scaled rate of a small motion about steady sliding  real
+    -          \sigma_1          1  faster of two rates
+    -          \sigma_2          1  slower of two rates
+    -          T_1               s  shorter time constant
+    -          T_2               s  longer time constant
+    n          -                 1  parameter of the slow manifold, $(\lambda - \hat a)/(2
+            f_{\mathrm{b}})^{1/3}$  prints \bar n  real
+    beta       -                 1  scaled length of the contact on the slow manifold, $b/(2
+            f_{\mathrm{b}})^{1/3}$  prints \bar b
+""")
 
 DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
 """The dependence of the force on the indenter on the depth rate, and on the depth."""

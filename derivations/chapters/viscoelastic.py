@@ -10,46 +10,34 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
 from .model import R
 from .steady import W, a, l, q
 
-contact_length = symbol("c_v", "length of the contact", "m", latex=r"\breve c")
-arm_number = symbol(
-    "z_v", r"length of the contact over that of an arm, $\breve c/l_i$", latex=r"\breve z"
-)
-place = symbol(
-    "x_v", "distance from the leading edge over the length of the contact", latex=r"\breve x"
-)
-passed = symbol("s_v", r"as $\breve x$, of an earlier position", latex=r"\breve s", real=True)
-half_share = symbol("a_v", "half length at rest over the length of the contact", latex=r"\breve a")
-arm_pressure = symbol(
-    "p_v", r"pressure of an arm, in units of $K_i \breve c^2/R$", latex=r"\breve p", real=True
-)
-from_trailing = symbol(
-    "w_v", "distance from the trailing edge over the length of the contact", latex=r"\breve w"
-)
-moment_ahead = symbol(
-    "P_v", r"moment of the relaxation function, of weight $1 - \breve w$", latex=r"\breve P"
-)
-moment_behind = symbol("Q_v", r"moment of weight $\breve w$", latex=r"\breve Q")
-moment_bulge = symbol("D_v", r"moment of weight $\breve w (1 - \breve w)/2$", latex=r"\breve D")
-moment_twist = symbol(
-    "E_v", r"moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$", latex=r"\breve E"
-)
-moment_mean = symbol(
-    "A_v", r"mean of the relaxation function, $\breve P + \breve Q$", latex=r"\breve A"
-)
-moment_slant = symbol("B_v", r"$(\breve P - \breve Q)/2$", latex=r"\breve B")
-excess_share = symbol("eta_v", r"$\breve a - \frac{1}{2}$", latex=r"\breve \eta")
-arm_load = symbol("W_v", r"load of an arm, in units of $K_i \breve c^3/R$", latex=r"\breve W")
-arm_work = symbol(
-    "F_v", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", latex=r"\breve F"
-)
-arm_lost = symbol(
-    "L_v", r"part of $\breve F$ that is lost in the contact", latex=r"\breve L", real=True
-)
+(
+    contact_length, arm_number, place, passed, half_share, arm_pressure, from_trailing,
+    moment_ahead, moment_behind, moment_bulge, moment_twist, moment_mean, moment_slant,
+    excess_share, arm_load, arm_work, arm_lost,
+) = symbols(r"""
+    c_v    \breve c     m  length of the contact
+    z_v    \breve z     1  length of the contact over that of an arm, $\breve c/l_i$
+    x_v    \breve x     1  distance from the leading edge over the length of the contact
+    s_v    \breve s     1  as $\breve x$, of an earlier position  real
+    a_v    \breve a     1  half length at rest over the length of the contact
+    p_v    \breve p     1  pressure of an arm, in units of $K_i \breve c^2/R$  real
+    w_v    \breve w     1  distance from the trailing edge over the length of the contact
+    P_v    \breve P     1  moment of the relaxation function, of weight $1 - \breve w$
+    Q_v    \breve Q     1  moment of weight $\breve w$
+    D_v    \breve D     1  moment of weight $\breve w (1 - \breve w)/2$
+    E_v    \breve E     1  moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$
+    A_v    \breve A     1  mean of the relaxation function, $\breve P + \breve Q$
+    B_v    \breve B     1  $(\breve P - \breve Q)/2$
+    eta_v  \breve \eta  1  $\breve a - \frac{1}{2}$
+    W_v    \breve W     1  load of an arm, in units of $K_i \breve c^3/R$
+    F_v    \breve F     1  friction force of an arm, in units of $K_i \breve c^4/R^2$
+    L_v    \breve L     1  part of $\breve F$ that is lost in the contact  real
+""")  # fmt: skip
 relaxation = function(
     "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
 )(contact_length)
@@ -77,17 +65,13 @@ primitive_3 = function(
     source="F17-growth",
     positive=True,
 )(contact_length)
-ratio_first = symbol(
-    "t_v0", "ratio of two modified spherical Bessel functions", latex=r"\breve t_0"
-)
-ratio_second = symbol(
-    "t_v1", "ratio of the next two modified spherical Bessel functions", latex=r"\breve t_1"
-)
-spring_share = symbol("nu_v", "1 less the order of a springpot", latex=r"\breve \nu")
-springpot = symbol(
-    "zeta_v", "stiffness of springpot or arm over the spring's", latex=r"\breve \zeta"
-)
-letter(r"\Gamma", "Gamma function", source="constant")
+ratio_first, ratio_second, spring_share, springpot = symbols(r"""
+    t_v0    \breve t_0    1  ratio of two modified spherical Bessel functions
+    t_v1    \breve t_1    1  ratio of the next two modified spherical Bessel functions
+    nu_v    \breve \nu    1  1 less the order of a springpot
+    zeta_v  \breve \zeta  1  stiffness of springpot or arm over the spring's
+    -       \Gamma        1  Gamma function  from constant
+""")
 
 SECTION = "Any linear viscoelastic foundation"
 

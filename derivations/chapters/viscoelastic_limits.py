@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import K
 from .relaxation import fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
@@ -32,49 +32,31 @@ from .viscoelastic import (
     w,
 )
 
-spare_3 = symbol(
-    "omega_v3", "remainder of a third bound", latex=r"\breve \omega_3", nonnegative=True
-)
-delay = symbol(
-    "epsilon_v",
-    "mean relaxation length over the length of the contact",
-    latex=r"\breve \varepsilon",
-)
+spare_3, delay = symbols(r"""
+    omega_v3   \breve \omega_3   1  remainder of a third bound  nonnegative
+    epsilon_v  \breve \varepsilon  1  mean relaxation length over the length of the contact
+""")
 rates = [
     symbol("r_1", "rate of an arm", "1/s", source=""),
     symbol("r_2", "rate of another arm", "1/s", source=""),
 ]
-letter(r"\bar t", r"mean relaxation time, $\int t (G - K)\,dt/C$", "s")
-letter(r"\mu_0", "friction coefficient on the Kelvin-Voigt foundation with the same $C$")
-spring_number = symbol("kappa_v", r"$K \breve c/(C V)$", latex=r"\breve \kappa")
-lack_mean = symbol(
-    "alpha_vA",
-    r"difference of a dashpot's $\breve A$ and this one",
-    latex=r"\breve \alpha_A",
-    nonnegative=True,
-)
-lack_ahead = symbol(
-    "alpha_vP",
-    r"difference of a dashpot's $\breve P$ and this one",
-    latex=r"\breve \alpha_P",
-    nonnegative=True,
-)
-letter(r"\breve \alpha_D", r"difference of $\breve D$ and that of a dashpot")
-lack_twist = symbol(
-    "alpha_vE",
-    r"difference of a dashpot's $\breve E$ and this one",
-    latex=r"\breve \alpha_E",
-    nonnegative=True,
-)
-steepness = symbol("chi_v", r"$C/(K \bar t)$, or $1/\breve \nu - 1$", latex=r"\breve \chi")
-letter(r"\breve \gamma", r"$-\breve c\, G'(0)/(V G(0))$")
-haste = symbol("omega_v", r"$-\breve c\, G''(0)/(V G'(0))$", latex=r"\breve \omega")
-load_number = symbol(
-    "Lambda_v",
-    r"load on spring and springpot, in units of $K \breve c^3/R$",
-    latex=r"\breve \Lambda",
-)
-friction_number = symbol("m_v", r"$\mu R/\breve c$", latex=r"\breve m")
+(
+    spring_number, lack_mean, lack_ahead, lack_twist, steepness, haste, load_number,
+    friction_number,
+) = symbols(r"""
+    -         \bar t           s  mean relaxation time, $\int t (G - K)\,dt/C$
+    -         \mu_0            1  friction coefficient on the Kelvin-Voigt foundation with the same $C$
+    kappa_v   \breve \kappa    1  $K \breve c/(C V)$
+    alpha_vA  \breve \alpha_A  1  difference of a dashpot's $\breve A$ and this one  nonnegative
+    alpha_vP  \breve \alpha_P  1  difference of a dashpot's $\breve P$ and this one  nonnegative
+    -         \breve \alpha_D  1  difference of $\breve D$ and that of a dashpot
+    alpha_vE  \breve \alpha_E  1  difference of a dashpot's $\breve E$ and this one  nonnegative
+    chi_v     \breve \chi      1  $C/(K \bar t)$, or $1/\breve \nu - 1$
+    -         \breve \gamma    1  $-\breve c\, G'(0)/(V G(0))$
+    omega_v   \breve \omega    1  $-\breve c\, G''(0)/(V G'(0))$
+    Lambda_v  \breve \Lambda   1  load on spring and springpot, in units of $K \breve c^3/R$
+    m_v       \breve m         1  $\mu R/\breve c$
+""")  # fmt: skip
 slowing = function("C_v", "how fast the fall slows", "N/m³", printed=r"\breve C", nonnegative=True)
 weight_at = function("k_v", "any weight", printed=r"\breve k", nonnegative=True)
 

@@ -7,7 +7,7 @@ and the friction coefficient is the slope c of the wedge.
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
 from .friction_identity import r
 from .model import C, K, V, delta
@@ -30,14 +30,12 @@ from .power_law_weight import SCALED_LOAD
 from .steady import a, l, l_r, q
 from .theorems import P, kappa, lam, s
 
-inclination = symbol("c_1", "slope of a wedge", latex="c", printed=r"\hat c")
-held = symbol("held", "scaled load beyond the support of a wedge", latex=r"\bar w")
-s_peeling = symbol(
-    "s_1", "half length of a wedge whose trailing edge is behind its tip", printed=r"\hat a_1"
-)
-s_peeled = symbol(
-    "s_2", "half length of a wedge whose contact ends at its tip", printed=r"\hat a_2"
-)
+inclination, held, s_peeling, s_peeled = symbols(r"""
+    c_1   c       1  slope of a wedge  prints \hat c
+    held  \bar w  1  scaled load beyond the support of a wedge
+    s_1   -       1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
+    s_2   -       1  half length of a wedge whose contact ends at its tip  prints \hat a_2
+""")
 
 c = inclination
 PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}

@@ -27,6 +27,7 @@ from .conditions import (
     proves_real,
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
+from .identity import letters_of
 from .letters import letters, printed, told
 from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
@@ -177,6 +178,9 @@ class _Printer(LatexPrinter):
         return rf"\left. {shown} \right|_{{{places}}}"
 
 
+_PRINTER = _Printer({"symbol_names": TEX, "fold_frac_powers": True})
+
+
 def tex(expr: sp.Expr | int) -> str:
     r"""Print an expression in the notation of the paper.
 
@@ -189,7 +193,7 @@ def tex(expr: sp.Expr | int) -> str:
 
 @lru_cache(maxsize=8192)
 def _printed(expr: sp.Expr) -> str:
-    return str(_Printer({"symbol_names": TEX, "fold_frac_powers": True}).doprint(expr))
+    return str(_PRINTER.doprint(expr))
 
 
 def tex_interval(over: Interval) -> str:
@@ -797,15 +801,14 @@ class Book:
     def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
         direct: dict[sp.Expr, set[sp.Expr]] = {}
-        for fact in self._origins.values():
-            for premise in fact.premises:
-                if premise.lhs not in self._rules and premise.lhs.is_Symbol:
-                    direct.setdefault(premise.lhs, set()).update(premise.rhs.free_symbols)
-                opaque = (AppliedUndef, sp.Derivative, sp.Integral)
-                if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):
-                    related = premise.lhs.free_symbols | premise.rhs.free_symbols
-                    for each in related - self._rules.keys():
-                        direct.setdefault(each, set()).update(related - {each})
+        opaque = (AppliedUndef, sp.Derivative, sp.Integral)
+        for premise in merged(fact.premises for fact in self._origins.values()):
+            if premise.lhs not in self._rules and premise.lhs.is_Symbol:
+                direct.setdefault(premise.lhs, set()).update(letters_of(premise.rhs))
+            if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):
+                related = letters_of(premise.lhs) | letters_of(premise.rhs)
+                for each in related - self._rules.keys():
+                    direct.setdefault(each, set()).update(related - {each})
         for _ in direct:
             for reach in direct.values():
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))

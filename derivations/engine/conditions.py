@@ -17,6 +17,7 @@ from functools import lru_cache
 import sympy as sp
 
 from .forms import derivative, expanded, factors, reduced, sign_of_terms
+from .identity import letters_of
 from .points import signs
 
 Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
@@ -278,7 +279,7 @@ def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
     """Return the sign that follows directly from the assumptions on the symbols."""
     sign = sign_of_terms(expr, strict=strict)
     made_of_parts = expr.is_Add or expr.is_Mul or (expr.is_Pow and expr.exp.is_Rational)
-    if sign or (made_of_parts and expr.free_symbols and not _has_integers(expr)):
+    if sign or (made_of_parts and letters_of(expr) and not _has_integers(expr)):
         return sign  # SymPy knows no more
     if expr.is_positive or (expr.is_nonnegative and not strict):
         return 1
@@ -286,7 +287,7 @@ def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
 
 
 def _has_integers(expr: sp.Expr) -> bool:
-    return any(each.is_integer for each in expr.free_symbols)
+    return any(each.is_integer for each in letters_of(expr))
 
 
 def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:

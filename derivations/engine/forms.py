@@ -12,7 +12,7 @@ from operator import add, mul
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from .identity import LARGEST, Polynomials
+from .identity import LARGEST, Polynomials, letters_of
 
 _ELEMENTARY = (
     sp.log,
@@ -39,7 +39,7 @@ def derivative(  # noqa: PLR0911 one return for each rule
     >>> derivative(x**3 * y + sp.exp(2 * x), x)
     3*x**2*y + 2*exp(2*x)
     """
-    if letter not in expr.free_symbols:
+    if letter not in letters_of(expr):
         return sp.S.Zero
     if expr == letter:
         return sp.S.One
@@ -56,7 +56,7 @@ def derivative(  # noqa: PLR0911 one return for each rule
         )
     if isinstance(expr, sp.exp):
         return derivative(expr.exp, letter) * expr
-    if expr.is_Pow and letter not in expr.exp.free_symbols:
+    if expr.is_Pow and letter not in letters_of(expr.exp):
         return expr.exp * derivative(expr.base, letter) * expr.base ** (expr.exp - 1)
     if isinstance(expr, _ELEMENTARY):
         return expr.fdiff(1) * derivative(expr.args[0], letter)
@@ -212,7 +212,7 @@ def sign_of_terms(expr: sp.Expr, *, strict: bool = True) -> int:
     >>> sign_of_terms(x + y**2), sign_of_terms(y**2), sign_of_terms(y**2, strict=False)
     (1, 0, 1)
     """
-    if expr.is_Add and expr.free_symbols:
+    if expr.is_Add and letters_of(expr):
         loose = {sign_of_terms(term, strict=False) for term in expr.args}
         if len(loose) > 1 or 0 in loose:
             return 0

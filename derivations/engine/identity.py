@@ -34,6 +34,14 @@ def vanishes(expr: sp.Expr) -> bool:
     return bool(top == 0 and bottom != 0)
 
 
+@lru_cache(maxsize=32768)
+def letters_of(expr: sp.Expr) -> frozenset[sp.Expr]:
+    """Return the free symbols, which SymPy collects anew whenever it is asked."""
+    if expr.is_Add or expr.is_Mul or expr.is_Pow:
+        return frozenset().union(*map(letters_of, expr.args))
+    return frozenset(expr.free_symbols)
+
+
 @lru_cache(maxsize=8192)
 def is_rational(expr: sp.Expr) -> bool:
     """Tell whether only rational numbers and whole powers of symbols are in the expression.

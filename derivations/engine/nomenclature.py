@@ -12,8 +12,10 @@ A dot is the derivative with respect to time, a prime the one with respect to th
 quantities of the transient is the scaled time.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -68,6 +70,50 @@ def symbol(
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")
     return _declared(found, meaning, unit, printed or latex or sp.latex(found), source)
+
+
+def symbols(table: str) -> tuple[Any, ...]:
+    r"""Declare symbols, one in a row: its name, how displays write it, its unit, its meaning, and more.
+
+    Two or more spaces separate the columns, "-" is an empty one; what is indented more goes on with the row
+    before. More is what is assumed, what the document prints ("prints ..."), and the source ("from ...").
+    A row without a name declares a letter alone.
+
+    >>> table = r'''
+    ...     n_9  \Xi_9       1  number of layers, the lowest
+    ...             included  integer positive  from F1
+    ...     -    \Upsilon_9  m  thickness of a layer
+    ... '''
+    >>> (n_9,) = symbols(table)
+    >>> n_9.is_integer, TEX.pop(n_9)
+    (True, '\\Xi_9')
+    >>> rows = [BY_LATEX.pop(latex) for latex in (r"\Xi_9", r"\Upsilon_9")]
+    >>> [(row.latex, row.unit, row.source) for row in rows]
+    [('\\Xi_9', '1', 'F1'), ('\\Upsilon_9', 'm', None)]
+    >>> rows[0].meaning
+    'number of layers, the lowest included'
+    """
+    found = []
+    for row in re.sub(r"\n {8,}(?=\S)", " ", table).strip().splitlines():
+        columns = ["" if each == "-" else each for each in re.split("  +", row.strip())]
+        name, latex, unit, meaning, *more = columns
+        assumed: dict[str, bool] = {}
+        source, shown = None, ""
+        for each in more:
+            key, _, rest = each.partition(" ")
+            if key == "from":
+                source = "" if rest == "scene" else rest
+            elif key == "prints":
+                shown = rest
+            else:
+                assumed |= dict.fromkeys(each.split(), True)
+        if name:
+            found.append(
+                symbol(name, meaning, unit, latex, printed=shown, source=source, **assumed)
+            )
+        else:
+            letter(latex, meaning, unit, source)
+    return tuple(found)
 
 
 def function(

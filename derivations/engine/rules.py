@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from .forms import Computed, carried_out
+from .identity import letters_of
 
 Rules = Mapping[sp.Expr, sp.Expr]
 Dependences = Mapping[sp.Expr, frozenset[sp.Expr]]
@@ -92,7 +93,7 @@ class _Rewriter:
         parts = [self.rewrite(part) for part in expr.args]
         new = expr.func(*parts) if parts != list(expr.args) else expr
         for lhs, rhs in self._compound.items():
-            replaced = new.subs(lhs, rhs) if new.free_symbols >= lhs.free_symbols else new
+            replaced = new.subs(lhs, rhs) if letters_of(new) >= letters_of(lhs) else new
             if replaced != new:
                 self.used.add(lhs)
                 new = replaced

@@ -6,13 +6,14 @@ slopes and integrals of unknown functions are letters of their own.
 
 import random
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from .conditions import linear
+from .identity import letters_of
 from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
@@ -30,7 +31,7 @@ def has_witness(premises: Pairs, positive: tuple[sp.Expr, ...]) -> bool:
     laws, gaps, signed = _without_definitions(premises, positive)
     if not laws and not gaps and not signed:
         return True
-    slack = {gap: sp.Dummy("slack", positive=True) for gap in gaps}
+    slack = {gap: _slack(place) for place, gap in enumerate(gaps)}
     letters = set().union(*(each.free_symbols for each in (*laws, *gaps, *signed)))
     order = sorted(letters, key=str)
     above = {*gaps, *signed}
@@ -52,6 +53,12 @@ def has_witness(premises: Pairs, positive: tuple[sp.Expr, ...]) -> bool:
     return False
 
 
+@lru_cache(maxsize=256)
+def _slack(place: int) -> sp.Dummy:
+    """Return what a condition exceeds zero by, the same whenever it is asked: a new one defeats caches."""
+    return sp.Dummy(f"slack_{place}", positive=True)
+
+
 def _without_definitions(
     premises: Pairs, positive: tuple[sp.Expr, ...]
 ) -> tuple[list[sp.Expr], list[sp.Expr], list[sp.Expr]]:
@@ -68,15 +75,12 @@ def _without_definitions(
     whole = [sp.sin(sp.pi * value) for name, value in values.items() if name.is_integer]
     sized = [(name, value) for name, value in values.items() if name.is_nonnegative]
     sized += [(-name, -value) for name, value in values.items() if name.is_nonpositive]
-    names: dict[sp.Expr, sp.Dummy] = {}
     groups = (
         (*laws, *whole),
         (*positive, *(value for name, value in sized if name.is_positive)),
         [value for name, value in sized if not name.is_positive],
     )
-    left = [
-        [_lettered(_put(each, values), names) for each in dict.fromkeys(group)] for group in groups
-    ]
+    left = [[_lettered(_put(each, values)) for each in dict.fromkeys(group)] for group in groups]
     laws, gaps, signed = left
     return (
         [law for law in laws if law != 0],
@@ -102,12 +106,13 @@ def _inside(node: sp.Expr, values: Pairs) -> sp.Expr:
     return node.subs(values)
 
 
-def _lettered(expr: sp.Expr, names: dict[sp.Expr, sp.Dummy]) -> sp.Expr:
+@cache
+def _lettered(expr: sp.Expr) -> sp.Expr:
     """Write letters for what depends on unknown functions, with their sign."""
     if isinstance(expr, _OPAQUE):
         known = {"positive": expr.is_positive, "nonnegative": expr.is_nonnegative}
-        return names.setdefault(expr, sp.Dummy(real=True, **{k: v for k, v in known.items() if v}))
-    return expr.func(*(_lettered(part, names) for part in expr.args)) if expr.args else expr
+        return sp.Dummy(real=True, **{k: v for k, v in known.items() if v})
+    return expr.func(*map(_lettered, expr.args)) if expr.has(*_OPAQUE) else expr
 
 
 def _drawn(letter: sp.Symbol, draw: random.Random, above: set[sp.Expr]) -> mpmath.mpf:
@@ -129,7 +134,7 @@ def _extended(
     """Give values to the letters that are left: by an equation, else by chance."""
     waiting = []
     for each in equations:
-        left = each.free_symbols - point.keys()
+        left = letters_of(each) - point.keys()
         if not left:
             if abs(value_of(each, point)) > _NONE:
                 return

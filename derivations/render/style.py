@@ -89,7 +89,8 @@ footer { font-size: 0.95rem; }
   .reason { max-width: 100%; }
   .reason > span:first-child, .domain { min-width: 0; overflow-x: auto; padding: 0.2rem 0; }
   .steps { padding-left: 0.5rem; }
-  .steps li.result { margin-left: -0.5rem; padding-left: 0.8rem; }
+  .steps li.result { margin-left: -0.5rem; padding-left: 0.8rem; grid-template-columns: minmax(0, 1fr); }
+  .steps .number { justify-self: end; }
   .steps li.step { padding-right: 0; }
   td:first-child { white-space: normal; }
 }
