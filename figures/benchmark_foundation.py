@@ -2,7 +2,8 @@
 
 Both fit as many arms to the same master curves. pyvisco minimises absolute residuals, over the glassy
 modulus; `kv.fit_foundation` relative ones. The misfit is the root mean square by either measure; by
-pyvisco's measure the same method is given its scale. Times are those of one call, in one process.
+pyvisco's measure the same method is given its scale. Times are processor seconds, the least of three calls;
+ours without the bound on the misfit of any series, which pyvisco does not know.
 """
 
 import contextlib
@@ -10,6 +11,7 @@ import io
 import os
 import time
 import warnings
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -19,7 +21,16 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from kvtheory.fitting import moduli
-from kvtheory.fitting.spectrum import Moduli, Series, arms_of, clustered
+from kvtheory.fitting.spectrum import (
+    BEYOND,
+    PER_DECADE,
+    Moduli,
+    Series,
+    arms_of,
+    clustered,
+    grid,
+    solved,
+)
 
 DATA = Path(__file__).parents[1] / "docs" / "data" / "dma"
 FILES = {"freq_user_master.csv": "freq", "time_user_master.csv": "time"}
@@ -34,9 +45,9 @@ def by_pyvisco(path: Path, domain: str, arms: int) -> tuple[Series, float]:
         warnings.simplefilter("ignore")
         frame, _ = load.user_master(load.file(str(path)), domain, 0, "E")
         frame = master.smooth(frame, 1)
-        start = time.perf_counter()
-        found: Any = prony.fit(prony.discretize(frame, "min", arms), frame, opt=True)[0]
-        seconds = time.perf_counter() - start
+        found, seconds = timed(
+            lambda: prony.fit(prony.discretize(frame, "min", arms), frame, opt=True)[0]
+        )
     terms = found["df_terms"].sort_values("tau_i")
     glassy = 1e6 * found["E_0"]  # from MPa
     E = glassy * terms["alpha_i"].to_numpy()
@@ -45,9 +56,24 @@ def by_pyvisco(path: Path, domain: str, arms: int) -> tuple[Series, float]:
 
 def by_us(data: Moduli, arms: int) -> tuple[Series, float]:
     """Return our series in the scale of the data, and the seconds it takes."""
-    start = time.perf_counter()
-    found = arms_of(data, clustered(data), arms, 0.0)
-    return found, time.perf_counter() - start
+
+    def fitted() -> Series:
+        fresh = Moduli(data.x, data.values)
+        vars(fresh)["scale"] = data.scale
+        start = solved(fresh, grid(fresh, BEYOND, PER_DECADE))
+        return arms_of(fresh, clustered(fresh, start), arms, 0.0)
+
+    return timed(fitted)
+
+
+def timed(run: Callable[[], Any]) -> tuple[Any, float]:
+    """Return a result, and the least of the processor times of three runs in seconds."""
+    seconds = []
+    for _ in range(3):
+        start = time.process_time()
+        found = run()
+        seconds.append(time.process_time() - start)
+    return found, min(seconds)
 
 
 def main() -> None:

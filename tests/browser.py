@@ -92,13 +92,12 @@ class Browser:
 
     def open(self, path: Path, state=""):
         """Open a file and wait until it is loaded."""
-        self._loaded = False
-        self.send("Page.navigate", url="about:blank")
-        self._loaded = False
-        self.send("Page.navigate", url=path.as_uri() + state)
-        until = time.monotonic() + PATIENCE
-        while not self._loaded and time.monotonic() < until:
-            list(self._read())
+        for url in ("about:blank", path.as_uri() + state):  # the same page again is loaded anew
+            self._loaded = False
+            self.send("Page.navigate", url=url)
+            until = time.monotonic() + PATIENCE
+            while not self._loaded and time.monotonic() < until:
+                list(self._read())
         self.settle()
 
     def run(self, expression):

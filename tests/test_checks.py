@@ -128,7 +128,7 @@ def test_the_simulation_of_mistakes_is_right_without_one(foundation, ball):
     drive = kv.Drive(history=[(0.0, 0.1), (0.04, 0.1), (0.04, -0.1)])
     scene = kv.Scene(indenter, foundation, kv.DeadWeight(mass), drive, kv.Run(0.06))
     theory = Theory(scene, METHODS)
-    times, found = simulate(theory, [Rule()], 0.06)
+    times, found = simulate(scene, (Rule(),), 0.06)
     at, rows = np.unique(times, return_index=True)
     exact = theory.at(at, 1e-6)
     for name in ("depth", "normal_force", "friction_force"):

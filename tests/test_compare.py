@@ -433,7 +433,7 @@ def rows(*lines):
 
 GOOD = [f"{k},-0.3,9.8,0" for k in range(12)]
 BAD = {
-    "empty": ("", "no row names the columns that are needed"),
+    "empty": ("", "is empty; expected"),
     "header only": (HEADS, "holds a header and no rows"),
     "no header": (rows(*GOOD), "line 1 holds numbers"),
     "short": (rows(HEADS, *GOOD[:5]), "at least 8"),
@@ -451,7 +451,7 @@ BAD = {
     "decimal comma": (rows(HEADS, '0,"-0,3",9,0'), "write the decimal mark as a point"),
     "two marks": (rows(HEADS.replace(",", ";"), "0;-1.000,3;9;0"), "write the decimal mark as a point"),
     "endless cell": (rows(HEADS, "0," + "9" * 200_000 + ",9,0"), "not a table of numbers: field larger"),
-    "nothing known": (rows("a,b", "1,2"), '"a,b" names none that is known'),
+    "nothing known": (rows("a,b", "1,2"), 'line 1, "a,b": has no column that is known'),
     "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
     "wrong unit": (rows("t [ms],F_z [N]", "0,1"), '"F_z [N]": the unit "N" has the wrong dimension'),
     "unknown unit": (rows("t [ms],z_A [furlongz]", "0,1"), '"furlongz" is not a known unit'),

@@ -9,7 +9,6 @@ import pytest
 import kvtheory as kv
 from figures.engines import RUNS, hunt_crossley
 from kvtheory.api._compare import METHODS
-from kvtheory.checks import trial_elements
 from kvtheory.checks.hypotheses import scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.checks.trial_elements import Rule, steady, steady_changes
@@ -22,23 +21,6 @@ RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv
 STICK_SLIP, STABLE = SPRINGS["stick-slip"], SPRINGS["stable"]
 TABLE_1 = SCENES["Table 1"]
 MEASURED = "time", "depth", "normal_force", "friction_force"
-
-
-@cache
-def tried(scene, rules, end):
-    """Return the simulation of wrong contact rules, which depends on nothing else."""
-    return SIMULATE(Theory(scene, METHODS), rules, end)
-
-
-SIMULATE = trial_elements.simulate
-
-
-@pytest.fixture(autouse=True)
-def _wrong_rules_once(monkeypatch):
-    def simulate(theory, rules, end):
-        return tried(theory.scene, tuple(rules), end)
-
-    monkeypatch.setattr(trial_elements, "simulate", simulate)
 
 
 @cache

@@ -37,6 +37,20 @@ def test_uses_exist_and_do_not_run_in_circles(by_label):
             del waiting[label]
 
 
+def test_a_premise_that_stands_further_on_is_announced(by_label):
+    order = list(by_label)
+    late = [
+        (each, used)
+        for each in by_label.values()
+        for used in each.uses
+        if order.index(used) > order.index(each.label)
+    ]
+    assert len(late) < 8
+    for each, used in late:
+        assert f"({used.removeprefix('eq')})" in each.text
+        assert "follow" in each.text
+
+
 def test_steady_sliding_is_proved(by_label):
     for derivation in (by_label[f"eq{number}"] for number in range(26, 49)):
         named = derivation.equation in (34, 37)

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from scipy.stats import t as student
 
 import kvtheory as kv
+from kvtheory.api._fit import _followed
 from kvtheory.cli import main
 from kvtheory.fitting import friction, records
 from kvtheory.fitting.least_squares import descend
@@ -79,12 +80,16 @@ def test_exact_data_give_the_quantities_back_whatever_the_scene_holds(name):
     )
 
 
-def solved(scene, keys, data, seed=0):
+def solved_problem(scene, keys, data, seed=0):
     problem = friction.Problem(scene, keys, (records.read(data, scene),), METHODS["exact"])
-    return friction.solve(problem, seed)[1]
+    return friction.solve(problem, seed)
 
 
-@pytest.mark.parametrize(("name", "few"), [("line", 15), ("springpot", 3)])
+def solved(*given):
+    return solved_problem(*given)[1]
+
+
+@pytest.mark.parametrize(("name", "few"), [("line", 15), ("springpot", 3), ("one arm", 8)])
 def test_the_true_values_are_within_two_standard_errors(name, few):
     """Of 95 % of the fits; KVTHEORY_TEST_SCENES=1000 makes 400 of them."""
     scene, keys, how = CASES[name]
@@ -92,8 +97,9 @@ def test_the_true_values_are_within_two_standard_errors(name, few):
     true = np.log([scene.values()[key] for key in keys])
     hits = []
     for seed in range(count):
-        found = solved(scene, keys, table(scene, 0.02, seed, **how))
-        hits.append(np.abs(found.point - true) < 2.0 * np.sqrt(np.diag(found.covariance)))
+        problem, found = solved_problem(scene, keys, table(scene, 0.02, seed, **how))
+        errors = friction.standard_errors(found, friction.intervals(problem, found))
+        hits.append(np.abs(np.expm1(true - found.point)) < 2.0 * errors)
     spread = 3.0 * np.sqrt(0.95 * 0.05 / (len(keys) * count))
     assert np.mean(hits) > 0.95 - max(spread, 0.02)
 
@@ -258,16 +264,46 @@ def test_a_series_that_theory_does_not_follow_says_so():
     assert "the model is off, and the standard errors are too small" in note
 
 
-def test_rows_before_the_start_and_more_than_enough_are_left_out():
-    time = np.linspace(-0.1, 0.1, 6001)
-    force = np.interp(time, np.linspace(0.0, 0.1, 40), series(TABLE1)["friction_force [N/m]"])
-    found = records.read({"t [s]": time, "F_x [N/m]": force, "V [m/s]": 0.1 * (time > 0)}, TABLE1)
-    assert found.notes == (
-        "3000 rows before t = 0, where sliding begins, are not used.",
-        "One row in 2 is used.",
+def test_rows_before_the_start_are_left_out():
+    data = series(TABLE1)
+    time, force = data["t [ms]"] - 20.0, data["friction_force [N/m]"]
+    found = records.read({"t [ms]": time, "F_x [N/m]": force, "V [m/s]": 0.1 * (time > 0)}, TABLE1)
+    before = np.count_nonzero(time < 0.0)
+    assert found.notes == (f"{before} rows before t = 0, where sliding begins, are not used.",)
+    assert found.time == pytest.approx(1e-3 * time[before:])
+
+
+def long_series(scene, size, noise):
+    """Return a transient of many rows, with noise in N/m."""
+    time, rng = np.linspace(0.0, 0.2, size), np.random.default_rng(2)
+    F = kv.transient(scene, at=time, certify=False).friction_force
+    return {"t [s]": time, "F_x [N/m]": F + noise * rng.standard_normal(size)}
+
+
+@pytest.mark.parametrize("noise", [0.0, 50.0])
+def test_theory_over_the_bins_of_a_long_series_is_the_mean_of_its_rows(noise):
+    """Also where a stop of the drive is a jump of the friction force."""
+    stop = [["0 ms", "100 mm/s"], ["80 ms", "100 mm/s"], ["80 ms", "0 mm/s"], ["200 ms", "0 mm/s"]]
+    scene = kv.Scene(drive=kv.Drive(history=stop))
+    data = records.read(long_series(scene, 20_000, noise), scene)
+    assert data.size <= records.MOST_BINS
+    assert data.notes == (
+        f"20,000 rows over time were averaged to {data.size}; the misfit is of these.",
     )
-    assert found.time[0] == 0.0
-    assert found.size == found.time.size == 1501
+    problem = friction.Problem(scene, VOIGT[1:], (data,), METHODS["exact"], _followed)
+    (F,) = data.measured.values()
+    off = problem.residuals(np.log([[0.1]]))[0] * np.sqrt(np.mean(F * F))
+    expected = noise * np.sqrt(data.size / 20_000)
+    assert np.sqrt(np.mean(off * off)) == pytest.approx(expected, rel=0.3, abs=0.02)
+
+
+def test_averages_tell_as_much_as_all_rows(monkeypatch):
+    data = long_series(TABLE1, 600, 50.0)
+    few = kv.fit(TABLE1, data, free=VOIGT[1:]).parameters[VOIGT[1]]
+    monkeypatch.setattr(records, "MOST_BINS", 600)
+    every = kv.fit(TABLE1, data, free=VOIGT[1:]).parameters[VOIGT[1]]
+    assert abs(few.value - every.value) < 0.3 * every.standard_error
+    assert few.standard_error == pytest.approx(every.standard_error, rel=0.2)
 
 
 def test_a_long_record_is_thinned_at_random_so_that_no_condition_drops_out():
@@ -336,7 +372,7 @@ def test_what_no_model_follows_over_time_is_refused():
 
 MU = "V [mm/s],mu\n1,0.01\n10,0.05\n100,0.08\n1000,0.04\n"
 BAD = {
-    "no velocity": ("mu\n1\n", VOIGT, "line 2 holds numbers that no row of names precedes"),
+    "no velocity": ("mu\n1\n", VOIGT, 'line 1, "mu": has only friction_coefficient; expected'),
     "misspelt column": (
         MU.replace("mu", "mu,indenter.radus [mm]"),
         VOIGT,

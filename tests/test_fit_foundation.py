@@ -102,13 +102,25 @@ BAD = {
     "two rows": (HEAD + "1,2,1\n2,3,1\n", "2 rows; at least 4"),
     "one frequency": (HEAD + "1,2,1\n1,3,1\n1,4,1\n1,5,1\n", "at different frequencies"),
     "no loss": (HEAD + "1,2,0\n2,2,0\n3,2,0\n4,2,0\n", "without loss there is nothing to fit"),
-    "no header": (ROWS, "line 1 holds numbers that no row of names precedes"),
-    "unknown": ("a,b,c\n" + ROWS, "line 2 holds numbers that no row of names precedes"),
-    "empty": ("", "no row names the columns"),
+    "no header": (ROWS, "line 1 holds numbers, and no row above it names the columns"),
+    "unknown": ("a,b,c\n" + ROWS, 'line 1, "a,b,c": has no column that is known'),
+    "misspelt": (HEAD.replace("f", "freqency") + ROWS, '"freqency [Hz]" may be "frequency"'),
+    "two marks": (
+        HEAD.replace(",", ";") + "1;1,5;0,2\n2;1.6;0.2\n",
+        "a comma in line 2 and a point in line 3",
+    ),
+    "comma twice": (HEAD + "1,0,1,5,0,2\n", "are there decimal commas"),
+    "empty": ("", "is empty; expected"),
     "no unit": ("f [Hz],E',E''\n" + ROWS, 'column "E\'": has no unit'),
-    "wrong unit": ("f [Hz],E' [mm],E'' [MPa]\n" + ROWS, "wrong dimension"),
-    "frequency in 1/s": ("f [1/s],E' [MPa],E'' [MPa]\n" + ROWS, 'unit "1/s"; expected Hz'),
-    "omega in Hz": ("omega [Hz],E' [MPa],E'' [MPa]\n" + ROWS, 'unit "Hz"; expected rad/s'),
+    "wrong unit": ("f [Hz],E' [mm],E'' [MPa]\n" + ROWS, "expected a quantity in N/m^2"),
+    "frequency in 1/s": (
+        "f [1/s],E' [MPa],E'' [MPa]\n" + ROWS,
+        'unit "1/s", which may mean Hz or rad/s; expected Hz',
+    ),
+    "omega in Hz": (
+        "omega [Hz],E' [MPa],E'' [MPa]\n" + ROWS,
+        'unit "Hz", which may mean Hz or rad/s; expected rad/s',
+    ),
     "unknown kind": ("f [Hz],storage modulus [MPa],loss modulus [MPa]\n" + ROWS, "may be E or G"),
     "mixed": ("f [Hz],E' [MPa],G'' [MPa]\n" + ROWS, "not of the same kind"),
     "twice": ("f [Hz],E' [MPa],E_stor [MPa],E'' [MPa]\n", "both the E'"),
@@ -364,6 +376,15 @@ def test_sliding_outside_the_measured_frequencies_is_noted(tmp_path):
     assert kv.solve(scene, quantity="friction_force").notes
     swept = kv.sweep(scene, over={"drive.velocity": V}, quantities="friction_force")
     assert "outside the frequencies" in swept.certificate.statement
+    wide = scene.replace(
+        {"foundation.lowest_frequency": "1 nHz", "foundation.highest_frequency": "1 EHz"}
+    )
+    report = kv.asymptotes(wide)
+    assert not report.notes
+    (note,) = kv.asymptotes(wide.replace({"foundation.lowest_frequency": "1 PHz"})).notes
+    assert "At the friction maximum at V = " in note
+    assert "V/c is outside the frequencies" in note
+    assert note.count("m/s") == len(report.maxima)
     path = tmp_path / "scene.toml"
     path.write_text(kv.to_toml(scene))
     assert kv.load_scene(path) == scene

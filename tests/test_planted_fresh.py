@@ -4,12 +4,9 @@ import pytest
 
 from tests import planted_fresh as planted
 
-MARKS = {
-    planted.OPEN: pytest.mark.xfail(strict=True, reason="the engine gets it wrong today"),
-}
 ROWS = [
-    pytest.param(step, expected, why, id=f"{kind}: {name}", marks=[MARKS[state]] if state else [])
-    for kind, name, expected, step, why, state in planted.rows()
+    pytest.param(step, expected, why, id=f"{kind}: {name}")
+    for kind, name, expected, step, why in planted.rows()
 ]
 
 

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 import pytest
 from click.testing import CliRunner
 from kvtheory.derivations.catalogue import catalogue
-from kvtheory.derivations.recheck.checks import _CHECKS, EMPTY, Record, Verdict
+from kvtheory.derivations.recheck.checks import _CHECKS, Record, Verdict
 from kvtheory.derivations.recheck.report import counts, having, recheck
 from kvtheory.derivations.render import edition
 from kvtheory.derivations.render import json as written
@@ -42,8 +42,9 @@ def test_no_claim_is_refuted_and_every_known_kind_is_decided(records):
     verdicts = recheck(records)
     assert having(verdicts, "refuted") == {}
     undecided = [each for each in having(verdicts, "unconfirmed").values() if each.kind in _CHECKS]
-    assert {each.how for each in undecided} == {EMPTY.how}
-    assert len(undecided) < 40  # where the page shows another form of what is claimed
+    assert (
+        undecided == []
+    )  # a claim about two forms of one expression is about them as they are printed
     weaker = Counter(each.kind for each in having(verdicts, "supported").values())
     assert set(weaker) <= {"limit", "inequality", "integral", "maximum", "crossing"}
     assert counts(verdicts)["confirmed"] > 5 * sum(weaker.values())

@@ -147,6 +147,15 @@ def test_sign(proof, expr, relation, over):
         proof.sign(expr, opposite, 0, over, "the opposite")
 
 
+def test_the_series_of_a_leading_order_is_printed_with_its_sign(proof):
+    """The coefficient is not multiplied into a distance from the point, which would lose brackets."""
+    proof.leading_order(y**2, sp.S.One, y, 1, "near the end", eps=1 - y)
+    proof.leading_order(y, sp.S.One, y, 1, "near the end", eps=1 - y)
+    series = [str(step.right) for step in proof.done(y, 1).steps]
+    assert r"1 - 2 \left(1 - y\right) + O" in series[0]
+    assert r"1 - \left(1 - y\right) + O" in series[1]
+
+
 @pytest.mark.parametrize(
     ("expr", "leading", "point", "eps", "expected"),
     [

@@ -175,6 +175,7 @@ def test_netcdf_is_labelled_and_carries_units_scene_and_failures(tmp_path):
         ({(V, TAU): 1.0}, ["a list for each key"]),
         ({"a.b": [1.0], V: "x", TAU: [-1.0]}, ["a.b", V, TAU]),  # all mistakes at once
         ({"quantities": ["friction_coeficient"]}, ['did you mean "friction_coefficient"']),
+        ({"quantities": ["WRONG"]}, ["expected one of 72 names, such as"]),
         ({"quantities": []}, ["empty"]),
         ({"quantities": "depth.mean"}, ["depth.mean", "depth.min"]),
         ({"at": ["1 s"], "quantities": "depth"}, ["after the end"]),

@@ -18,10 +18,10 @@ letter(
     "position of an edge between two elements, or of a rim between two strips, in spacings",
     source="F15-sawtooth",
 )
-letter(r"m_{\mathrm{k}}", "angle of two surfaces that meet")
-letter(r"\hat w_0", "indenter below the free surface, at the last element outside", "m")
-letter(r"\hat w_1", "indenter below the free surface, at the first element inside", "m")
-letter(r"\hat w", "indenter below the free surface, along an element", "m")
+letter(r"m_{\mathrm{k}}", "slope difference of two surfaces where they meet")
+letter(r"\hat w_0", "depth of the indenter below the free surface at the last element outside", "m")
+letter(r"\hat w_1", "depth of the indenter below the free surface at the first element inside", "m")
+letter(r"\hat w", "depth of the indenter below the free surface along an element", "m")
 letter(r"\hat w_2", r"second derivative of $\hat w$", "1/m")
 letter(r"f_\Delta", "excess of the sum over elements", "N/m")
 

@@ -17,7 +17,7 @@ letter(r"y_{\mathrm{s}}", "distance from the rim of a ball, in units of its half
 letter(r"\breve \psi", r"square root of $y_{\mathrm{s}}$")
 letter(r"v_{\mathrm{s}}", "distance of a strip from the rim, in spacings")
 letter(r"x_{\mathrm{s}}", "distance from that strip inward, in spacings")
-letter(r"Q_{\mathrm{s}}", "what trapezoids leave out between two strips")
+letter(r"Q_{\mathrm{s}}", "error of the trapezoidal rule between two strips")
 letter(r"\zeta_{\mathrm{H}}", "zeta function of Hurwitz")
 letter(r"\breve p_1", r"slope of a strip's load over $y_{\mathrm{s}}$ at the rim")
 letter(r"\breve p_2", r"coefficient of $y_{\mathrm{s}}^{3/2}$ in the load near the rim")

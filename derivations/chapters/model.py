@@ -197,7 +197,10 @@ def _depth_rate(proof: Proof) -> None:
 
 @result("eq20", after=("eq21",))
 def _free(proof: Proof) -> None:
-    """Relaxation of a free element."""
+    """Relaxation of a free element.
+
+    The retardation time is that of Eq. (21), which follows.
+    """
     proof.recall("eq12")
     proof.recall("eq21")
     reason = r"without contact $f_{zi} = 0$, which is linear in $\dot{u}_i$"

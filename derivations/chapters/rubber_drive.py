@@ -19,10 +19,10 @@ from .viscoelastic import arm_number, contact_length, excess_share, half_share, 
 strained = function("x_u", real=True)
 kernels = tuple(
     symbol(
-        f"phi_r{n}", rf"$\int_0^1 e^{{-\tilde z v}} (1 - v)^{n - 1}/{n - 1}!\, dv$",
+        f"phi_r{n}", rf"$\int_0^1 e^{{-\tilde z v}} {share}\, dv$",
         latex=rf"\tilde \phi_{n}", source="F24-kernels",
     )
-    for n in range(1, 5)
+    for n, share in enumerate(("", "(1 - v)", "(1 - v)^2/2", "(1 - v)^3/6"), 1)
 )  # fmt: skip
 kernels_still = tuple(
     symbol(

@@ -38,8 +38,8 @@ t_1 = symbol("t_1", "present time", "s", real=True)
 t_in = symbol(
     "t_in", "time at which an element entered the contact", "s", latex=r"t_{\mathrm{in}}", real=True
 )
-alpha_i = function("alpha_i", "what an arm has accumulated of the depth", "m", real=True)
-beta_i = function("beta_i", "what it has accumulated of the distance slid", "m", real=True)
+alpha_i = function("alpha_i", "accumulated depth that an arm remembers", "m", real=True)
+beta_i = function("beta_i", "accumulated sliding distance that an arm remembers", "m", real=True)
 E_i = symbol("E_i", "share of a stress at entry that an arm still has")
 stress_i = function("s_i", "stress of an arm in an element", "Pa", real=True)
 S_i = function("S_i", "integral of the stress of an arm over the contact", "N/m", real=True)(t)

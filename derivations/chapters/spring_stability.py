@@ -29,7 +29,9 @@ support_rate = symbol(
 S_c = symbol("S_c", r"rate of the coupling, times $\tau$", latex=r"\varrho_{\mathrm{c}}")
 coupling = symbol("g_c", "strength of the coupling of both motions", latex=r"\check g")
 uncoupled = symbol("h_c", r"$1 - \check g$", latex=r"\check h")
-rise = symbol("e_c", "what has the sign of $dF/dV$ with the damper", latex=r"\check e", real=True)
+rise = symbol(
+    "e_c", "quantity with the sign of $dF/dV$, damper included", latex=r"\check e", real=True
+)
 own_rise = symbol(
     "e_0", r"$\check e$ of a dead weight without a damper", latex=r"\check e_0", real=True
 )

@@ -63,7 +63,7 @@ def _pressure(proof: Proof) -> None:
     """Pressure in the contact.
 
     Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
-    indenters.
+    indenters. The retardation length is that of Eq. (29), which follows.
     """
     proof.recall("eq3")
     proof.recall("eq22")
@@ -78,7 +78,8 @@ def _pressure(proof: Proof) -> None:
 def _leading_edge(proof: Proof) -> None:
     """Leading edge.
 
-    The leading edge is where the undisturbed surface meets the indenter.
+    The leading edge is where the undisturbed surface meets the indenter. The half length and the retardation
+    length are those of Eqs. (28) and (29), which follow.
     """
     proof.recall("eq28")
     proof.recall("eq3")
@@ -97,7 +98,8 @@ def _leading_edge(proof: Proof) -> None:
 def _trailing_edge(proof: Proof) -> None:
     """Trailing edge.
 
-    The trailing edge is where the pressure vanishes; it is the only such point of the contact.
+    The trailing edge is where the pressure vanishes; it is the only such point of the contact. The half
+    length is that of Eq. (28), which follows.
     """
     proof.recall("eq28")
     proof.recall("pressure")

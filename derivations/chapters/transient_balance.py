@@ -168,7 +168,8 @@ def _power(proof: Proof) -> None:
     proof.recall("F11")
     proof.recall("F11", f_friction)
     proof.notation |= {r"\hat p": PRESSURE, "u'": _rate}
-    proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p")
+    proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p",
+                right=r"\left(d - \xi^2\right) + \left(d' - 2 \lambda \xi\right)")  # fmt: skip
     whole = sp.Integral(density, CONTACT)
     proof.integral(
         *(whole, density, CONTACT, sp.integrate(density, xi), "pressure times velocity"),

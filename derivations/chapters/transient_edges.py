@@ -45,7 +45,7 @@ c = symbol("c", "rate at which an edge turns", printed=r"c_{\mathrm{t}}")
 letter(r"\bar k_1", "bounded factor of the remainder after the leading order")
 letter(r"\bar k_2", "second bounded factor")
 letter(r"\bar k_3", "third bounded factor")
-letter(r"\bar y", "instant before a turn over the time since")
+letter(r"\bar y", r"earlier instant over the time since the turn, $\bar \sigma/\Delta s$")
 
 RADICAND = d + d_s + lam**2
 """rho**2 of the edges that peel."""

@@ -52,7 +52,7 @@ letter("D", r"$e^{s} \bar g$ of an element less $e^{s_1} \bar g$ at an earlier i
 letter("D_1", "difference $D$ at one position")
 mix = symbol("theta", "share of two elements in one between them", printed=r"\bar \theta")
 letter(r"\Delta s", "scaled step in time")
-letter("D_2", "the difference $D$ at another position")
+letter("D_2", "difference $D$ at another position")
 
 SECTION = "Transient: theorems"
 

@@ -3,6 +3,7 @@
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import sympy as sp
@@ -10,13 +11,16 @@ from sympy.core.function import AppliedUndef
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
+    NONE,
     Conditions,
     Interval,
+    demands,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
 )
-from .identity import vanishes
+from .forms import derivative, expanded, factors, reduced, sign_of_terms
+from .identity import is_rational, vanishes
 from .series import leading_of_series
 
 
@@ -24,6 +28,8 @@ class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute the statement."""
 
 
+DISTANCE = sp.Dummy("h", positive=True)
+"""The distance from the point of a limit: no other letter, whatever its name, is this one."""
 _SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
 """Functions that have all derivatives wherever their argument is real."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
@@ -128,7 +134,7 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if left == right or vanishes(left - right):
         return sp.S.Zero
     numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
-    rest = sp.expand(normalise(numerator))
+    rest = expanded(normalise(numerator))
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
@@ -177,9 +183,9 @@ def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
     By Sturm's theorem; where an end is an irrational number, by isolating the roots.
     """
     variable, low, high = over[0], *map(_number, over[1:])
-    numerator = sp.fraction(sp.cancel(normalise(expr)))[0]
-    _, factors = _univariate(numerator, variable).sqf_list()
-    counts = [(_count(factor, low, high), power) for factor, power in factors]
+    numerator = sp.fraction(_reduced(expr))[0]
+    _, parts = _univariate(numerator, variable).sqf_list()
+    counts = [(_count(part, low, high), power) for part, power in parts]
     return sum(n for n, _ in counts), sum(n for n, power in counts if power % 2)
 
 
@@ -223,21 +229,24 @@ def sign_between(expr: sp.Expr, over: Interval) -> str:
     variable must have a known sign.
     """
     variable, inside = over[0], _inside(*map(_number, over[1:]))
-    numerator, denominator = sp.fraction(sp.factor(sp.together(normalise(expr))))
     sign, touches = 1, ""
-    for part in (numerator, denominator):
-        constant, factors = sp.factor_list(part)
-        for base, power in [(constant, 1), *factors]:
-            if variable not in base.free_symbols:
-                if not (base.is_positive or base.is_negative):
-                    raise UndecidedError(f"the sign of {base} is not known")
-                sign *= int(sp.sign(base)) ** power
-            elif roots_between(base, over)[0]:
-                if part is denominator or power % 2:
-                    raise UndecidedError(f"{base} vanishes inside the interval")
-                touches = "0"
-            else:
-                sign *= int(sp.sign(base.subs(variable, inside))) ** power
+    for factor in factors(normalise(expr)):
+        base, power = (
+            factor.as_base_exp() if factor.is_Pow and factor.exp.is_Integer else (factor, 1)
+        )
+        known = sign_of_terms(base)
+        if known:
+            sign *= known ** int(abs(power))
+        elif variable not in base.free_symbols:
+            if not (base.is_positive or base.is_negative):
+                raise UndecidedError(f"the sign of {base} is not known")
+            sign *= int(sp.sign(base)) ** int(abs(power))
+        elif roots_between(base, over)[0]:
+            if power < 0 or power % 2:
+                raise UndecidedError(f"{base} vanishes inside the interval")
+            touches = "0"
+        else:
+            sign *= int(sp.sign(base.subs(variable, inside))) ** int(abs(power))
     return ("+" if sign > 0 else "-") + touches
 
 
@@ -271,7 +280,7 @@ def sides(variable: sp.Symbol, point: sp.Expr | int, known: Conditions) -> list[
     ]
     demanded = [gap for pair in ends for gap in pair if not gap.has(sp.oo, -sp.oo)]
     demanded += [gap for gap in (sign, *known.positive) if gap is not None and gap.has(variable)]
-    h, open_ones = sp.Symbol("h", positive=True), []
+    h, open_ones = DISTANCE, []
     for side in (-1,) if point == sp.oo else (1, -1) if point == 0 else (-1, 1):
         place = 1 / h if point == sp.oo else point + side * h
         local = (_reduced(gap.subs(variable, place)) for gap in demanded)
@@ -294,8 +303,47 @@ def leading_term(
 
     h is ``1/variable`` at infinity.
     """
-    h = sp.Symbol("h", positive=True)
+    h = DISTANCE
     return _leading(near(expr, variable, point, h, side), h)
+
+
+def limit_at(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions = NONE
+) -> sp.Expr:
+    """Return the limit that an expression has from one side, by its leading term there.
+
+    Only rational functions and power series decide: all else may oscillate. What must not vanish, or be
+    negative, for the expression to be defined must not do so near the point, whatever the other letters are.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> limit_at(sp.sin(x) / x, x, 0, 1), limit_at((x + 1) / (x**2 + 1), x, sp.oo, -1)
+    (1, 0)
+    """
+
+    def leading(part: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        found = _lowest_powers(part, DISTANCE) or leading_of_series(part, DISTANCE)
+        if found is None:
+            raise UndecidedError(f"{part} has no known power series")
+        return found
+
+    def is_sure(base: sp.Expr, proves: Callable[..., bool]) -> bool:
+        return proves(leading(near(base, variable, point, DISTANCE, side))[0], known)
+
+    nonzero, nonnegative = demands(expr)
+    roots = nonnegative - {base for base in nonnegative if base.is_nonnegative}
+    local = near(expr, variable, point, DISTANCE, side)
+    top, bottom = sp.fraction(local)
+    weight, order = leading(bottom)
+    defined = all(is_sure(base, proves_nonzero) for base in nonzero)
+    defined = defined and all(is_sure(base, proves_positive) for base in roots)
+    if not defined or not proves_nonzero(weight, known):
+        raise UndecidedError(f"{expr} may not be defined near {variable} = {point}")
+    if top == 0:
+        return sp.S.Zero
+    factor, power = leading(top)
+    if power < order:
+        raise UndecidedError(f"{expr} is not known to stay finite as {variable} -> {point}")
+    return factor / weight if power == order else sp.S.Zero
 
 
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
@@ -314,7 +362,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 
 def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
     """Read the leading term of a rational function off; None for any other expression."""
-    if not _is_rational(local):
+    if not is_rational(local):
         return None
     (top, one), (bottom, other) = (
         (polynomial.coeff_monomial(h**power), power)
@@ -369,22 +417,7 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
 
 def _reduced(expr: sp.Expr) -> sp.Expr:
     """Write as one fraction without a common factor."""
-    return sp.cancel(expr if _is_rational(expr) else sp.together(normalise(sp.together(expr))))
-
-
-def _is_rational(expr: sp.Expr) -> bool:
-    """Tell whether only rational numbers and whole powers of symbols are in the expression.
-
-    Then a coefficient that vanishes is literally 0 once it has been expanded.
-    """
-    return all(
-        node.is_Symbol
-        or node.is_Rational
-        or node.is_Add
-        or node.is_Mul
-        or (node.is_Pow and node.exp.is_Integer)
-        for node in sp.preorder_traversal(expr)
-    )
+    return reduced(expr if is_rational(expr) else normalise(expr))
 
 
 def next_order(
@@ -421,7 +454,7 @@ def _in_small(
     The small quantity is a power of the variable, or an exponential: of unknown order, but known to fade.
     """
     ratio = ratio.rewrite(sp.exp) if ratio.has(HyperbolicFunction) else ratio
-    ratio, small = sp.powsimp(sp.expand(ratio), deep=True), sp.Dummy("small", positive=True)
+    ratio, small = sp.powsimp(expanded(ratio), deep=True), sp.Dummy("small", positive=True)
     if eps.is_Pow and eps.base == variable and variable.is_positive and point in (0, sp.oo):
         fades = proves_positive(eps.exp if point == 0 else -eps.exp, known)
         nodes = {node: node.exp for node in ratio.atoms(sp.Pow) if node.base == variable}
@@ -443,16 +476,16 @@ def _next_on(
     ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr, bool]:
     """Return (c, k, r) on one side of the point, and whether eps is positive there."""
-    h = sp.Symbol("h", positive=True)
+    h = DISTANCE
     local = near(ratio, variable, point, h, side)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
-    regular = _is_rational(local) or local.is_meromorphic(h, 0)
+    regular = is_rational(local) or local.is_meromorphic(h, 0)
     if not regular or local.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
     top, bottom = sp.fraction(local)
-    rest = sp.expand(top - bottom) / bottom if _is_rational(local) else _reduced(local - 1)
+    rest = expanded(top - bottom) / bottom if is_rational(local) else _reduced(local - 1)
     next_c, next_k = _leading(rest, h)
     eps_c, eps_k = leading_term(eps, variable, point, side)
     if not (eps_c.is_nonzero and eps_c.is_real and eps_k.is_positive):
@@ -472,11 +505,11 @@ def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
     x**3/3 - x*exp(-k*x)/k - exp(-k*x)/k**2
     """
     total = sp.S.Zero
-    for term in sp.Add.make_args(sp.expand(expr)):
+    for term in sp.Add.make_args(expanded(expr)):
         factor, rest = term.as_independent(variable, as_Add=False)
         powers = rest.as_powers_dict()
         power, exponent = powers.pop(variable, sp.S.Zero), powers.pop(sp.E, sp.S.Zero)
-        rate = sp.diff(exponent, variable)
+        rate = derivative(exponent, variable)
         whole = power.is_Integer and power >= 0
         if set(powers) - {sp.S.One} or rate.has(variable) or (rate != 0 and not whole):
             total += factor * sp.integrate(rest, variable)
@@ -491,7 +524,7 @@ def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
                 )
                 * sp.exp(exponent)
             )
-    return sp.expand(total)
+    return expanded(total)
 
 
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
@@ -599,7 +632,7 @@ def _place(letter: sp.Symbol, known: Conditions) -> sp.Expr | None:
     for gap in known.positive:
         slope = gap.diff(letter)
         if slope.is_Rational and slope != 0:  # else it leaves the letter alone, or no interval
-            (low if slope > 0 else high).append(sp.expand(letter - gap / slope))
+            (low if slope > 0 else high).append(expanded(letter - gap / slope))
         elif gap.has(letter):
             return None
     if not all(end.is_Rational or end.is_infinite for end in (*low, *high)):
@@ -638,7 +671,7 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
     for variable in variables:
         if any(node.has(variable) for node in inner.atoms(*kinks)):
             everywhere = variable, -sp.oo, sp.oo
-            slope = sp.expand(inner.diff(variable)).replace(_is_distance, _distance)
+            slope = expanded(inner.diff(variable)).replace(_is_distance, _distance)
             if len(derivative.variables) > 1 or not all(
                 is_continuous(each, everywhere, known) for each in (inner, slope)
             ):

@@ -136,7 +136,9 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         try:
             with _limited():
                 for argument in arguments.values():
-                    book._meant(argument, complex_too=name in _ALGEBRAIC)
+                    book._meant(
+                        argument, complex_too=name in _ALGEBRAIC, limits_too=name == "equal"
+                    )
                 return check(*args, **kwargs)
         except StepError:
             raise
@@ -261,6 +263,11 @@ def established(label: str, lhs: sp.Expr) -> sp.Expr:
     return forms[-1]
 
 
+def _bare(expr: sp.Expr) -> sp.Expr:
+    """Return an expression that is kept from being evaluated as it is with it."""
+    return sp.sympify(expr).replace(sp.UnevaluatedExpr, lambda inner: inner)
+
+
 def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     """Put in values, and carry out what does not need to be believed."""
     return expr.subs(at).doit(integrals=False, sums=False)
@@ -325,6 +332,8 @@ class Book:
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+        self._last: tuple[sp.Expr, sp.Expr] = sp.nan, sp.nan
+        """The sides of the relation that was kept last."""
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
     @asked
@@ -408,12 +417,10 @@ class Book:
         self, lhs: sp.Expr = None, rhs: sp.Expr | int = None, *, table: Table | None = None
     ) -> Derivation:
         """End the proof with a relation that one of its steps established: the last one, if none is given."""
-        if lhs is None and self._steps and (last := self._steps[-1].claim):
-            lhs, rhs = last.lhs, last.rhs
-        key = sp.sympify(lhs), sp.sympify(rhs)
+        key = self._last if lhs is None else (sp.sympify(lhs), sp.sympify(rhs))
         result = self._known.get(key)
         if result is None:
-            raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
+            raise StepError(f"{self.label}: no step established {key[0]} and {key[1]}")
         steps = self._stated()
         new = letters(self.label, self._section)
         cited = {step.source for step in steps} | set(self._declared)
@@ -441,7 +448,9 @@ class Book:
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
         known = self._conditions
-        if check == "equal" and lhs == rhs:  # what the page shows, as it was read back
+        if check == "equal" and _bare(lhs) == _bare(
+            rhs
+        ):  # what the page shows, as it was read back
             lhs, rhs = self._read.get("left", lhs), self._read.get("right", rhs)
         sides = sp.sympify(lhs), sp.sympify(rhs)
         return Claim(check, *sides, arguments, rules, known.positive, known.intervals)
@@ -504,6 +513,7 @@ class Book:
         key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
         self._steps.append(step)
         self._known[key] = Fact(step, premises, self._conditions, domain)
+        self._last = key
         return self.done(*key)
 
     def _status(self) -> str:
@@ -516,17 +526,21 @@ class Book:
         words = ["argued"] if ARGUED in self._text else []
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
-    def _meant(self, argument: object, *, complex_too: bool = False) -> None:
+    def _meant(
+        self, argument: object, *, complex_too: bool = False, limits_too: bool = False
+    ) -> None:
         """Refuse what is no exact real value, and letters bound to places where they cannot be."""
         if isinstance(argument, tuple | list):
             for part in argument:
-                self._meant(part, complex_too=complex_too)
+                self._meant(part, complex_too=complex_too, limits_too=limits_too)
         if not isinstance(argument, sp.Basic) or not argument.args:
             return
         for node in sp.preorder_traversal(argument):
-            if isinstance(node, sp.Float | sp.Limit | sp.Order | sp.AccumBounds) or node in (
-                sp.zoo,
-                sp.nan,
+            inexact = isinstance(node, sp.Float | sp.Order | sp.AccumBounds)
+            if (
+                inexact
+                or node in (sp.zoo, sp.nan)
+                or (isinstance(node, sp.Limit) and not limits_too)
             ):
                 raise StepError(f"{self.label}: {node} is no exact value")
             if (
@@ -840,15 +854,18 @@ class Book:
                     raise StepError(
                         f"{self.label}: the notation {name} = {meaning} has another meaning here"
                     )
-            names |= {**CONSTANTS, **self.notation}
+            names |= {r"\pi": sp.pi, **CONSTANTS, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:
                 raise StepError(f"{self.label}: {error}") from error
+            if self._asked[0] == "equal" and len(links) == 1 and _bare(lhs) == _bare(rhs):
+                with sp.evaluate(False):  # all that the claim says is what is printed
+                    self._read[side] = read_chain(latex, names)[0]
             for link in links:
                 if link == expr:
                     continue
-                self._read[side] = link
+                self._read.setdefault(side, link)
                 read, checked = map(evaluated, map(self._resolve, (link, expr)))
                 if difference(read, checked) != 0:
                     raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
@@ -912,6 +929,7 @@ class Book:
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
         self._known[key] = fact
+        self._last = key
         if exact:
             self._exact[key] = fact
         return fact
@@ -930,4 +948,5 @@ class Book:
         self._steps.append(step)
         placed = Fact(step, fact.premises, fact.conditions, fact.domain)
         self._known[key] = self._exact[key] = placed
+        self._last = key
         self._origins[lhs] = placed

@@ -16,6 +16,7 @@ from functools import lru_cache
 
 import sympy as sp
 
+from .forms import derivative, expanded, factors, reduced, sign_of_terms
 from .points import signs
 
 Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
@@ -52,7 +53,7 @@ def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
 def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
     if -1 in signs(expr, known.intervals, known.positive):
         return False
-    if expr.is_nonnegative or _sign(expr, known) == 1:
+    if _known_sign(expr, strict=False) == 1 or _sign(expr, known) == 1:
         return True
     if expr.is_Add or expr.is_Mul:
         if all(proves_nonnegative(part, known) for part in expr.args):
@@ -101,9 +102,8 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
     seen = signs(expr, known.intervals, known.positive)
     if len(seen) == 2:
         return 0
-    if expr.is_positive or expr.is_negative:
-        return 1 if expr.is_positive else -1
-    sign = 0
+    if sign := _known_sign(expr):
+        return sign
     if isinstance(expr, (sp.sin, sp.cos)):
         sign = _sign_of_wave(expr, known)
     elif isinstance(expr, (sp.Min, sp.Max)):
@@ -120,7 +120,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
     sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
     if sign or not expr.free_symbols:
         return sign
-    factored = sp.factor(expr) if expr.is_Add and known.positive else expr
+    factored = sp.Mul(*factors(expr)) if expr.is_Add and known.positive else expr
     several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
     if factored != expr and several and (sign := _sign(factored, known)):
         return sign
@@ -163,7 +163,7 @@ def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> b
     for wave in sorted(expr.atoms(sp.sin, sp.cos), key=str):
         name = sp.Dummy(real=True)
         named = expr.xreplace({wave: name})
-        slope = sp.diff(named, name)
+        slope = derivative(named, name)
         if wave.is_real and not slope.has(name) and not named.atoms(sp.sin, sp.cos):
             return all(proves(named.subs(name, end), known) for end in (-1, 1))
     return False
@@ -208,7 +208,7 @@ def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
     kinds = (sp.exp, sp.log, sp.sin, sp.cos, sp.atan)
     if not (letter.is_positive and expr.has(*kinds)) or letter.is_integer:
         return False
-    slope = sp.expand(sp.diff(expr, letter))
+    slope = expanded(derivative(expr, letter))
     if slope == 0 or not is_continuous(expr, (letter, 0, sp.oo), NONE, smooth=True):
         return False
     start = expr.subs(letter, 0)
@@ -227,14 +227,14 @@ def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
     if len(arcs) != 1 or expr.atoms(sp.Function) - {*arcs}:
         return False
     name = sp.Dummy()
-    constant, varying = sp.expand(expr).as_independent(letter, as_Add=True)
+    constant, varying = expanded(expr).as_independent(letter, as_Add=True)
     dropped = constant if constant.is_positive and not constant.is_Rational else 0
     share = sp.Poly((varying + constant - dropped).xreplace({arcs[0]: name}), name)
     size = next((each for each in (share.LC(), -share.LC()) if each.is_positive), None)
     if share.degree() != 1 or size is None:
         return False
     whole = share.LC() / size * arcs[0] + sp.cancel(share.coeff_monomial(1) / size)
-    slope = sp.factor(sp.together(sp.diff(whole, letter)))
+    slope = reduced(derivative(whole, letter))
     if not slope.is_rational_function(letter) or slope.is_number:
         return False
     end = {1: sp.S.Zero, -1: sp.oo}.get(_sign_by_roots(slope, NONE))
@@ -247,7 +247,7 @@ def _by_scale(expr: sp.Expr) -> int:
     if len(letters) != 2 or not expr.has(sp.atan) or not all(each.is_positive for each in letters):
         return 0
     one, other = letters
-    scaled = sp.factor(sp.expand(expr.subs(one, one * other)))
+    scaled = sp.Mul(*factors(expanded(expr.subs(one, one * other))))
     scale, rest = scaled.as_independent(one, as_Add=False)
     return _known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
 
@@ -256,7 +256,7 @@ def _by_coefficients(expr: sp.Expr) -> bool:
     """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
     for letter in sorted(expr.free_symbols, key=str):
         if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
-            found = sp.Poly(sp.expand(expr), letter).coeffs()
+            found = sp.Poly(expanded(expr), letter).coeffs()
             if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found):
                 return True
     return False
@@ -264,21 +264,29 @@ def _by_coefficients(expr: sp.Expr) -> bool:
 
 def _never_below(slope: sp.Expr, left: int) -> bool:
     """Tell whether a slope is never negative, after positive factors have been left out."""
-    forms = [slope, sp.factor(slope)]
+    forms = [slope, sp.Mul(*factors(slope))]
     forms.append(sp.Mul(*(part for part in sp.Mul.make_args(forms[1]) if not part.is_positive)))
     return any(
         _product_sign(form, strict=False) == 1
         or _by_ends(form, NONE, proves_nonnegative)
-        or _by_slope(sp.expand(form), left)
+        or _by_slope(expanded(form), left)
         for form in forms
     )
 
 
 def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
     """Return the sign that follows directly from the assumptions on the symbols."""
+    sign = sign_of_terms(expr, strict=strict)
+    made_of_parts = expr.is_Add or expr.is_Mul or (expr.is_Pow and expr.exp.is_Rational)
+    if sign or (made_of_parts and expr.free_symbols and not _has_integers(expr)):
+        return sign  # SymPy knows no more
     if expr.is_positive or (expr.is_nonnegative and not strict):
         return 1
     return -1 if expr.is_negative or (expr.is_nonpositive and not strict) else 0
+
+
+def _has_integers(expr: sp.Expr) -> bool:
+    return any(each.is_integer for each in expr.free_symbols)
 
 
 def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
@@ -341,7 +349,7 @@ def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr
     """Yield the expression with a name for something positive that it contains as it stands."""
     for form in _written(expr):
         changed = form.subs(positive, name)
-        changed = changed.subs(sp.expand(positive), name).subs(sp.expand(-positive), -name)
+        changed = changed.subs(expanded(positive), name).subs(expanded(-positive), -name)
         if changed != form:
             yield changed
 
@@ -349,8 +357,7 @@ def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr
 @lru_cache(maxsize=4096)
 def _written(expr: sp.Expr) -> tuple[sp.Expr, ...]:
     """Return an expression as one fraction, as a product, and as it stands."""
-    top, bottom = sp.fraction(sp.together(expr))
-    return sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr
+    return reduced(expr), sp.Mul(*factors(expr)), expr
 
 
 def _solved(
@@ -373,27 +380,8 @@ def _solved(
 @lru_cache(maxsize=8192)
 def linear(expr: sp.Expr, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return slope and rest of what is linear in a symbol, else zero and the expression."""
-    slope = sp.diff(expr, symbol)
-    return (sp.S.Zero, expr) if slope.has(symbol) else (slope, sp.expand(expr - slope * symbol))
-
-
-@lru_cache(maxsize=8192)
-def _factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Return the factors of the numerator and of the denominator."""
-    parts = sp.fraction(sp.together(expr))
-    return tuple(factor for part in parts for factor in sp.Mul.make_args(_factored(part)))
-
-
-def _factored(expr: sp.Expr) -> sp.Expr:
-    """Factor what is not simple already."""
-    if expr.is_Atom:
-        return expr
-    # Sums of positive terms need no factors: their sign is known as they stand, or multiplied out.
-    if -1 not in signs(expr):
-        for form in (expr, sp.expand(expr)):
-            if form.is_positive:
-                return form
-    return sp.factor(expr)
+    slope = derivative(expr, symbol)
+    return (sp.S.Zero, expr) if slope.has(symbol) else (slope, expanded(expr - slope * symbol))
 
 
 @lru_cache(maxsize=8192)
@@ -405,7 +393,7 @@ def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
     if len(signs(expr)) == 2:
         return 0
     sign = 1
-    for factor in _factors(expr):
+    for factor in factors(expr):
         base, power = factor.as_base_exp()
         even = bool(power.is_Integer and power % 2 == 0)
         base = base if power.is_Integer else factor
@@ -419,18 +407,18 @@ def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
 
 @lru_cache(maxsize=8192)
 def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
-    expanded = sp.expand(factor)
-    sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
-    if sign or not expanded.is_Add:
+    whole = expanded(factor)
+    sign = _known_sign(factor, strict=strict) or _known_sign(whole, strict=strict)
+    if sign or not whole.is_Add:
         return sign
-    seen = signs(expanded)
+    seen = signs(whole)
     if len(seen) == 2:
         return 0
     for side in _sides(seen):
-        if _outweighs(side * expanded, NONE):
+        if _outweighs(side * whole, NONE):
             return side
-    univariate = len(expanded.free_symbols) == 1 and expanded.is_polynomial()
-    return _sign_by_roots(expanded, NONE) if univariate else 0
+    univariate = len(whole.free_symbols) == 1 and whole.is_polynomial()
+    return _sign_by_roots(whole, NONE) if univariate else 0
 
 
 @lru_cache(maxsize=4096)
@@ -439,26 +427,34 @@ def _outweighs(total: sp.Expr, known: Conditions) -> bool:
 
     Roots are compared by their squares, exponentials by their exponents; a root with all other terms too.
     """
-    terms = sp.Add.make_args(sp.expand(total))
-    for root in (term for term in terms if term.is_Pow and term.is_positive and term.is_real):
-        rest = sp.expand(sum(terms) - root)
-        if rest.is_real and sp.expand(root**2 - rest**2).is_positive:
+    terms = sp.Add.make_args(expanded(total))
+    for root in (term for term in terms if term.is_Pow and _known_sign(term) == 1):
+        rest = expanded(sum(terms) - root)
+        if rest.is_real and _known_sign(expanded(root**2 - rest**2)) == 1:
             return True
-    plus = [term for term in terms if term.is_positive]
-    minus = [-term for term in terms if term.is_negative]
+    plus = [term for term in terms if _known_sign(term) == 1]
+    minus = [-term for term in terms if _known_sign(term) == -1]
     if len(plus) + len(minus) < len(terms) or not minus:
         return False
     for small in minus:
         for large in plus:
-            by_square = sp.expand(large**2 - small**2)
-            by_exponent = sp.expand(sp.expand_log(sp.log(large) - sp.log(small)))
-            if by_square.is_positive or by_exponent.is_positive or _is_share(small / large, known):
+            if (
+                _known_sign(expanded(large**2 - small**2)) == 1
+                or _is_smaller_power(small, large)
+                or _is_share(small / large, known)
+            ):
                 plus.remove(large)
                 break
         else:
-            rest = sp.expand(sum(plus) ** 2 - sum(minus) ** 2)
-            return len(minus) == 1 and bool(rest.is_positive)
+            rest = expanded(sum(plus) ** 2 - sum(minus) ** 2)
+            return len(minus) == 1 and _known_sign(rest) == 1
     return True
+
+
+def _is_smaller_power(small: sp.Expr, large: sp.Expr) -> bool:
+    """Tell whether the logarithm of a product says that it is smaller."""
+    gap = expanded(sp.expand_log(sp.log(large) - sp.log(small)))
+    return bool(gap.is_positive)
 
 
 def _is_share(ratio: sp.Expr, known: Conditions) -> bool:
@@ -534,7 +530,7 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
         return []
     if len(unknown) != 1 or unknown[0].is_Pow:
         return [] if proves_positive(expr, known) else [expr]
-    gap = sp.expand(sign * unknown[0])
+    gap = expanded(sign * unknown[0])
     base, exponent = sp.powsimp(1 - gap).as_base_exp()
     return [1 - base if base.is_positive and exponent.is_positive and base.is_Symbol else gap]
 

@@ -154,17 +154,11 @@ class _Reader:
             raise self._unknown()
 
     def _sum(self) -> sp.Expr:
-        total = sp.S.Zero
-        sign = 1
-        if self._take("-"):
-            sign = -1
-        else:
-            self._take("+")
-        total += sign * self._term()
+        negative = self._take("-") or (self._take("+") and False)
+        total = -self._term() if negative else self._term()
         while self._next() in ("+", "-"):
-            sign = -1 if self._next() == "-" else 1
-            self.place += 1
-            total += sign * self._term()
+            negative = self._take("-") or not self._take("+")
+            total += -self._term() if negative else self._term()
         return total
 
     def _term(self) -> sp.Expr:

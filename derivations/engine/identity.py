@@ -11,12 +11,12 @@ relations between generators are not known here, so that only the answer True is
 True
 """
 
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import sympy as sp
 from sympy.polys.rings import PolyElement, ring
 
-_LARGEST = 64
+LARGEST = 64
 """Higher powers are generators of their own: nothing here has them, and they would not end."""
 
 _Key = tuple[sp.Expr, sp.Expr]
@@ -26,11 +26,7 @@ _Key = tuple[sp.Expr, sp.Expr]
 @lru_cache(maxsize=4096)
 def vanishes(expr: sp.Expr) -> bool:
     """Tell whether an expression is proved to be zero wherever it is defined."""
-    keys: dict[_Key, None] = {}
-    _collect(expr, keys)
-    if not keys:
-        return bool(expr == 0)
-    polynomials = _Polynomials(tuple(keys))
+    polynomials = Polynomials.of(expr)
     try:
         top, bottom = map(polynomials.reduced, polynomials.fraction(expr))
     except ZeroDivisionError:
@@ -38,19 +34,31 @@ def vanishes(expr: sp.Expr) -> bool:
     return bool(top == 0 and bottom != 0)
 
 
+@lru_cache(maxsize=8192)
+def is_rational(expr: sp.Expr) -> bool:
+    """Tell whether only rational numbers and whole powers of symbols are in the expression.
+
+    Then a coefficient that vanishes is literally 0 once it has been expanded.
+    """
+    if expr.is_Add or expr.is_Mul:
+        return all(map(is_rational, expr.args))
+    if expr.is_Pow:
+        return bool(expr.exp.is_Integer) and is_rational(expr.base)
+    return bool(expr.is_Symbol or expr.is_Rational)
+
+
 def _power(expr: sp.Expr) -> tuple[_Key, int, int]:
     """Return g, k, m with expr = g**k b**m, where b is the base of the generator g."""
     base, exponent = expr.as_base_exp()
     if exponent.is_Rational:
-        if abs(exponent) > _LARGEST:
+        if abs(exponent) > LARGEST:
             return (expr, sp.S.One), 1, 0
         key = base, sp.Rational(1, exponent.q)
         return (key, int(exponent), 0) if exponent.q == 1 else (key, *_split(exponent))
-    whole, rest = exponent.as_coeff_Add()
-    number, rest = rest.as_coeff_Mul()
-    if not (whole.is_Integer and number.is_Rational) or max(abs(whole), abs(number.p)) > _LARGEST:
+    number, rest = exponent.as_coeff_Mul()
+    if not number.is_Rational or abs(number.p) > LARGEST:
         return (expr, sp.S.One), 1, 0
-    return (_lowest_terms(base), rest / number.q), int(number.p), int(whole)
+    return (_lowest_terms(base), rest / number.q), int(number.p), 0
 
 
 def _split(exponent: sp.Rational) -> tuple[int, int]:
@@ -65,7 +73,13 @@ def _lowest_terms(base: sp.Expr) -> sp.Expr:
 
 
 def _whole(expr: sp.Expr) -> bool:
-    return bool(expr.is_Pow and expr.exp.is_Integer and abs(expr.exp) <= _LARGEST)
+    return bool(expr.is_Pow and expr.exp.is_Integer and abs(expr.exp) <= LARGEST)
+
+
+def _parts(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Return the factors of a power whose exponent is a sum: b**(x + y) = b**x b**y."""
+    base, exponent = expr.as_base_exp()
+    return tuple(base**term for term in exponent.args) if exponent.is_Add else ()
 
 
 def _collect(expr: sp.Expr, keys: dict[_Key, None]) -> None:
@@ -77,6 +91,9 @@ def _collect(expr: sp.Expr, keys: dict[_Key, None]) -> None:
             _collect(arg, keys)
     elif _whole(expr):
         _collect(expr.base, keys)
+    elif parts := _parts(expr):
+        for part in parts:
+            _collect(part, keys)
     else:
         key, _, whole = _power(expr)
         known = key in keys
@@ -89,19 +106,27 @@ def _is_root(key: _Key) -> bool:
     return bool(key[1].is_Rational and key[1] != 1)
 
 
-class _Polynomials:
+class Polynomials:
     """The ring, and what the expressions are in it: fractions of two polynomials."""
 
     def __init__(self, keys: tuple[_Key, ...]) -> None:
         self._ring, *places = ring([f"g{place}" for place in range(len(keys))], sp.QQ)
         self._places = dict(zip(keys, places, strict=True))
+        self._generators = [base**exponent for base, exponent in keys]
         # A root in a root comes after the one that contains it.
         self._roots = sorted(filter(_is_root, keys), key=lambda key: -key[0].count_ops())
+
+    @classmethod
+    def of(cls, expr: sp.Expr) -> "Polynomials":
+        """Return the ring of the generators of an expression."""
+        keys: dict[_Key, None] = {}
+        _collect(expr, keys)
+        return cls(tuple(keys))
 
     def fraction(self, expr: sp.Expr) -> tuple[PolyElement, PolyElement]:
         """Return numerator and denominator."""
         if expr.is_Rational:
-            return self._ring(sp.QQ(expr.p, expr.q)), self._ring(1)
+            return self.number(expr), self._ring(1)
         if expr.is_Add or expr.is_Mul:
             join = _sum if expr.is_Add else _product
             found = self.fraction(expr.args[0])
@@ -110,9 +135,27 @@ class _Polynomials:
             return found
         if _whole(expr):
             return _raised(self.fraction(expr.base), int(expr.exp))
+        if parts := _parts(expr):
+            return reduce(_product, map(self.fraction, parts))
         key, power, whole = _power(expr)
         found = _raised((self._places[key], self._ring(1)), power)
         return _product(found, _raised(self.fraction(key[0]), whole)) if whole else found
+
+    def number(self, number: sp.Rational) -> PolyElement:
+        """Return a number as a polynomial."""
+        return self._ring(sp.QQ(number.p, number.q))
+
+    def generator(self, letter: sp.Expr) -> PolyElement:
+        """Return the generator of a letter."""
+        return self._places[letter, sp.S.One]
+
+    def expression(self, polynomial: PolyElement) -> sp.Expr:
+        """Return a polynomial as an expression."""
+        return sp.Add(*(
+            sp.Mul(sp.Rational(int(factor.numerator), int(factor.denominator)),
+                   *(each**power for each, power in zip(self._generators, powers, strict=True) if power))
+            for powers, factor in polynomial.terms()
+        ))  # fmt: skip
 
     def reduced(self, polynomial: PolyElement) -> PolyElement:
         """Put the base for the powers of a root, up to a factor that is not zero."""

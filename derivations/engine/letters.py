@@ -101,6 +101,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "element-kink": {"u": "u", r"\hat p": r"\bar p"},
     "element-trapezoids": {"u": "u"},
     "element-stability": {
+        "m": r"\hat m",
         "w": r"\varpi",
         "c": "c_1",
         "x": r"\tilde x",

@@ -16,6 +16,7 @@ from .conditions import (
     proves_positive,
     proves_real,
 )
+from .forms import derivative, expanded
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def only_root(
     if not proves_nonzero(bottom, known) and difference(bottom, sp.S.Zero) == 0:
         raise UndecidedError(f"{expr} is not defined there")
     numerator = _without_bars(numerator, x)
-    numerator, x, value, domain = _without_roots(sp.expand(numerator), x, value, domain)
+    numerator, x, value, domain = _without_roots(expanded(numerator), x, value, domain)
     if not numerator.is_polynomial(x) and _by_monotony(numerator, x, value, domain, known):
         return
     if not numerator.is_polynomial(x):
@@ -112,7 +113,7 @@ def _by_monotony(
             if _zeros_of_wave(factor, there, domain) not in ({value}, set()):
                 return False
             continue
-        rising = proves_nonzero(sp.diff(factor, there), known.with_interval(over))
+        rising = proves_nonzero(derivative(factor, there), known.with_interval(over))
         at_root = difference(factor.subs(there, value), sp.S.Zero) == 0
         if not (rising and at_root and is_continuous(factor, over, known)):
             return False

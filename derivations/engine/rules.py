@@ -10,13 +10,11 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from .forms import Computed, carried_out
+
 Rules = Mapping[sp.Expr, sp.Expr]
 Dependences = Mapping[sp.Expr, frozenset[sp.Expr]]
 """What a name depends on by premises that are no rules here: its value must not be differentiated."""
-
-
-class Computed(sp.Expr):
-    """An expression that is printed as it stands and evaluated by `doit` in a check."""
 
 
 class HiddenError(ValueError):
@@ -50,7 +48,7 @@ def _resolved(
     while after != before:
         before, after = after, rewriter.rewrite(after)
         if after.has(sp.Derivative, sp.Subs, Computed):
-            after = after.doit(integrals=False, sums=False)
+            after = carried_out(after)
         elif all(lhs.is_Symbol for lhs, _ in rules):  # then nothing that was put in is a left side
             break
     return after, frozenset(rewriter.used), frozenset(rewriter.derived)
@@ -94,7 +92,7 @@ class _Rewriter:
         parts = [self.rewrite(part) for part in expr.args]
         new = expr.func(*parts) if parts != list(expr.args) else expr
         for lhs, rhs in self._compound.items():
-            replaced = new.subs(lhs, rhs)
+            replaced = new.subs(lhs, rhs) if new.free_symbols >= lhs.free_symbols else new
             if replaced != new:
                 self.used.add(lhs)
                 new = replaced

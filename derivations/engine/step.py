@@ -20,10 +20,12 @@ from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
 from .algebra import (
+    DISTANCE,
     UndecidedError,
     difference,
     is_continuous,
     leading_term,
+    limit_at,
     next_order,
     roots_between,
     sign_between,
@@ -76,11 +78,39 @@ class Proof(Guarded):
         """Prove an identity: wherever one side is defined, so is the other, and they are equal.
 
         With `cases` it is proved in each of them, and they are its domain: one of them must hold.
+        A limit is that from the side which it names, and exists; later proofs cannot recall it.
         """
+        limits = any(sp.sympify(side).has(sp.Limit) for side in (lhs, rhs))
         for case in cases or (sp.true,):
             with self._case(case):
-                self._identical(lhs, rhs)
-        self._record(lhs, "=", rhs, reason, "proved", shown, exact=not cases, cases=cases)
+                self._identical(*map(self._without_limits, (lhs, rhs)))
+        exact = not cases and not limits
+        self._record(lhs, "=", rhs, reason, "proved", shown, exact=exact, cases=cases)
+
+    def _without_limits(self, expr: sp.Expr) -> sp.Expr:
+        """Put in the values of limits, whose own variable no rule may touch."""
+        expr = sp.sympify(expr)
+        around = expr.atoms(sp.Limit, sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
+        if any(part.has(sp.Limit) for node in around for part in node.args):
+            raise StepError(
+                f"{self.label}: {expr} has a limit within a limit, integral or derivative"
+            )
+        return expr.xreplace({node: self._limit(*node.args) for node in expr.atoms(sp.Limit)})
+
+    def _limit(
+        self, expr: sp.Expr, variable: sp.Symbol, point: sp.Expr, direction: sp.Symbol
+    ) -> sp.Expr:
+        whole, point = self._resolve_free(expr, variable), self._resolve(point)
+        infinite = point == sp.oo
+        found = []
+        for side in (-1,) if infinite else {"+": (1,), "-": (-1,)}.get(str(direction), (1, -1)):
+            place = 1 / DISTANCE if infinite else point + side * DISTANCE
+            if variable.is_integer or self._open_admissions(variable, place):
+                raise StepError(f"{self.label}: {variable} does not reach {point} from this side")
+            found.append(limit_at(whole, variable, point, side, self._conditions))
+        if difference(found[0], found[-1]) != 0:
+            raise StepError(f"{self.label}: {expr} has another limit on each side of {point}")
+        return found[0]
 
     def _identical(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
         claim = Said(lhs, "=", rhs)
@@ -430,7 +460,9 @@ class Proof(Guarded):
             _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
-            shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
+            series = _series(c, eps, k)
+            self._displayed(1 + c * eps**k, sp.S.Zero, {"left": series})
+            shown["right"] = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
         self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True,
                      note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
         return c, k
@@ -471,9 +503,19 @@ def _reach(variable: sp.Expr) -> str:
     return tex_interval((variable, domain.low, domain.high))
 
 
-def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:
-    """Print 1 + c eps**k + O(eps**rest)."""
-    term = (sp.factor(c) if c.free_symbols else c) * eps**k
-    negative = term.could_extract_minus_sign()
-    signed = f"- {tex(-term)}" if negative else f"+ {tex(term)}"
-    return rf"\left(1 {signed} + O\left({tex(eps**rest)}\right)\right)"
+def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr) -> str:
+    r"""Print 1 + c eps**k.
+
+    >>> q = sp.Symbol("q")
+    >>> _series(sp.Rational(3, 2), 1 - q, sp.S.One), _series(-sp.S.One, 1 - q, sp.S.One)
+    ('1 + \\frac{3 \\left(1 - q\\right)}{2}', '1 - \\left(1 - q\\right)')
+    """
+    size = sp.factor(c) if c.free_symbols else c
+    negative = size.could_extract_minus_sign()
+    size = -size if negative else size
+    power = eps**k
+    # SymPy would multiply a number into a sum.
+    spread = size.is_Number and power.is_Add and size != 1
+    term = sp.Mul(size, power, evaluate=not spread)
+    shown = rf"\left({tex(term)}\right)" if term.is_Add else tex(term)
+    return f"1 {'-' if negative else '+'} {shown}"

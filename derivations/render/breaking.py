@@ -30,6 +30,8 @@ _TOKEN = re.compile(
     re.S,
 )
 _GROUP = {"open": 1, "close": -1, "begin": 1, "end": -1}
+_BEGINNING = re.compile(r"\s*(?:[=<>]|\\(?:le|ge|lt|gt|to|sim|approx|equiv|iff))?\s*")
+"""What stands before the first term."""
 _FENCED = re.compile(r"\\(left|right)(?![a-z])")
 
 
@@ -97,6 +99,20 @@ def lines(latex: str, most: float) -> list[str]:
     return broken if all(map(_balanced, broken)) else [latex]
 
 
+def cut_at_signs(link: str, most: float) -> list[str]:
+    r"""Cut one side of a relation before its signs outside brackets, if it is wider than `most`.
+
+    >>> cut_at_signs(r"\le - a + \left(b + c\right) (d - e)", 3), cut_at_signs("a + b", 9)
+    (['\\le - a', '+ \\left(b + c\\right) (d - e)'], ['a + b'])
+    """
+    cuts = _cuts(link, "sign") if width(link) > most else []
+    cuts = [
+        cut for cut in cuts
+        if len(re.findall(r"[(\[]", link[:cut])) == len(re.findall(r"[)\]]", link[:cut]))
+    ]  # fmt: skip
+    return [link[start:end].strip() for start, end in pairwise([0, *cuts, len(link)])]
+
+
 def _balanced(row: str) -> bool:
     r"""Tell whether a row closes the braces and fences that it opens."""
     fences = [match[1] for match in _FENCED.finditer(row)]
@@ -155,7 +171,7 @@ def _cuts(link: str, kind: str) -> list[int]:
         token = _TOKEN.match(link, position)
         if token is None:
             break
-        at_top = depth == 0 and position > 0 and link[:position].strip() not in {"", "="}
+        at_top = depth == 0 and not _BEGINNING.fullmatch(link, 0, position)
         if fence:
             if fence[1] == "left" and kind == "fence" and at_top:
                 found.append(position)

@@ -8,6 +8,7 @@ from latex2mathml.converter import convert
 
 from ..engine.record import Calculation, Derivation, Table
 from . import frame
+from .breaking import cut_at_signs
 from .edition import Edition
 from .pdf import RenderError
 from .style import STYLE
@@ -52,6 +53,8 @@ _CORRECTIONS = (
 )
 """What latex2mathml writes, and its correction."""
 
+_NARROW = 18
+"""Width in em of a formula that fits on a telephone."""
 _PUNCTUATED = re.compile(r"(<math(?:(?!</math>).)*</math>[.,;:)]+)")
 """A formula and the punctuation that must stay on its line."""
 
@@ -181,7 +184,7 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     if isinstance(block, Given):
         return f'<li class="given">{_printed(sentence(block, labels))}</li>'
     shown = f'<span class="number">({block.tag})</span>' if block.tag else ""
-    chain = "".join(mathml(each, "block") for each in relations(block.step.latex))
+    chain = _chain(block.step.latex)
     return (
         f'<li class="{"result" if block.tag else "step"}">'
         f'<div class="line"><div class="scroll">{chain}</div>'
@@ -190,11 +193,22 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     )
 
 
+def _chain(latex: str) -> str:
+    """Return a relation in pieces, between which a browser may break the line."""
+    shown = []
+    for link in relations(latex):
+        first, *rest = cut_at_signs(link, _NARROW)
+        shown.append(mathml(first, "block"))
+        # Else a sign at the beginning would be that of a number, without space about it.
+        shown += [mathml(each, "block").replace("<mo>", '<mo form="infix">', 1) for each in rest]
+    return "".join(shown)
+
+
 def _numbers(numbers: Sequence[Calculation], labels: Collection[str]) -> str:
     """Return the closed forms with the numbers of a scene."""
     lines = "".join(
         f'<li class="step"><div class="line"><div class="scroll">'
-        f"{''.join(mathml(link, 'block') for link in relations(calculation(each)))}</div>"
+        f"{_chain(calculation(each))}</div>"
         f'<p class="reason"><span>{_text(each.note, labels)}</span></p></div></li>'
         for each in numbers
     )

@@ -191,10 +191,11 @@ def tabular(
     )
     rows = [" & ".join(words(cell, labels) for cell in row) + r" \\" for row in table.rows]
     heads = " & ".join(rf"\textbf{{{words(head, labels)}}}" for head in table.heads)
-    repeat = r"\endhead" if environment == "longtable" else ""
+    long = environment == "longtable"
+    repeat, style = (r"\endhead", "") if long else ("", r"\everymath{\displaystyle}")
     return "\n".join(
         [
-            rf"\par{{\small\renewcommand{{\arraystretch}}{{{stretch}}}\everymath{{\displaystyle}}",
+            rf"\par{{\small\renewcommand{{\arraystretch}}{{{stretch}}}{style}",
             rf"\begin{{{environment}}}{{@{{}}{columns}@{{}}}}",
             rf"\hline {heads} \\ \hline{repeat}",
             *rows,

@@ -1,12 +1,18 @@
 """Which asymptote holds, and how wrong it is: `asymptotes`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import method_for
+from kvtheory.models.steady.methods import METHODS
 from kvtheory.results import AsymptoteReport
+from kvtheory.results.presented import with_unit
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
+from kvtheory.scene.foundations import EXTRAPOLATED, extrapolates
 from kvtheory.scene.model import Scene
 
 MINIMUM_TOLERANCE = 1e-10
@@ -70,4 +76,17 @@ def asymptotes(
 
     with double_precision(scene):
         found = maxima.report(scene, method)
-        return regimes.report(scene, tolerance, found, method)
+        report = regimes.report(scene, tolerance, found, method)
+        return replace(report, notes=(*report.notes, *_extrapolated(scene, report, method)))
+
+
+def _extrapolated(scene: Scene, report: AsymptoteReport, method: str) -> list[str]:
+    """Return a note on the maxima at which V/c is outside the frequencies of the measured foundation."""
+    foundation, places = scene.foundation, []
+    for V, _ in report.maxima if foundation.lowest_frequency is not None else ():
+        # NaN for scenes of an array with fewer maxima
+        state = METHODS[method](scene.at(np.where(np.isnan(V), 1.0, V)[()]))
+        if extrapolates(foundation, V, state.trailing_edge - state.leading_edge):
+            places.append(with_unit(V, "m/s"))
+    told = f"At the friction maximum at V = {'; '.join(places)}, V/c is {EXTRAPOLATED}."
+    return [told] if places else []

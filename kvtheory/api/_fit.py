@@ -3,32 +3,36 @@
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from kvtheory.api._compare import METHODS
 from kvtheory.api._edge import one_scene
 from kvtheory.api._solve import solve as cheapest
 from kvtheory.api._steady import method_for
-from kvtheory.api._transient import transient
-from kvtheory.models.steady.methods import METHODS
+from kvtheory.models.steady.methods import METHODS as STEADY
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, units_for
 from kvtheory.results.fits import FrictionFit, Parameter, WeighedModel
 from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names
-from kvtheory.scene.capabilities import lacks_arms, lacks_transient, require
+from kvtheory.scene.capabilities import (
+    lacks_arms,
+    lacks_quadratic_on_arms,
+    lacks_transient,
+    require,
+)
 from kvtheory.scene.foundations import MEASURED_RANGE
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
+SIMULATED = 1e-3
+"""Tolerance of a transient that only elements give."""
 NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED_RANGE)
 """Quantities that no measured friction tells."""
-FINE, COARSE = 1e-7, 1e-3
-"""Tolerances of the transient and of a model that is slower."""
 
 
 @checked(scene=a_scene, free=names, models=flag, progress=callback)
@@ -105,7 +109,7 @@ def fit(
     if not given or any(each is None for each in given):
         told = "missing; expected a file or arrays with velocity and friction coefficient"
         raise ValueError(f"`data`: {told}, or time and forces")
-    solve = METHODS[method_for(scene, None)]
+    solve = STEADY[method_for(scene, None)]
     if models == bool(list(free)):
         told = "expected the keys of free quantities, or `models`"
         raise ValueError(f"`free`: {told}, which frees all of the foundation")
@@ -137,8 +141,10 @@ def fit(
             if models and lacks_arms(each):
                 continue
             require(lacks_arms, each, "a time series")
-        law = METHODS[method_for(each, None)] if models else solve
-        problem = friction.Problem(each, keys, sets, law, _followed)
+        law = STEADY[method_for(each, None)] if models else solve
+        problem = friction.Problem(
+            each, keys, sets, law, _followed, precise=not lacks_transient(each)
+        )
         best = friction.solve(problem, report=report)
         found[name] = *best, friction.information(*best)
     least = min(each[2] for each in found.values())
@@ -150,13 +156,13 @@ def fit(
     name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
-    errors = np.sqrt(np.diag(best.covariance))
-    scale = np.outer(errors, errors)
+    limits = friction.intervals(problem, best)
+    scale = np.sqrt(np.outer(*[np.diag(best.covariance)] * 2))
     return FrictionFit(
         parameters={
             key: Parameter(value, float(value * error), tuple(np.exp(ends).tolist()))
             for key, value, error, ends in zip(
-                problem.keys, values, errors, friction.intervals(problem, best), strict=True
+                problem.keys, values, friction.standard_errors(best, limits), limits, strict=True
             )
         },
         correlations=tuple(map(tuple, (best.covariance / np.where(scale > 0.0, scale, 1.0)).tolist())),
@@ -189,17 +195,16 @@ def _misfit(problem: Any, point: Any) -> float:
     return math.sqrt(float(np.mean(np.concatenate(problem.columns(point[None]), axis=1) ** 2)))
 
 
-def _followed(scene: Scene, time: Any) -> Any:
-    """Return a transient at times (s): by the continuum if it holds, else by the cheapest model."""
-    if lacks_transient(scene):
-        found: Any = cheapest(scene, at=time, rtol=COARSE)
+def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
+    """Return the transient at times (s) within a tolerance, with the friction coefficient."""
+    if lacks_quadratic_on_arms(scene):
+        series = cheapest(scene, at=time, rtol=SIMULATED)
+        found = {name: getattr(series, name) for name in SERIES_UNITS if hasattr(series, name)}
     else:
-        found = transient(scene, at=time, rtol=FINE, certify=False)
-    series = {name: getattr(found, name, None) for name in SERIES_UNITS}
+        found = dict(METHODS.transient(scene, time, rtol))
     with np.errstate(all="ignore"):
-        return SimpleNamespace(
-            **series, friction_coefficient=found.friction_force / found.normal_force
-        )
+        found["friction_coefficient"] = found["friction_force"] / found["normal_force"]
+    return found
 
 
 def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:

@@ -19,8 +19,9 @@ from kvtheory.scene.quantities import quantities
 LAYER = quantities(GeneralizedMaxwell)
 DIGITS = 6
 """Significant digits of a fitted number."""
-STEPS = 60
-"""Steps of V <- f c(V): c falls so slowly with V that each divides the error by more than two."""
+STEPS, PRECISE = 60, 1e-9
+"""Steps of V <- f c(V) at most, and the relative change that ends them: c falls so slowly with V that each
+divides the error by more than two."""
 
 
 @checked(
@@ -192,7 +193,9 @@ def _velocities(scene: Scene, ends: Any) -> tuple[float, float] | None:
         for _ in range(STEPS):
             with double_precision(scene):
                 state = solve(scene.at(V))
-            V = np.asarray(ends) / factor * (state.trailing_edge - state.leading_edge)
+            last, V = V, np.asarray(ends) / factor * (state.trailing_edge - state.leading_edge)
+            if np.allclose(V, last, rtol=PRECISE, atol=0.0):
+                break
     except (ValueError, ArithmeticError):
         return None
     return _rounded(V[0]), _rounded(V[1])

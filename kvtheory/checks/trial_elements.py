@@ -9,6 +9,7 @@ with the models.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -261,17 +262,16 @@ def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
     return arms[:, 0, None, None, None], arms[:, 1, None, None, None]
 
 
-def instants(theory: Theory, end: float) -> Array:
+def instants(scene: Scene, motion: Any, end: float) -> Array:
     """Return the ends of the steps, short ones after each change of the drive, whose time comes twice."""
-    scene = theory.scene
-    length = theory.static.half_length / COLUMNS[not scene.indenter.per_width]
+    length = StaticState.of(scene).half_length / COLUMNS[not scene.indenter.per_width]
     longest = end / FEWEST_STEPS
-    if theory.motion.highest_speed:
-        longest = min(longest, PASSED * length / theory.motion.highest_speed)
+    if motion.highest_speed:
+        longest = min(longest, PASSED * length / motion.highest_speed)
     if not scene.drive.rigid:
         longest = min(longest, OSCILLATION * math.sqrt(scene.drive_mass / scene.drive.stiffness))
     first = longest * FINEST * GROWTH ** np.arange(math.ceil(-math.log(FINEST) / math.log(GROWTH)))
-    changes = sorted({0.0, *(t for t in theory.motion.changes if 0.0 < t < end)})
+    changes = sorted({0.0, *(t for t in motion.changes if 0.0 < t < end)})
     found: list[float] = []
     for start, stop in pairwise([*changes, end]):
         ramp = start + np.cumsum(first)
@@ -280,12 +280,16 @@ def instants(theory: Theory, end: float) -> Array:
     return np.array(found[:LONGEST_RUN])
 
 
-def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, dict[str, Array]]:
+@lru_cache(maxsize=8)
+def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, dict[str, Array]]:
     """Return times, and each curve as an array (times, rules), of simulations up to a time in s.
 
-    A step is one Newton step of the trapezoidal rule, from the rates before it.
+    A step is one Newton step of the trapezoidal rule, from the rates before it. The last results are
+    kept: one scene is often compared with several simulations.
     """
-    scene, static, motion, times = theory.scene, theory.static, theory.motion, instants(theory, end)
+    static = StaticState.of(scene)
+    motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
+    times = instants(scene, motion, end)
     reach, drive, held, M = WINDOW * static.half_length, scene.drive, scene.held, scene.support.mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
     swing = 0.0 if drive.rigid else SWING * static.half_length
@@ -319,7 +323,7 @@ def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, 
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
-        if h > 0.0:
+        if h > 0.0 and (k_x or not held):
             sunk, shift, found = at(h)
             if not held:
                 a = IMPLICIT * lift(sunk, rate, found) + (1.0 - IMPLICIT) * lifted
@@ -347,7 +351,7 @@ def simulate(theory: Theory, rules: Sequence[Rule], end: float) -> tuple[Array, 
 def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:
     """Return by rule what it changes in each curve at times (s)."""
     with np.errstate(all="ignore"):  # a wrong rule may diverge
-        grid, found = simulate(theory, [Rule(), *rules], float(times[-1]))
+        grid, found = simulate(theory.scene, (Rule(), *rules), float(times[-1]))
     off = [{name: values[:, k] - values[:, 0] for name, values in found.items()}
            for k in range(1, len(rules) + 1)]  # fmt: skip
     moving = (times >= 0.0) & (times <= 2.0 * grid[-1])

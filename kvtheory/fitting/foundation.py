@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from kvtheory.fitting import moduli, shifting
 from kvtheory.fitting.shifting import Law, Shifted
-from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, refined, rms
+from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
 
 CONFIDENCE = 0.95
 """Probability with which the scatter of the data alone makes the sum of squares as large as is allowed."""
@@ -66,8 +66,12 @@ def fit(
         notes.append(
             f"{whole.x.size:,} values were averaged to {thin.x.size:,}; misfits are of these."
         )
-    start, least = best(thin)
-    series = arms_of(thin, start, arms, _target(thin, start, least, rtol))
+    spectrum, least = best(thin)
+    start, target = clustered(thin, spectrum), 0.0
+    if arms is None:
+        start = refined(thin, start)
+        target = _target(thin, start, least, rtol)
+    series = arms_of(thin, start, arms, target)
     if series.modulus.sum() <= UNRELAXED * series.relaxed:
         told = "the moduli do not relax: no series with arms above 0 is closer than a constant"
         raise ValueError(f"{measured.source}: {told}")
@@ -76,7 +80,7 @@ def fit(
         notes.append("The data show no relaxed modulus: the slowest arm was taken as the spring.")
     if arms is not None and series.time.size < arms:
         notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
-    notes += _inconsistent(thin, series if series.time.size > start.time.size else start, least)
+    notes += _inconsistent(thin, spectrum, least)
     return Fitted(measured, thin, series, least, master, law, tuple(notes))
 
 

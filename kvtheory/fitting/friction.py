@@ -10,7 +10,7 @@ much above its minimum as linear theory predicts at the standard errors that hol
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 from scipy.stats import qmc
 
-from kvtheory.fitting.least_squares import Fit, covariance, descend, slopes
+from kvtheory.fitting.least_squares import Fit, covariance, descend, slopes, updated
 from kvtheory.fitting.records import FRICTION, Data
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
@@ -28,8 +28,8 @@ from kvtheory.scene.quantities import as_given, given
 Array = NDArray[np.float64]
 Solve = Callable[[Scene], Any]
 """Returns steady sliding of the scenes of arrays."""
-Follow = Callable[[Scene, Array], Any]
-"""Returns the transient of one scene at times (s)."""
+Follow = Callable[[Scene, Array, float], Mapping[str, Any]]
+"""Returns the transient of one scene by name, at times (s), within a tolerance."""
 Report = Callable[[float], Any]
 
 STIFF = "foundation.stiffness", "foundation.modulus"
@@ -47,15 +47,19 @@ FREE = 1e3
 """Factor beyond these ranges to which an unknown may go."""
 ORDER = 0.05, 1.0
 """Range of the order of a springpot."""
-TRIED, SOME = {False: (6, 8, 10), True: (4, 6, 7)}, 16
+TRIED, SOME = {False: (6, 8, 10), True: (4, 5, 7)}, 16
 """Points that are tried for one, two and more unknowns (as powers of two), of steady sliding and of a time
 series, and rows of the data at most."""
-ROUNDS = {False: ((32, 6), (12, 10), (4, 15), (1, 200)), True: ((6, 4), (2, 8), (1, 40))}
+ROUNDS = {False: ((32, 6), (12, 10), (4, 15), (1, 200)), True: ((3, 6), (1, 12), (1, 40))}
 """How many of the best points are refined, and by how many steps, in each round; likewise."""
-REWEIGHED = 3
-"""Times that columns are weighed by their scatter."""
-STEP = {False: 1e-5, True: 1e-3}
-"""Change of ln of an unknown for slopes: the transient has errors of about 1e-7."""
+REWEIGHED, SAME = 3, 0.05
+"""Times that columns are weighed by their scatter at most, and relative change of weights that ends it."""
+FINE, COARSE = 1e-7, 1e-3
+"""Tolerances of the transient for the result, and for the search or where theory is less precise."""
+STEP = {0.0: 1e-5, FINE: 1e-3, COARSE: 3e-2}
+"""Change of ln of an unknown for slopes, by the tolerance of theory; 0 is steady sliding."""
+PRECISION = {0.0: 0.0, FINE: 1e-6, COARSE: 1e-3}
+"""Step of ln of an unknown at which a descent ends, likewise."""
 MOST_ARMS = 3
 """Most arms of the models that are weighed: friction over velocity tells hardly more."""
 SHAPED = "retardation_time", "order"
@@ -73,7 +77,11 @@ rise of the sum of squares there, and the relative change of a diagonal that kee
 
 @dataclass(frozen=True)
 class Problem:
-    """A scene, its free quantities, the data, and the theory; `weights` multiply the residuals."""
+    """A scene, its free quantities, the data, and the theory; `weights` multiply the residuals.
+
+    `precise` tells whether `follow` keeps to fine tolerances, `rough` that coarse ones suffice. `memory`
+    holds the transients by data set and unknowns.
+    """
 
     scene: Scene
     keys: tuple[str, ...]
@@ -81,45 +89,69 @@ class Problem:
     solve: Solve
     follow: Follow | None = None
     weights: Any = 1.0
+    precise: bool = True
+    rough: bool = False
+    memory: dict[Any, dict[str, Array]] = field(default_factory=dict, compare=False)
 
     @cached_property
+    def rtol(self) -> float:
+        """The tolerance of the transient; 0 where there is no time series."""
+        if all(data.time is None for data in self.data):
+            return 0.0
+        return COARSE if self.rough or not self.precise else FINE
+
+    @property
     def costly(self) -> bool:
         """Whether there is a time series, which takes milliseconds for each point."""
-        return any(data.time is not None for data in self.data)
+        return self.rtol > 0.0
+
+    @property
+    def step(self) -> float:
+        """The change of ln of an unknown for slopes."""
+        return STEP[self.rtol]
 
     def theory(self, points: Array) -> list[dict[str, Array]]:
         """Return what is measured, of unknowns in rows, a column for each row of the data.
 
         NaN where theory has no answer.
         """
-        return [self._values(data, points) for data in self.data]
+        return [self._values(i, points) for i in range(len(self.data))]
 
-    def _values(self, data: Data, points: Array) -> dict[str, Array]:
-        shape = len(points), data.size
+    def _values(self, i: int, points: Array) -> dict[str, Array]:
+        data, shape = self.data[i], (len(points), self.data[i].size)
         if data.time is None or len(points) == 1:
-            over = {key: np.exp(points[:, [i]]) for i, key in enumerate(self.keys)}
+            over = {key: np.exp(points[:, [k]]) for k, key in enumerate(self.keys)}
             try:
-                state = self._state(data, over)
-                found = {name: getattr(state, name) for name in data.measured}
+                found = self._steady(data, over) if data.time is None else self._over_time(i, over)
                 return {name: np.broadcast_to(values, shape) for name, values in found.items()}
             except (ValueError, ArithmeticError, RuntimeError):
                 if len(points) == 1:
                     return {name: np.full(shape, np.nan) for name in data.measured}
-        rows = [self._values(data, point[None]) for point in points]
+        rows = [self._values(i, point[None]) for point in points]
         return {name: np.concatenate([row[name] for row in rows]) for name in data.measured}
 
-    def _state(self, data: Data, over: Mapping[str, Array]) -> Any:
-        if data.time is None:
-            with np.errstate(over="raise", invalid="raise", divide="raise"):
-                return self.solve(self.scene.replace({**data.conditions, **over}))
-        end = {"run.duration": max(self.scene.run.duration, float(data.time[-1]))}
-        own = {key: float(value.item()) for key, value in over.items()}
-        return self.follow(self.scene.replace({**data.conditions, **end, **own}), data.time)  # type: ignore[misc]
+    def _steady(self, data: Data, over: Mapping[str, Array]) -> dict[str, Array]:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            state = self.solve(self.scene.replace({**data.conditions, **over}))
+        return {name: getattr(state, name) for name in data.measured}
+
+    def _over_time(self, i: int, over: Mapping[str, Array]) -> dict[str, Array]:
+        """Return the means of the transient over the bins of a time series."""
+        data, own = self.data[i], {key: float(value.item()) for key, value in over.items()}
+        place = i, *own.values()
+        if place not in self.memory:
+            nodes, at = data.nodes
+            end = {"run.duration": max(self.scene.run.duration, float(nodes[-1]))}
+            scene = self.scene.replace({**data.conditions, **end, **own})
+            found = self.follow(scene, nodes, self.rtol)  # type: ignore[misc]
+            self.memory[place] = {name: found[name][at].mean(axis=0) for name in data.measured}
+        return self.memory[place]
 
     @property
     def some(self) -> "Problem":
-        """The same problem on some rows of the data."""
-        return replace(self, data=tuple(each.part(-(-each.size // SOME)) for each in self.data))
+        """The same problem on some rows of the data, within coarse tolerances."""
+        parts = tuple(each.part(-(-each.size // SOME)) for each in self.data)
+        return replace(self, data=parts, rough=True, memory={})
 
     def columns(self, points: Array) -> list[Array]:
         """Return the residuals of each column measured, of unknowns in rows.
@@ -134,7 +166,9 @@ class Problem:
                 if data.time is None:
                     scale = np.sqrt(np.abs(own[name] * values))
                     scale = np.maximum(scale, FLOOR * np.abs(values).max())
-                found.append(np.nan_to_num((own[name] - values) / scale, nan=FAILED))
+                found.append(
+                    np.nan_to_num((own[name] - values) * (data.weight / scale), nan=FAILED)
+                )
         return found
 
     def count(self, point: Array) -> float:
@@ -152,7 +186,7 @@ class Problem:
 
     def slopes(self, points: Array, *, central: bool = False) -> Array:
         """Return the derivatives of the residuals by the unknowns, along the last axis."""
-        return slopes(self.residuals, points, step=STEP[self.costly], central=central)
+        return slopes(self.residuals, points, step=self.step, central=central)
 
     def weighed(self, point: Array) -> "Problem":
         """Return the problem in which each column has the weight of its scatter at a point."""
@@ -241,19 +275,24 @@ def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tupl
     points = qmc.scale(
         qmc.Sobol(low.size, seed=seed).random_base2(tried[min(low.size, len(tried)) - 1]), low, high
     )
-    score = np.sum(np.arctan(problem.some.residuals(points)) ** 2, axis=1)
+    some = problem.some
+    score = np.sum(np.arctan(some.residuals(points)) ** 2, axis=1)
 
-    def descended(points: Array, steps: int) -> tuple[Array, Array]:
-        return descend(problem.residuals, points, least, most, steps, step=STEP[problem.costly])
+    def descended(of: Problem, points: Array, steps: int) -> tuple[Array, Array]:
+        how: Any = {"step": of.step, "costly": of.costly, "precision": PRECISION[of.rtol]}
+        return descend(of.residuals, points, least, most, steps, **how)
 
     for done, (count, steps) in enumerate(rounds):
         if report:
             report((1 + done) / (len(rounds) + 2))
         best = points[np.argsort(score)[: min(count, 4 * low.size**2)]]
-        points, score = descended(best, steps)
-    for _ in range(REWEIGHED if len(problem.columns(points)) > 1 else 0):
-        problem = problem.weighed(points[0])
-        points, score = descended(points, rounds[-1][1])
+        near = some if problem.costly and done + 1 < len(rounds) else problem
+        points, score = descended(near, best, steps)
+    for _ in range(REWEIGHED):
+        before, problem = problem.weights, problem.weighed(points[0])
+        if np.allclose(problem.weights, before, rtol=SAME, atol=0.0):
+            break
+        points, score = descended(problem, points, rounds[-1][1])
     point = _sorted(points, problem.keys)[0]
     r = problem.residuals(point[None])[0]
     if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
@@ -270,7 +309,7 @@ def intervals(problem: Problem, found: Fit) -> Array:
     over the other unknowns. It allows for the same scatter as the standard errors.
     """
     size, (low, high) = found.point.size, problem.limits
-    errors = np.maximum(np.sqrt(np.diag(found.covariance)), STEP[problem.costly] ** 2)
+    errors = np.maximum(np.sqrt(np.diag(found.covariance)), problem.step**2)
     least = float(found.residuals @ found.residuals)
     rise = (stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE) * errors) ** 2 / np.diag(
         covariance(found.slopes)
@@ -279,11 +318,17 @@ def intervals(problem: Problem, found: Fit) -> Array:
     wanted, limits = least + rise[own], side * np.inf
     points = np.tile(found.point, (2 * size, 1))
     active = np.full(2 * size, True)
+    last, last_r, last_J = (np.array([each] * 2 * size) for each in found[:3])
     for _ in range(NEWTON):
         at = np.flatnonzero(active)
         if not at.size:
             break
-        i, J, r = own[at], problem.slopes(points[at]), problem.residuals(points[at])
+        i, r = own[at], problem.residuals(points[at])
+        if problem.costly:
+            J = updated(last_J[at], r - last_r[at], points[at] - last[at])
+            last[at], last_r[at], last_J[at] = points[at], r, J
+        else:
+            J = problem.slopes(points[at])
         rows = np.arange(at.size)
         H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
         stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))
@@ -311,6 +356,18 @@ def intervals(problem: Problem, found: Fit) -> Array:
     return limits.reshape(2, size).T
 
 
+def standard_errors(found: Fit, limits: Array) -> Array:
+    """Return the standard errors relative to the values.
+
+    They are those of linear theory, or the longer side of the 95 % interval over Student's t where that is
+    larger: where errors are not elliptic, two linear ones hold less than 95 %.
+    """
+    linear = np.sqrt(np.diag(found.covariance))
+    sides = np.abs(np.expm1(limits - found.point[:, None])).max(axis=1)
+    sides /= stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE)
+    return np.where(np.isfinite(sides), np.maximum(sides, linear), linear)
+
+
 def alike(problem: Problem, point: Array) -> list[str]:
     """Return a note on each column over time whose residuals are alike from row to row."""
     names = [(data, name) for data in problem.data for name in data.measured]
@@ -318,7 +375,7 @@ def alike(problem: Problem, point: Array) -> list[str]:
     for (data, name), rows in zip(names, problem.columns(point[None]), strict=True):
         r = rows[0] - rows[0].mean()
         alike = float(r[1:] @ r[:-1] / max(float(r @ r), np.finfo(float).tiny))
-        if data.time is not None and alike > ALIKE and float(np.std(r)) > STEP[True] ** 2:
+        if data.time is not None and alike > ALIKE and float(np.std(r)) > STEP[FINE] ** 2:
             told = f"The residuals of {name} over time are alike from row to row (correlation {alike:.2f})"
             notes.append(f"{told}: the model is off, and the standard errors are too small.")
     return notes

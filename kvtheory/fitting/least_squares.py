@@ -41,6 +41,13 @@ def slopes(
     return (moved[:, :size] - other).swapaxes(1, 2) / ((2.0 if central else 1.0) * step)
 
 
+def updated(slopes: Array, change: Array, move: Array) -> Array:
+    """Return slopes that give the change of the residuals along a move of the unknowns (Broyden)."""
+    left = change - np.einsum("sni,si->sn", slopes, move)
+    length = np.maximum(np.einsum("si,si->s", move, move), np.finfo(float).tiny)
+    return np.asarray(slopes + left[..., None] * (move / length[:, None])[:, None])
+
+
 def descend(
     residuals: Residuals, points: Array, low: Any, high: Any, steps: int, *, step: float = STEP,
     costly: bool = False, robust: bool = False, precision: float = 0.0, promising: float = 0.0,
@@ -82,8 +89,7 @@ def descend(
             break
         new = residuals(tried)
         if costly:
-            left = new - r[at] - np.einsum("sni,si->sn", J[at], move)
-            J[at] += left[..., None] * (move / np.einsum("si,si->s", move, move)[:, None])[:, None]
+            J[at] = updated(J[at], new - r[at], move)
         total = loss(new)
         better = total < cost[at]
         gain = np.where(better, 1.0 - total / cost[at], 1.0)

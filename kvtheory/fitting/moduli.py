@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.fitting.spectrum import Array, Moduli
-from kvtheory.fitting.tables import Reader, Table, named
+from kvtheory.fitting.tables import Reader, Table
 
 SPELLINGS = {
     "frequency": "f, freq, frequency, Frequenz",
@@ -33,8 +33,9 @@ FREQUENCIES = {
     "frequency": {"Hz": 2.0 * math.pi, "kHz": 2e3 * math.pi, "mHz": 2e-3 * math.pi, "rad/s": 1.0},
     "angular frequency": {"rad/s": 1.0, "1/s": 1.0, "s^-1": 1.0, "rad s^-1": 1.0, "rad*s^-1": 1.0},
 }
-"""The factor to rad/s of each unit that leaves no doubt: an angular frequency in Hz does, a frequency in
-1/s too."""
+"""The factor to rad/s of each unit that leaves no doubt."""
+DOUBTFUL = "Hz", "1/s", "s^-1"
+"""Units that do: of an angular frequency, or of a frequency."""
 AGREE = 1e-3
 """Relative difference up to which a frequency and an angular frequency of one row are the same."""
 SPREAD, GAP = 2.0, 1.0
@@ -48,9 +49,7 @@ def _needed(found: set[str]) -> bool:
     return bool(dynamic or ("time" in found and found & set(RELAXING)))
 
 
-READER = Reader(
-    named(SPELLINGS), _needed, "a row such as f [Hz],E' [MPa],E'' [MPa] or t [s],E(t) [MPa]"
-)
+READER = Reader(SPELLINGS, _needed, "a row such as f [Hz],E' [MPa],E'' [MPa] or t [s],E(t) [MPa]")
 
 
 class Sweep(NamedTuple):
@@ -111,9 +110,8 @@ def _angular_frequency(table: Table) -> Array:
             column = table.columns[name]
             if column.unit not in units:
                 what = f'has the unit "{column.unit}"' if column.unit else "has no unit"
-                raise table.error(
-                    name, f"{what}; expected {' or '.join(units)}, which leave no doubt"
-                )
+                what += ", which may mean Hz or rad/s" if column.unit in DOUBTFUL else ""
+                raise table.error(name, f"{what}; expected {' or '.join(units)}")
             found.append(column.values * units[column.unit])
     if len(found) == 2:
         same = np.abs(found[0] - found[1]) <= AGREE * np.abs(found[1])
@@ -131,7 +129,7 @@ def _rows(table: Table, dynamic: bool, modulus: str | None) -> tuple[list[Array]
         values, unit = table.si(name, "N/m^2", "N/m^3")
         kind = "K" if unit == "N/m^3" else name[0] if name[0] in "EG" else modulus
         if kind is None:
-            told = 'may be E or G; name it, or give `modulus` = "E" or "G"'
+            told = 'may be E or G; name the column so, or give `modulus` = "E" or "G"'
             raise table.error(name, told)
         if kind != "K" and modulus not in (None, kind):
             raise table.error(name, f'is {kind}, and `modulus` = "{modulus}"')

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.fitting.tables import Reader, Table, named
+from kvtheory.fitting.tables import Reader, Table
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Scene
@@ -31,7 +31,11 @@ HEIGHT = "z_A, z, position, height, Höhe"
 STATIC = {"load": "support.load", "depth": "support.depth"}
 """The keys of a support that are conditions of a row if it has them; on other supports they are measured."""
 MOST_ROWS = 2000
-"""Most rows that are used: more would hardly sharpen a fit."""
+"""Most rows over velocity that are used: more would hardly sharpen a fit."""
+FEWEST_BINS, MOST_BINS, SPLITS = 64, 256, 16
+"""Bins over which a longer time series is averaged, at first and at most, and how many are split at once."""
+VISIBLE = 3.0
+"""Standard errors from which the two halves of a bin differ visibly."""
 LARGEST = 1e30
 """Largest number that is accepted as a measured one; squares of larger ones overflow."""
 SAME_DRIVE = 0.05
@@ -42,7 +46,9 @@ which they are the same."""
 class Data(NamedTuple):
     """Conditions by key of the scene, and measured quantities, in SI, a value for each row.
 
-    Those of a time series have a `time` (s), and one value for each condition.
+    Those of a time series have a `time` (s), and one value for each condition. A row may be the mean of
+    several: `spread` is then the standard deviation of their times, and `weight` the square root of their
+    number, relative to its root mean square.
     """
 
     source: str
@@ -50,6 +56,8 @@ class Data(NamedTuple):
     measured: Mapping[str, Array]
     notes: tuple[str, ...]
     time: Array | None = None
+    spread: Any = 0.0
+    weight: Any = 1.0
 
     @property
     def size(self) -> int:
@@ -67,17 +75,68 @@ class Data(NamedTuple):
             rows = np.minimum(rows + shift, self.size - 1)
         measured = {name: values[rows] for name, values in self.measured.items()}
         if self.time is not None:
-            return self._replace(measured=measured, time=self.time[rows])
-        own = {name: values[rows] for name, values in self.conditions.items()}
-        return self._replace(measured=measured, conditions=own)
+            own = {name: getattr(self, name)[rows] for name in ("time", "spread", "weight")}
+            return self._replace(measured=measured, **own)
+        conditions = {name: values[rows] for name, values in self.conditions.items()}
+        return self._replace(measured=measured, conditions=conditions)
 
     @property
     def thinned(self) -> "Data":
-        """The data, or if they are many, a part of them and a note."""
+        """The data over velocity, or if they are many, a part of them and a note."""
         step = -(-self.size // MOST_ROWS)
         if step == 1:
             return self
         return self._replace(notes=(*self.notes, f"One row in {step} is used.")).part(step)
+
+    @property
+    def averaged(self) -> "Data":
+        """The time series, or if it is long, its means over bins, and a note.
+
+        The mean of theory over a bin is that of its values one standard deviation of the times before and
+        after their mean: exact up to cubic terms for rows at equal distances. Bins are halved where the
+        halves differ by more than the scatter of the rows explains, so that they are short against what
+        the data show.
+        """
+        assert self.time is not None  # for mypy
+        rows = np.array([values / np.abs(values).max() for values in self.measured.values()])
+        size, scatter = self.size, np.median(np.abs(np.diff(rows)), axis=1)[:, None]
+        total = np.pad(np.cumsum(rows, axis=1), ((0, 0), (1, 0)))
+        starts = np.arange(size)
+        if size > MOST_BINS:
+            starts = np.linspace(0, size, FEWEST_BINS, endpoint=False).astype(int)
+        while FEWEST_BINS <= starts.size < min(size, MOST_BINS):
+            ends = np.append(starts[1:], size)
+            middle = (starts + ends) // 2
+            left, right = np.maximum(middle - starts, 1), ends - middle
+            change = (total[:, ends] - total[:, middle]) / right
+            change -= (total[:, middle] - total[:, starts]) / left
+            visible = VISIBLE * scatter * np.sqrt(1.0 / left + 1.0 / right)
+            excess = np.where(middle > starts, (np.abs(change) - visible).max(axis=0), 0.0)
+            split = np.argsort(excess)[-SPLITS:]
+            if not excess[split[-1]] > 0.0:
+                break
+            starts = np.union1d(starts, middle[split[excess[split] > 0.0]])
+        count = np.diff(np.append(starts, size))
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.add.reduceat(values, starts) / count)
+
+        time = mean(self.time)
+        told = f"{size:,} rows over time were averaged to {starts.size:,}; the misfit is of these."
+        return self._replace(
+            measured={name: mean(values) for name, values in self.measured.items()},
+            notes=self.notes if starts.size == size else (*self.notes, told),
+            time=time,
+            spread=np.sqrt(mean((self.time - np.repeat(time, count)) ** 2)),
+            weight=np.sqrt(count / count.mean()),
+        )
+
+    @property
+    def nodes(self) -> tuple[Array, Any]:
+        """The times at which theory is needed, in order, and the place of two for each row among them."""
+        both = np.stack([self.time - self.spread, self.time + self.spread])
+        found, at = np.unique(np.maximum(both, 0.0), return_inverse=True)
+        return found, at.reshape(both.shape)
 
 
 def _needed(found: set[str]) -> bool:
@@ -91,7 +150,7 @@ def read(data: Any, scene: Scene) -> Data:
     spelt = {key: key for key in keys} | {
         name: f"{name}, {own}" for name, own in CONDITIONS.items()
     }
-    names = named(spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT})
+    names = spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT}
     table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
     for head in table.ignored:
         if head.partition(".")[0] in SECTIONS:
@@ -106,7 +165,7 @@ def read(data: Any, scene: Scene) -> Data:
         del measured["friction_force"]
     found = Data(table.source, conditions, measured, tuple(notes))
     if "time" in table:
-        return _over_time(table, found, scene).thinned
+        return _over_time(table, found, scene).averaged
     if not np.any(conditions["drive.velocity"]):
         raise table.error("drive.velocity", "is zero throughout; friction needs sliding")
     return found.thinned

@@ -7,7 +7,6 @@ depth.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from os import PathLike
 from typing import Any
 
@@ -15,7 +14,6 @@ import numpy as np
 
 from kvtheory.fitting.tables import Array, Reader, Table
 from kvtheory.results.table import SERIES_UNITS
-from kvtheory.scene.tables import parts, plain
 
 PRESSURE = {"peak_pressure": "N/m^2"}
 """The unit as `kvtheory.scene.units` spells it."""
@@ -46,17 +44,9 @@ SPELLINGS = {
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
 }
 """Names of each quantity; a minus sign marks those that point the other way."""
-KNOWN = {
-    plain(spelling): (quantity, spelling)
-    for quantity, spellings in SPELLINGS.items()
-    for spelling in spellings.split(", ")
-}
-"""The quantity and the spelling of each name, in lower case and without marks."""
 SHOWN = (
     "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
 )
-MISSPELT = 0.8
-"""Similarity to a known name from which a name counts as misspelt."""
 SHORTEST, FEWEST_POINTS, MOST_ROWS = 8, 5, 2000
 """Fewest rows that show a jump, a transient of two time constants and a limit; fewest velocities of a curve;
 and about how many rows of longer data are kept, as more would not change a verdict."""
@@ -66,7 +56,7 @@ MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """Quantities that do not exist in flight: some of their cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""
-READER = Reader(lambda name: KNOWN.get(plain(name), (None, ""))[0], bool, f"{SHOWN}", SPELLINGS)
+READER = Reader(SPELLINGS, bool, SHOWN, SPELLINGS)
 """Reads columns by these names; `_checked` reports what is missing or not finite."""
 
 
@@ -146,8 +136,8 @@ def _arrays(data: Any, units: Mapping[str, str]) -> tuple[dict[str, Any], dict[s
 def _misspelt(heads: Iterable[str]) -> Iterator[str]:
     """Yield the headers that are similar to a known name."""
     for head in heads:
-        if near := get_close_matches(plain(parts(head)[0]), KNOWN, n=1, cutoff=MISSPELT):
-            told = f'column "{head}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
+        if near := READER.meant(head):
+            told = f'column "{head}": unknown name, did you mean "{near}"?'
             yield f"{told} Rename a column that is something else"
 
 

@@ -16,7 +16,7 @@ from scipy.optimize import curve_fit, minimize_scalar
 
 from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.spectrum import Array, Moduli
-from kvtheory.fitting.tables import Reader, named
+from kvtheory.fitting.tables import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT
 
 STEPS = 200
@@ -35,11 +35,11 @@ meant."""
 SAME = 1.5
 """Difference in K up to which a temperature of a file of shift factors is that of a sweep."""
 SHIFTS = Reader(
-    named({
+    {
         "temperature": "T, temp, temperature, Temperatur",
         "log10 a_T": "log_aT, log a_T, log10 a_T, log10(a_T), log(a_T), log10_aT, lg a_T",
         "a_T": "a_T, aT, shift factor, Verschiebungsfaktor",
-    }),
+    },
     lambda found: "temperature" in found and bool(found & {"log10 a_T", "a_T"}),
     "a row such as T [degC],log10 a_T",
 )  # fmt: skip

@@ -15,6 +15,7 @@ again.
 
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +23,11 @@ from scipy.optimize import nnls
 
 Array = NDArray[np.float64]
 
-PER_DECADE, FINER = 12, 4
+PER_DECADE, FINER = 6, 8
 """Relaxation times of the grid per decade, and the factor by which the grid of the dual function is
 finer."""
+CLOSE = 0.125
+"""Decades up to which neighbouring times of a spectrum are one arm."""
 BEYOND = 0.5
 """Decades by which relaxation times may lie beyond the data, where an arm still changes them."""
 ROUNDS = 3
@@ -35,6 +38,8 @@ LEAST_LOSS = 0.01
 """Smallest scale of a loss modulus, over |E*|: below it, its relative error says nothing."""
 TRIED, FEW_STEPS = 3, 8
 """Pairs of arms whose merger is tried, and steps of the refinement until the number of arms is found."""
+SPARE = 8
+"""Arms beyond a given number down to which pairs are merged without trying others."""
 MOST_POINTS = 1200
 """Most points that are fitted; more are averaged over equal steps of the logarithm."""
 FINEST = 1e-4
@@ -84,13 +89,12 @@ class Moduli:
 
     def kernel(self, tau: Array) -> Array:
         """Return the moduli of unit arms in columns, in the scale of the data; a spring has the time inf."""
-        z = self.x[:, None] * tau if self.dynamic else self.x[:, None] / tau
-        if self.dynamic:  # in 1/z where z is large or infinite
-            small = np.minimum(z, 1.0 / np.maximum(z, 1e-300))
-            share = 1.0 / (1.0 + small * small)
-            rows = np.stack([np.where(z > 1.0, share, small * small * share), small * share])
+        if self.dynamic:
+            s = 1.0 / (self.x[:, None] * tau)
+            storage = 1.0 / (1.0 + s * s)
+            rows = np.stack([storage, s * storage])
         else:
-            rows = np.exp(-z)[None]
+            rows = np.exp(self.x[:, None] / -tau)[None]
         return (rows / self.scale[..., None]).reshape(-1, np.size(tau))
 
     def slopes(self, tau: Array) -> Array:
@@ -103,7 +107,13 @@ class Moduli:
             rows = (z * np.exp(-z))[None]
         return (rows / self.scale[..., None]).reshape(-1, tau.size)
 
-    @property
+    @cached_property
+    def fine(self) -> tuple[Array, Array]:
+        """The times of a spring and of a fine grid, and the `kernel` there."""
+        times = np.append(np.inf, grid(self, FAR, PER_DECADE * FINER))
+        return times, self.kernel(times)
+
+    @cached_property
     def target(self) -> Array:
         """The data in their own scale."""
         return (self.values / self.scale).reshape(-1)
@@ -146,9 +156,24 @@ def grid(data: Moduli, beyond: float, per_decade: int) -> Array:
 
 def solved(data: Moduli, time: Array) -> Series:
     """Return the series of least misfit with arms of these times, by NNLS."""
-    held, _ = nnls(data.kernel(np.append(np.inf, time)), data.target, maxiter=30 * (time.size + 10))
-    kept = held[1:] > 0.0
-    return Series(float(held[0]), held[1:][kept], time[kept])
+    return _solved(data, time)[1]
+
+
+def _solved(data: Moduli, time: Array) -> tuple[float, Series]:
+    """Return the norm of the residuals too."""
+    held, norm = nnls(data.kernel(np.append(np.inf, time)), data.target, maxiter=_steps(time))
+    return norm, _series(held, time)
+
+
+def _steps(time: Array) -> int:
+    return 30 * (time.size + 10)
+
+
+def _series(held: Array, time: Array) -> Series:
+    """Return the series of a spring and arms, by increasing time, without those that are zero."""
+    order = np.argsort(time)
+    order = order[held[1:][order] > 0.0]
+    return Series(float(held[0]), held[1:][order], time[order])
 
 
 def dual(data: Moduli, series: Series) -> tuple[float, Array]:
@@ -157,8 +182,8 @@ def dual(data: Moduli, series: Series) -> tuple[float, Array]:
     The bound is sharp if the series is optimal. The dual function is evaluated on a fine grid, with twice
     what its curvature adds between the points.
     """
-    times = np.append(np.inf, grid(data, FAR, PER_DECADE * FINER))
-    arms, r, one = data.kernel(times), -series.residuals(data).reshape(-1), np.abs(data.target)
+    times, arms = data.fine
+    r, one = -series.residuals(data).reshape(-1), np.abs(data.target)
     slope, size = (np.einsum("ij,i->j", arms, each) for each in (r, one))
     ratio = slope[size > 0.0] / size[size > 0.0]
     bend = np.abs(np.diff(ratio[1:], 2))  # between points, a maximum is higher by an eighth of it
@@ -172,22 +197,31 @@ def dual(data: Moduli, series: Series) -> tuple[float, Array]:
 
 
 def best(data: Moduli) -> tuple[Series, float]:
-    """Return the best non-negative spectrum, gathered into arms, and the dual bound on the misfit of any.
+    """Return the best non-negative spectrum, and the dual bound on the misfit of any.
 
-    Its times are limited to those that the data tell; for the bound they are not. Where the dual function
-    has positive peaks between the points of the grid, points are added.
+    Where the dual function has positive peaks between the points of the grid, points are added.
     """
     spectrum, least = solved(data, grid(data, FAR, PER_DECADE)), 0.0
     for _ in range(ROUNDS):
         bound, more = dual(data, spectrum)
         least = max(least, bound)
         spectrum = solved(data, np.union1d(spectrum.time, more))
-    return refined(data, clustered(data)), max(least, dual(data, spectrum)[0])
+    return spectrum, max(least, dual(data, spectrum)[0])
 
 
-def clustered(data: Moduli) -> Series:
-    """Return the best spectrum on the grid of times, with arms on neighbouring points gathered into one."""
-    return clusters(solved(data, grid(data, BEYOND, PER_DECADE)), np.log(10.0) / PER_DECADE)
+def clustered(data: Moduli, spectrum: Series) -> Series:
+    """Return a spectrum of times that the data tell, with neighbours that are close gathered into one arm."""
+    low, high = np.array(data.times) * 10.0 ** np.array([-BEYOND, BEYOND])
+    own = solved(data, np.unique(np.clip(spectrum.time, low, high)))
+    return _gathered(own, np.diff(np.log10(own.time)) <= CLOSE) if own.time.size else own
+
+
+def _gathered(series: Series, joined: NDArray[np.bool_]) -> Series:
+    """Return a series in which each arm is one with the next one where these are `joined`."""
+    first = np.flatnonzero(np.append(True, ~joined))
+    modulus = np.add.reduceat(series.modulus, first)
+    mean = np.add.reduceat(series.modulus * np.log(series.time), first) / modulus
+    return Series(series.relaxed, modulus, np.exp(mean))
 
 
 def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
@@ -195,20 +229,32 @@ def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
 
     The pairs that change the moduli least are tried, and the best one is refined.
     """
+    mean, cost = _mergers(data, series)
+    tau = series.time
+    tried = [np.delete(np.where(np.arange(tau.size) == i, mean[i], tau), i + 1)
+             for i in np.argsort(cost)[:TRIED]]  # fmt: skip
+    found = min((_solved(data, times) for times in [*tried, tau[:-1], tau[1:]]), key=itemgetter(0))
+    return refined(data, found[1], steps)
+
+
+def _mergers(data: Moduli, series: Series) -> tuple[Array, Array]:
+    """Return the time of each pair of neighbours as one arm, and by how much that changes the moduli."""
     E, tau = series.modulus, series.time
     both = E[:-1] + E[1:]
     mean = np.exp((E[:-1] * np.log(tau[:-1]) + E[1:] * np.log(tau[1:])) / both)
     own, merged = data.kernel(tau) * E, data.kernel(mean) * both
-    cost = ((own[:, :-1] + own[:, 1:] - merged) ** 2).sum(axis=0)
-    tried = [np.delete(np.where(np.arange(tau.size) == i, mean[i], tau), i + 1)
-             for i in np.argsort(cost)[:TRIED]]  # fmt: skip
-    found = [solved(data, times) for times in [*tried, tau[:-1], tau[1:]]]
-    return refined(data, min(found, key=lambda each: each.misfit(data)), steps)
+    return mean, ((own[:, :-1] + own[:, 1:] - merged) ** 2).sum(axis=0)
 
 
 def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Series:
     """Return the series of the fewest arms with a misfit of at most `target`, or of at most `count` arms."""
     kept = start
+    while count is not None and (excess := kept.time.size - count - SPARE) > 0:
+        _, cost = _mergers(data, kept)
+        around = np.pad(cost, 1, constant_values=np.inf)
+        least = np.flatnonzero((cost <= around[2:]) & (cost < around[:-2]))  # these share no arm
+        least = least[np.argsort(cost[least])[:excess]]
+        kept = _gathered(kept, np.isin(np.arange(cost.size), least))
     while kept.time.size > max(count or 1, 1):
         less = fewer(data, kept, FEW_STEPS if count is None else 0)
         if count is None and less.misfit(data) > target:
@@ -220,32 +266,24 @@ def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Se
     return refined(data, kept)
 
 
-def clusters(spectrum: Series, step: float) -> Series:
-    """Return the spectrum with arms on neighbouring points of the grid gathered into one."""
-    if not spectrum.time.size:
-        return spectrum
-    first = np.flatnonzero(np.append(True, np.diff(np.log(spectrum.time)) > 1.5 * step))
-    modulus = np.add.reduceat(spectrum.modulus, first)
-    mean = np.add.reduceat(spectrum.modulus * np.log(spectrum.time), first) / modulus
-    return Series(spectrum.relaxed, modulus, np.exp(mean))
-
-
 def refined(data: Moduli, series: Series, steps: int = MOST_STEPS) -> Series:
     """Return the series after bounded least squares in the logarithms of its times; NNLS gives the moduli.
 
     By Levenberg and Marquardt, with the slopes of variable projection: what the moduli cannot take up.
     Normal equations suffice for a minimum in which times are apart, and are small.
     """
+    if not (steps and series.time.size):
+        return series
     low, high = np.log(data.times) + np.log(10.0) * BEYOND * np.array([-1.0, 1.0])
     y, damping = np.clip(np.log(series.time), low, high), 1e-3
 
     def solve(y: Array) -> tuple[Array, Array, Array, float]:
         kernel = data.kernel(np.append(np.inf, np.exp(y)))
-        held, norm = nnls(kernel, data.target, maxiter=30 * (y.size + 10))
+        held, norm = nnls(kernel, data.target, maxiter=_steps(y))
         return kernel, held, np.einsum("ij,j->i", kernel, held) - data.target, norm
 
     kernel, held, r, norm = solve(y)
-    for _ in range(steps if y.size else 0):
+    for _ in range(steps):
         rows, basis = data.slopes(np.exp(y)) * held[1:], kernel[:, held > 0.0]
         own = np.einsum("ij,ik->jk", basis, basis)
         own[np.diag_indices_from(own)] *= 1.0 + RIDGE
@@ -261,5 +299,5 @@ def refined(data: Moduli, series: Series, steps: int = MOST_STEPS) -> Series:
                 break
         elif (damping := 5.0 * damping) > MOST_DAMPING:
             break
-    result = solved(data, np.exp(np.sort(y)))
+    result = _series(held, np.exp(y))
     return result if result.misfit(data) <= series.misfit(data) else series

@@ -12,6 +12,8 @@ import re
 from collections.abc import Callable, Container, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,6 +32,8 @@ STARTS = re.compile(r"[\s,;\"]*(?:[-+.]*\d|nan\b)", re.IGNORECASE)
 UNITLESS = "", "-", "1"
 INCH = re.compile(r'(?<=[EG])"(?=\s*[\[(/])')
 """A double prime written as a quotation mark, before a unit."""
+MISSPELT = 0.8
+"""Similarity to a known name from which a name counts as misspelt."""
 BEFORE_UNITS = 2
 """Most blank rows between a header and its row of units."""
 
@@ -68,12 +72,13 @@ class Table:
             raise self.error(
                 quantity, f'has no unit; expected "{column.head} [{units[0]}]" or the like'
             )
+        told = ""
         for unit in units:
             try:
                 scale, zero = (to_si(f"{x} {_spelt(column.unit, unit)}", unit) for x in ("1", "0"))
                 return column.values * (scale - zero) + zero, unit
             except ValueError as error:
-                told = str(error)
+                told = told or str(error)
         raise self.error(quantity, told)
 
     def number(self, quantity: str) -> Array:
@@ -90,19 +95,6 @@ class Table:
             value = self.columns[quantity].values[bad[0]]
             more = f", and {bad.size - 1} more" if bad.size > 1 else ""
             raise self.error(quantity, f"{value:g} {told}{more}", int(bad[0]))
-
-
-Names = Callable[[str], str | None]
-"""Returns the quantity that the name of a column stands for, or None."""
-
-
-def named(spellings: Mapping[str, str]) -> Names:
-    """Return a function that finds names among spellings, separated by commas, of each quantity.
-
-    Only names of one letter must have the case that is listed: T is a temperature, t a time.
-    """
-    known = {_key(each): name for name, all_ in spellings.items() for each in all_.split(", ")}
-    return lambda head: known.get(_key(head))
 
 
 def _key(name: str) -> str:
@@ -124,14 +116,29 @@ Known = dict[int, tuple[str, str, str]]
 class Reader:
     """Reads the tables of a subject by the names of its columns.
 
-    `needed` tells from the quantities of a row whether it is a header; `example` is one, for messages. Cells
-    of the quantities in `partial` may be empty or not finite; an empty one is NaN.
+    `spellings` are the names of each quantity, separated by commas; only names of one letter must have the
+    case that is listed: T is a temperature, t a time. `needed` tells from the quantities of a row whether it
+    is a header; `example` is one, for messages. Cells of the quantities in `partial` may be empty or not
+    finite; an empty one is NaN.
     """
 
-    names: Names
+    spellings: Mapping[str, str]
     needed: Callable[[set[str]], bool]
     example: str
     partial: Container[str] = ()
+
+    @cached_property
+    def known(self) -> dict[str, tuple[str, str]]:
+        """Quantity and spelling of each name, as it is compared."""
+        pairs = (
+            (name, each) for name, every in self.spellings.items() for each in every.split(", ")
+        )
+        return {_key(each): (name, each) for name, each in pairs}
+
+    def meant(self, head: str) -> str | None:
+        """Return the known name that a header misspells, or None."""
+        near = get_close_matches(_key(parts(head)[0]), self.known, n=1, cutoff=MISSPELT)
+        return self.known[near[0]][1] if near else None
 
     def read(self, data: Any) -> Table:
         """Return the table that a file, or a mapping of arrays by header, holds."""
@@ -154,7 +161,7 @@ class Reader:
         heads = list(map(str, data))
         found = self._known(heads, "`data`")
         if not self.needed({name for name, _, _ in found.values()}):
-            raise ValueError(f"`data`: {self._unknown(heads)}")
+            raise ValueError(f"`data`: {self._lacking(heads)}")
         columns, keys = {}, list(data)
         for i, (name, head, unit) in found.items():
             try:
@@ -176,18 +183,18 @@ class Reader:
         except UnicodeDecodeError:
             text = "\0"
         if "\0" in text:
-            raise ValueError(f"{path}: not a text file in UTF-8 or UTF-16; expected {self.example}")
+            told = "not a text file; export a table as text or CSV"
+            raise ValueError(f"{path}: {told}; expected {self.example}")
         lines, at, header = text.splitlines(), 0, None
-        skipped: list[str] = []
+        skipped = -1
         tables: list[tuple[Known, dict[str, Array], list[int], tuple[str, ...]]] = []
         while at < len(lines):
             found_here = None if _blank(lines[at]) else self._header(lines[at], lines[0])
             if found_here is None:
-                if STARTS.match(lines[at]) and not _blank(lines[at]):
-                    told = f"line {at + 1} holds numbers that no row of names precedes"
-                    told += f'; "{shown(skipped[-1])}" names none that is known' if skipped else ""
-                    raise ValueError(f"{path}: {told}; expected {self.example}")
-                skipped += [] if _blank(lines[at]) else [lines[at]]
+                if not _blank(lines[at]):
+                    if STARTS.match(lines[at]):
+                        raise ValueError(f"{path}: {self._headless(lines, skipped, at)}")
+                    skipped = at
                 at += 1
                 continue
             cells, separator = header = found_here
@@ -203,10 +210,9 @@ class Reader:
             if rows:
                 values = _numbers(path, lines, rows, header, found, self.partial)
                 tables.append((found, values, rows, self._others(cells, found)))
-        if header and not tables:
-            raise ValueError(f"{path}: holds a header and no rows")
         if not tables:
-            raise ValueError(f"{path}: {self._unknown(skipped)}")
+            told = "holds a header and no rows" if header else self._headless(lines, skipped, None)
+            raise ValueError(f"{path}: {told}")
         kinds = {
             tuple(sorted((name, unit) for name, _, unit in found.values())) for found, *_ in tables
         }
@@ -235,9 +241,12 @@ class Reader:
 
     def _quantity(self, cell: str) -> tuple[str | None, str]:
         """Return the quantity that a header names, and its unit; "G(t)" and "tan(delta)" are names."""
-        whole = self.names(cell)
+        whole = self._name(cell)
         name, unit = (cell, "") if whole else parts(cell)
-        return whole or self.names(name), unit
+        return whole or self._name(name), unit
+
+    def _name(self, head: str) -> str | None:
+        return self.known.get(_key(head), (None, ""))[0]
 
     def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
         found: Known = {}
@@ -260,9 +269,25 @@ class Reader:
     def _others(self, cells: Sequence[str], found: Known) -> tuple[str, ...]:
         return tuple(shown(cell) for i, cell in enumerate(cells) if cell and i not in found)
 
-    def _unknown(self, rows: Sequence[str]) -> str:
-        seen = f' in "{shown(" | ".join(rows))}"' if rows else ""
-        return f"no row names the columns that are needed{seen}; expected {self.example}"
+    def _headless(self, lines: Sequence[str], text: int, numbers: int | None) -> str:
+        """Return that no header precedes a row of numbers, or the end; a row of text may be meant as one."""
+        if text >= 0:
+            cells = max((_split(lines[text], each) for each in SEPARATORS), key=len)
+            return f'line {text + 1}, "{shown(lines[text])}": {self._lacking(cells)}'
+        told = "is empty"
+        if numbers is not None:
+            told = f"line {numbers + 1} holds numbers, and no row above it names the columns"
+        return f"{told}; expected {self.example}"
+
+    def _lacking(self, heads: Sequence[str]) -> str:
+        """Return what columns lack to be those of a table."""
+        found = dict.fromkeys(name for head in heads if (name := self._quantity(head)[0]))
+        told = f"has only {', '.join(found)}" if found else "has no column that is known"
+        unknown = [head for head in heads if head and not self._quantity(head)[0]]
+        hints = [
+            f'"{shown(head)}" may be "{near}"' for head in unknown if (near := self.meant(head))
+        ]
+        return "; ".join([told, *hints, f"expected {self.example}"])
 
 
 def _blank(line: str) -> bool:
@@ -304,17 +329,22 @@ def _numbers(
     names = [name for name, _, _ in found.values()]
     (heads, separator), decimal = header, "." if header[1] == "," else ","
     texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in rows]
-    if all(text.count(separator) < len(heads) for text in texts):
+    mixed = (
+        decimal == "," and any("," in lines[k] for k in rows) and any("." in lines[k] for k in rows)
+    )
+    if not mixed and all(text.count(separator) < len(heads) for text in texts):
         with suppress(ValueError):
             options: Any = {"delimiter": separator, "usecols": list(found), "quotechar": '"'}
             return dict(zip(names, np.loadtxt(texts, ndmin=2, **options).T, strict=True))
-    values = []
+    values: list[list[float]] = []
+    marks: dict[str, int] = {}
     for k in rows:
         cells = _split(lines[k], separator)
         while len(cells) > len(heads) and not cells[-1]:
             del cells[-1]
         if len(cells) > len(heads):
             told = f"line {k + 1} has {len(cells)} cells, the header has {len(heads)}"
+            told += "; are there decimal commas? Then separate by semicolons" * (separator == ",")
             raise ValueError(f"{path}: {told}")
         row = []
         for i, (name, head, _) in found.items():
@@ -322,8 +352,13 @@ def _numbers(
             value = math.nan if not cell and name in partial else number(cell, decimal)
             if value is None:
                 hint = "; write the decimal mark as a point" if "," in cell else ""
+                hint += ", and no thousands separator" if "," in cell and "." in cell else ""
                 told = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
                 raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {told}')
+            marks |= {mark: k + 1 for mark in ",." if mark in cell}
+            if len(marks) > 1:
+                where = f"a comma in line {marks[',']} and a point in line {marks['.']}"
+                raise ValueError(f"{path}: the decimal mark is {where}; expected one of them")
             row.append(value)
         values.append(row)
     return dict(zip(names, np.array(values).T, strict=True))

@@ -174,6 +174,7 @@ class AsymptoteReport(Recorded):
             f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes} regime",
             maxima,
             f"for the friction coefficient to within {self.tolerance:g}, use {use}",
+            *self.notes,
         ]
 
     def _table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

@@ -116,6 +116,10 @@ MEANT = {
 """Names by their symbols and synonyms, which similarity of spelling would not find."""
 
 
+MOST_LISTED = 50
+"""Most names that a message lists."""
+
+
 def closest(name: str, valid: Iterable[str]) -> str | None:
     """Return the one of the `valid` names that was probably meant, or None.
 
@@ -137,10 +141,13 @@ def closest(name: str, valid: Iterable[str]) -> str | None:
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
-    """Suggest the closest of the `valid` names, and list them all."""
+    """Suggest the closest of the `valid` names, and list them all, or of very many the nearest three."""
     valid = list(valid)
     match = closest(name, valid)
     hint = f'did you mean "{match}"? ' if match else ""
+    if len(valid) > MOST_LISTED:
+        near = difflib.get_close_matches(name, valid, n=3, cutoff=0.0)
+        return hint.strip() or f"expected one of {len(valid)} names, such as {', '.join(near)}"
     return f"{hint}expected one of: {', '.join(valid)}"
 
 

@@ -87,7 +87,10 @@ def columns_of(
     if not names:
         raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
     if unknown := [name for name in names if name not in known]:
-        raise SceneError([problem("`quantities`", name, nearest(name, known)) for name in unknown])
+        told = " (see the help of sweep)"
+        raise SceneError(
+            [problem("`quantities`", name, nearest(name, known) + told) for name in unknown]
+        )
     units = units_for(indenter, {name: known[name].unit for name in names})
     return tuple(known[name]._replace(unit=unit) for name, unit in units.items())
 

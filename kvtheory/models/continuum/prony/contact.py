@@ -50,10 +50,12 @@ ground between two places that was never touched."""
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
 
-PROBE, GOLDEN = 1e-3, 0.3819660112501051
-"""Share of a segment within which the pressure is compared with that at its end; golden section."""
+FIRST_MOVE, AT_REST_MOVE, FASTER = 1e-3, 1e-4, 4.0
+"""First move of the search for an edge, as a share of the time since the step began, or in xi; the factor by
+which the limit of moves grows until the root is bracketed."""
 FARTHEST = 0.1
-"""How far an edge is continued beyond the end of a segment."""
+"""How far an edge is continued beyond the end of a segment, and the first limit of moves in xi."""
+GOLDEN = 0.3819660112501051
 
 SEVERAL = 4
 """Arms from which on they are evaluated as an array where the kernels are interpreted."""
@@ -173,51 +175,75 @@ def edge_at(
 ) -> tuple[float, int, float]:
     """Return xi of an edge, the step and the instant of the element there; write its s_i into `here`.
 
-    From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`. NaN if the secant
-    method does not converge.
+    From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
+    or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
+    segment an edge is continued as if all elements there had passed with the last one. NaN if it does not
+    converge.
     """
-    side, touches = run.now.sides[k], run.now.sides[k].state == TOUCHING
-    if side.segment == NEVER or (touches and run.segments[side.segment].step == NEVER):
+    side, state = run.now.sides[k], run.now.sides[k].state
+    if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
         for i in over(len(run.arms)):
             run.here[i, STRESSES] = 0.0
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
-    segment = run.segments[side.segment]
-    at_rest = segment.step == NEVER
-    far, near = segment.a if segment.edge == k else segment.b, side.near
-    if far == math.inf:
-        return _search(run, k, s, d, Y, xi, index, sigma, math.nan, math.nan)
-    at_far, x = NEVER, xi
-    if at_rest:
-        far, near = segment.X_b + Y, segment.X_a + Y
-        if k == 1:
-            far, near = near, far
-    else:
-        at_far, x = step_of(run, segment.edge, index, far), sigma
-    f, _ = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
-    if f < 0.0 and side.state == PEELING:
-        inside = _inside(run, k, s, d, Y, at_far, far, f)
-        if inside != far:
-            far, f = inside, 0.0
-    if f >= 0.0:
-        return _search(run, k, s, d, Y, xi, NEVER if at_rest else index, x, far, near)
-    # beyond the end of the segment: continued as if all elements there had passed with the last one
-    _, xi = _margin(run, side.state, s, d, Y, segment.edge, at_far, far)
-    slope, beyond = 2.0 * xi, SIDES[k]
-    if side.state == PEELING:
-        beyond = -SIDES[k]
+    segment, span = run.segments[side.segment], s - run.now.s
+    edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
+    end, inward, latest = (segment.a, -1.0, side.near) if edge == k else (segment.b, 1.0, s)
+    start, x, move = side.sigma, sigma, FIRST_MOVE * span
+    reach = max(abs(x - start), span)
+    if segment.step == NEVER:
+        end, inward, latest = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k], math.inf
+        index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
+    before = at = last = inner = outer = math.nan
+    secant = False  # whether the last move was not limited: a small one means little where X stands still
+    for _ in range(ITERATIONS):
+        x = min(x, end, latest) if inward > 0.0 else max(min(x, latest), end)
+        if index != NEVER:
+            index = step_of(run, edge, index, x)
+        f, xi = _margin(run, state, s, d, Y, edge, index, x)
+        exact = abs(f) <= EDGE_ERROR * (1.0 + run.given.glass)
+        if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
+            return xi, index, x
+        if x == end and f < 0.0 and math.isnan(inner):
+            if state == TOUCHING or SIDES[k] * (xi - middle) > 0.0:
+                return _beyond_end(run, k, xi, f), index, x
+            x = 0.5 * (start + x)  # the other edge passed this end
+            continue
+        toward, inner, outer = (inward, inner, x) if f < 0.0 else (-inward, x, outer)
+        bracketed, secant = not math.isnan(inner + outer), not math.isnan(last)
+        if secant:
+            move = -f * (x - at) / (f - before) if f != before else 0.0
+        else:
+            move *= toward
+        before, at, last = f, x, xi
+        if not bracketed and (toward * move < 0.0 or abs(move) >= reach):
+            move, reach, secant = toward * reach, FASTER * reach, False
+        elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):
+            move = 0.5 * (inner + outer) - x
+        x += move
+    return (xi if abs(xi - last) <= STALLED else math.nan), index, x
+
+
+def _beyond_end(run: Run, k: int, xi: float, f: float) -> float:
+    """Return xi of an edge beyond the end of its segment, where p, or the gap, is `f`."""
+    slope, outward = 2.0 * xi, SIDES[k]
+    if run.now.sides[k].state == PEELING:
+        outward = -SIDES[k]
         for i in over(len(run.arms)):
             slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
-    return xi + beyond * min(abs(f / slope), FARTHEST), at_far, far
+    return xi + outward * min(abs(f / slope), FARTHEST)
 
 
-def at_far_end(run: Run, k: int, s: float, d: float, Y: float) -> float:
-    """Return p, or the gap if the edge touches, where the segment of an edge ends; `here` has A_i and B_i."""
+def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) -> float:
+    """Return p, or the gap if the edge touches, where the segment of an edge ends; `here` has A_i and B_i.
+
+    An end that is beyond the `middle` of the contact is passed by the other edge.
+    """
     side, never = run.now.sides[k], math.inf
     if side.segment == NEVER:
         return never
     segment, touches = run.segments[side.segment], side.state == TOUCHING
     far, X = (segment.a, segment.X_a) if segment.edge == k else (segment.b, segment.X_b)
-    if far == math.inf:
+    if far == math.inf or (not touches and SIDES[k] * (X + Y - middle) < 0.0):
         return never
     if segment.step == NEVER:
         if touches:
@@ -227,40 +253,6 @@ def at_far_end(run: Run, k: int, s: float, d: float, Y: float) -> float:
     return _margin(run, side.state, s, d, Y, segment.edge, index, far)[0]
 
 
-def _inside(
-    run: Run, k: int, s: float, d: float, Y: float, index: int, far: float, f: float
-) -> float:
-    """Return an element in contact if the other edge passed the far end, where p < 0, else that end.
-
-    The pressure falls outward from the far end if it was this edge that passed.
-    """
-    side, at_rest = run.now.sides[k], index == NEVER
-    edge, low, high, best = run.segments[side.segment].edge, far, side.sigma, f
-    if at_rest:
-        high = side.xi - evaluate(run.pieces[run.now.piece], run.now.s)[0] + run.now.x + Y
-    x = far + PROBE * (high - far)
-    for turn in range(ITERATIONS):
-        if not at_rest:
-            index = step_of(run, edge, index, x)
-        p, _ = pressed(run, s, d, Y, x, edge, index, x)
-        if p > 0.0:
-            return x
-        if turn == 0:
-            if p <= f:
-                return far
-            at, best = x, p
-        elif p > best:
-            low, high = (at, high) if (x > at) == (high > low) else (low, at)
-            at, best = x, p
-        elif (x > at) == (high > low):
-            high = x
-        else:
-            low = x
-        wide = abs(high - at) > abs(at - low)
-        x = at + GOLDEN * ((high if wide else low) - at)
-    return far
-
-
 def _margin(
     run: Run, state: int, s: float, d: float, Y: float, edge: int, index: int, x: float
 ) -> tuple[float, float]:
@@ -268,36 +260,3 @@ def _margin(
     if state == PEELING:
         return pressed(run, s, d, Y, x, edge, index, x)
     return free(run, s, d, Y, edge, index, x)
-
-
-def _search(
-    run: Run, k: int, s: float, d: float, Y: float, xi: float, index: int, x: float, far: float, near: float
-) -> tuple[float, int, float]:  # fmt: skip
-    """Find an edge by the secant method from a guess x: of the instant, or of xi of elements at rest.
-
-    It lies between two instants, if they are known.
-    """
-    side, at_rest = run.now.sides[k], index == NEVER
-    edge, before, at, last = run.segments[side.segment].edge, math.nan, 0.0, math.nan
-    bracketed = not math.isnan(far)
-    for _ in range(ITERATIONS):
-        if not at_rest:
-            x = min(x, near) if bracketed and edge == k else x
-            index = step_of(run, edge, index, x)
-        f, xi = _margin(run, side.state, s, d, Y, edge, index, x)
-        if abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
-            return xi, index, x
-        move = (1e-4 if at_rest else 1e-3 * (run.now.s - s)) if math.isnan(last) else 0.0
-        if f != before and not math.isnan(last):
-            move = -f * (x - at) / (f - before)
-        before, at, last = f, x, xi
-        if f > 0.0:
-            far = x
-        else:
-            near = x
-        x += move
-        if bracketed and not min(near, far) <= x <= max(near, far):
-            x = 0.5 * (near + far)
-        elif not at_rest:
-            x = min(x, s)
-    return (xi if abs(xi - last) <= STALLED else math.nan), index, x

@@ -34,10 +34,11 @@ SIZE = 14
 """Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
 both edges, both forces, the largest pressure, Y, and the states of both edges."""
 
-REFINED, BISECTIONS, SAMPLES = 30, 60, 3
-"""Evaluations in the search for the peak between two samples, bisections for the instant at which an edge
-passed a place, and samples in each step of the history."""
+REFINED, BISECTIONS, SAMPLES = 8, 60, 3
+"""Golden sections in the search for the peak between two samples, before a parabola; bisections for the
+instant at which an edge passed a place; samples in each step of the history."""
 GOLDEN = 0.6180339887498949
+ROUNDING = 1e-12
 
 
 def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
@@ -96,7 +97,9 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
         at_rest = segment.step == NEVER
         low = max(segment.X_a, state[LEFT] - state[TRAVEL]) if at_rest else segment.a
         high = min(segment.X_b, state[RIGHT] - state[TRAVEL]) if at_rest else min(segment.b, s)
-        if not low < high:
+        if not at_rest:
+            low, high = inside(run, s, state, number, low, high)
+        if not high - low > ROUNDING * s:
             continue
         j = NEVER if at_rest else step_at(run, low)
         best, before, place, after, at = -math.inf, low, low, high, low
@@ -111,7 +114,7 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
             if at_rest:
                 at = min(at + (high - low) / (2 * SAMPLES), high)
             else:
-                width = run.steps[j].span / SAMPLES
+                width = min(run.steps[j].span, high - low) / SAMPLES
                 at = min(at + width, high)
                 while j < index and run.steps[j + 1].start <= at:
                     j += 1
@@ -121,26 +124,42 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
     return largest
 
 
+def inside(
+    run: Run, s: float, state: Any, number: int, low: float, high: float
+) -> tuple[float, float]:
+    """Return the instants between which the elements of a segment entered that are in contact."""
+    first, last = (LEFT, RIGHT) if run.segments[number].edge == 1 else (RIGHT, LEFT)
+    if pressure_of(run, s, state, number, low) == -math.inf:
+        low = instant_of(run, number, s, state[first] - state[TRAVEL])
+    if pressure_of(run, s, state, number, high) == -math.inf:
+        high = instant_of(run, number, s, state[last] - state[TRAVEL])
+    return low, high
+
+
 def last_of(at: float, low: float, place: float) -> float:
     """Return the sample before the best one, which was the best until then, or the first."""
     return place if at > low else low
 
 
 def golden(run: Run, s: float, state: Any, number: int, low: float, high: float) -> float:
-    """Return the largest pressure between two places of a segment, by golden sections."""
+    """Return the largest pressure between two places of a segment: by golden sections, then a parabola."""
     one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     f, g = (pressure_of(run, s, state, number, one), pressure_of(run, s, state, number, two))
-    largest = max(f, g)
+    beside, h = two, g
     for _ in range(REFINED):
         if f > g:
-            high, two, g = two, one, f
+            beside, h, high, two, g = two, g, two, one, f
             one = high - GOLDEN * (high - low)
             f = pressure_of(run, s, state, number, one)
         else:
-            low, one, f = one, two, g
+            beside, h, low, one, f = one, f, one, two, g
             two = low + GOLDEN * (high - low)
             g = pressure_of(run, s, state, number, two)
-        largest = max(largest, f, g)
+    largest = max(f, g)
+    fall, rise = (f - h) * (one - two), (f - g) * (one - beside)
+    if min(f, g, h) > -math.inf and fall != rise:
+        top = one - 0.5 * (fall * (one - two) - rise * (one - beside)) / (fall - rise)
+        largest = max(largest, pressure_of(run, s, state, number, min(max(top, low), high)))
     return largest
 
 

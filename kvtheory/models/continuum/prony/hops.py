@@ -24,6 +24,7 @@ from kvtheory.models.continuum.prony.contact import (
     SIDES,
     STRESSES,
     TOUCHING,
+    at_far_end,
     edge_at,
     free,
     motion,
@@ -297,6 +298,8 @@ def open_contact(run: Run, span: float) -> bool:
     for k in range(2):
         side = now.sides[k]
         side.state = TOUCHING
+        while at_far_end(run, k, s, d, Y, xi) < 0.0:  # it opens over more than one segment
+            aim(run, k, int(run.segments[side.segment].next))
         place, index, sigma = edge_at(run, k, s, d, Y, xi, side.index, side.sigma)
         if not abs(place) < math.inf:
             return False

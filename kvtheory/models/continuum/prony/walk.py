@@ -191,17 +191,19 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
     if flies(run):
         gap = least_gap(run, s, d, Y)[0] + closed(run) * closed(run)
         return gap, math.inf, math.inf, math.inf, math.inf
+    l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
+    l_ground, r_ground = _ahead(run, 0, l, Y), _ahead(run, 1, r, Y)
     if exact:
         for i in over(len(run.arms)):
             for row in (DEPTHS, SLIDES):
                 run.here[i, row] = past(run, index, i, row, theta)
-        l_ground, r_ground = at_far_end(run, 0, s, d, Y), at_far_end(run, 1, s, d, Y)
-    else:
-        l_ground = _ahead(run, 0, value(rows[EDGES], theta), Y)
-        r_ground = _ahead(run, 1, value(rows[EDGES + 1], theta), Y)
+        middle = 0.5 * (l + r)
+        l_ground, r_ground = (
+            at_far_end(run, 0, s, d, Y, middle),
+            at_far_end(run, 1, s, d, Y, middle),
+        )
     l_state, r_state = _keeps(run, 0, theta, v, number), _keeps(run, 1, theta, v, number)
-    width = value(rows[EDGES + 1], theta) - value(rows[EDGES], theta)
-    return width, l_state, l_ground, r_state, r_ground
+    return r - l, l_state, l_ground, r_state, r_ground
 
 
 def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
