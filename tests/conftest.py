@@ -19,9 +19,9 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 
 FIRST = (
-    *("test_figures", "derivations", "test_compare", "test_compare_faults", "test_viscoelastic"),
-    *("test_docs", "test_shape", "test_elements", "test_charts_stability"),
-    *("test_explorer", "test_sweep_lasting", "test_transient_random", "test_energy"),
+    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_compare"),
+    *("test_prony_continuum", "test_cli", "test_planted_fresh", "test_fit", "test_explorer"),
+    *("test_energy", "test_sweep_executors", "test_charts_stability", "test_sweep_lasting"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"

@@ -1,4 +1,6 @@
-"""Stability of steady sliding on a Prony series, against quadrature of its definition."""
+"""Stability of steady sliding on a Prony series, against quadrature of its definition, and elements."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,67 +10,27 @@ import kvtheory as kv
 from kvtheory.models.steady import general_stability
 
 ZENER, TWO = [(5e10, 0.1)], [(3e10, 0.01), (5e9, 0.5)]
-CELLS, CYCLES, SMALL = 300, 8.0, 1e-4
 
 
-class Row:
-    """Elements that slide below the indenter by one cell a step, each arm exact over a step."""
+def growth(scene, stiffness, rate, ramp):
+    """Return growth and frequency by elements, in 1/s, after a ramp that ends near steady sliding.
 
-    def __init__(self, scene):
-        state, self.R, self.K = kv.steady(scene), scene.indenter.radius, scene.foundation.stiffness
-        self.dx = 2.16 * state.half_length / CELLS
-        self.dt = self.dx / scene.drive.velocity
-        self.x = self.dx * (np.arange(CELLS) + 0.5 - 0.5 * CELLS)
-        times = np.array([arm.relaxation_time for arm in scene.foundation.arms])[:, None]
-        stiffness = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None]
-        self.decay = np.exp(-self.dt / times)
-        self.gain = stiffness * (1.0 - self.decay) * times / self.dt
-        self.stress = np.zeros((len(times), CELLS))
-        self.u, self.touching, self.shift = np.zeros(CELLS), np.zeros(CELLS, bool), 0.0
-
-    def step(self, depth, moved):
-        """Return load and friction force after the row has moved."""
-        self.shift += moved
-        if self.shift >= 0.5 * self.dx:
-            self.shift -= self.dx
-            for each in (self.stress, self.u, self.touching):
-                each[...] = np.roll(each, 1, axis=-1)
-                each[..., 0] = 0.0
-        x = self.x + self.shift
-        level = depth - x * x / (2.0 * self.R)
-        touching = self.touching | ((x < 0.0) & (level > 0.0))
-        u = np.where(touching, level, 0.0)
-        stress = self.decay * self.stress + self.gain * (u - self.u)
-        p = self.K * u + stress.sum(axis=0)
-        self.touching = touching & ~((p <= 0.0) & (x > 0.0))
-        self.u, self.stress = u * self.touching, stress * self.touching
-        p = self.dx * p * self.touching
-        return p.sum(), -(p * x).sum() / self.R
-
-
-def growth(scene, stiffness, rate):
-    """Return growth and frequency in the row, in 1/s, of a disturbance whose expected rate is `rate`."""
-    row, support, omega = Row(scene), scene.support, abs(rate.imag)
-    rest, dt, step = kv.steady(scene).depth, row.dt, row.dx
-    for _ in range(int(2.2 * CELLS)):
-        load, friction = row.step(rest, step)
-    W, F, depth, X, down, along, found = load, friction, rest * (1.0 + SMALL), 0.0, 0.0, 0.0, []
-    for _ in range(int(CYCLES * 2.0 * np.pi / omega / dt)):
-        down += dt * (load - W - support.spring * (depth - rest)) / support.mass
-        along += dt * (F - friction - stiffness * X) / scene.drive_mass
-        depth, X = depth + dt * down, X + dt * along
-        W, F = row.step(depth, step - dt * along)
-        found.append(X)
-    t, X = dt * np.arange(len(found)), np.array(found)
-    t, X = t[t > 3.0 * np.pi / omega], X[t > 3.0 * np.pi / omega]
+    The expected rate chooses the instants; slow arms relax beside the swing.
+    """
+    V, omega = scene.drive.velocity, abs(rate.imag)
+    at = ramp + np.linspace(1.5, 9.5, 161) * 2.0 * np.pi / omega
+    drive = kv.Drive(history=[(0.0, 0.0), (ramp, V)], stiffness=stiffness, mass=scene.drive_mass)
+    whole = replace(scene, drive=drive, run=kv.Run(float(at[-1])))
+    run = kv.elements(whole, per_length="100 /mm", at=at, certify=False)
+    t, x = at - at[0], run.sliding_velocity / V - 1.0
     slowest = max(arm.relaxation_time for arm in scene.foundation.arms)
 
     def misfit(pair):
         e, phase = np.exp(pair[0] * omega * t), pair[1] * omega * t
         base = np.stack([t**0, np.exp(-t / slowest), e * np.cos(phase), e * np.sin(phase)], axis=1)
-        return np.linalg.norm(X - base @ np.linalg.lstsq(base, X, rcond=None)[0])
+        return np.linalg.norm(x - base @ np.linalg.lstsq(base, x, rcond=None)[0])
 
-    options = {"xatol": 1e-7, "fatol": 1e-12 * np.linalg.norm(X)}
+    options = {"xatol": 1e-7, "fatol": 1e-12 * np.linalg.norm(x)}
     starts = ((-0.02, 1.0), (0.02, 1.0))
     best = min((minimize(misfit, each, method="Nelder-Mead", options=options) for each in starts),
                key=lambda each: each.fun)  # fmt: skip
@@ -209,21 +171,25 @@ def test_a_rate_is_not_lost_among_the_resonances_of_the_strips_of_a_ball():
         assert abs(complex(*rate) - true) <= error * abs(true)
 
 
+FAST = [(2e11, 5e-3)]
+
+
 @pytest.mark.parametrize(
-    ("arms", "velocity", "mass", "side"),
-    [([(2e11, 5e-3)], 0.091, 100.0, 1.4), (TWO, 0.2, 50.0, 0.7)],
-)
-def test_discrete_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
-    arms, velocity, mass, side
+    ("arms", "velocity", "mass", "side", "ramp"),
+    [(FAST, 0.091, 100.0, 1.4, 0.1), (FAST, 0.091, 100.0, 0.7, 0.5),
+     (TWO, 0.2, 50.0, 1.4, 0.1), (TWO, 0.2, 50.0, 0.7, 0.3)],
+)  # fmt: skip
+def test_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
+    arms, velocity, mass, side, ramp
 ):
     scene = rubber(arms, velocity, support=kv.DeadWeight(mass=mass, load=9806.65))
-    critical = kv.stability(scene, quantity="critical_stiffness").critical_stiffness
-    over = {"drive.stiffness": side * critical}
+    stiffness = side * kv.stability(scene, quantity="critical_stiffness").critical_stiffness
+    over = {"drive.stiffness": stiffness}
     rate = complex(*kv.stability(scene, over=over, quantity="rates").rates[0])
-    found = complex(*growth(scene, side * critical, rate))
     assert (rate.real > 0.0) == (side < 1.0)
-    assert found.real == pytest.approx(rate.real, rel=0.02)
-    assert found.imag == pytest.approx(abs(rate.imag), rel=2e-3)
+    found, frequency = growth(scene, stiffness, rate, ramp)
+    assert found == pytest.approx(rate.real, rel=0.02)
+    assert frequency == pytest.approx(abs(rate.imag), rel=2e-3)
 
 
 @pytest.mark.parametrize("ball", [False, True])
@@ -282,10 +248,3 @@ def test_the_critical_velocity_is_where_the_stiffness_is_critical():
     found = kv.stability(rubber(ZENER, 0.05), quantity="critical_velocity")
     there = kv.stability(rubber(ZENER, found.critical_velocity), quantity=QUICK)
     assert there.critical_stiffness == pytest.approx(1e6, rel=1e-9)
-
-
-def test_solve_refuses_what_is_unstable():
-    with pytest.raises(kv.ToleranceError, match="unstable on the spring"):
-        kv.solve(rubber(ZENER, 0.05), quantity="load")
-    stiff = kv.solve(rubber(ZENER, 0.05, 1e7), quantity="load")
-    assert stiff.load == pytest.approx(9806.65)

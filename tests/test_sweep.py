@@ -192,18 +192,6 @@ def test_wrong_axes_and_arguments_are_reported(given, words):
         assert word in str(error.value)
 
 
-def test_other_shapes_are_swept_by_what_suits_them():
-    over = {"indenter.inclination": [0.05, 0.1]}
-    for method in ("exact", "quadrature", "asymptote"):
-        result = kv.sweep(WEDGE, over=over, quantities="friction_coefficient", method=method)
-        single = kv.steady(WEDGE, method=method).friction_coefficient
-        assert result["friction_coefficient"][1] == pytest.approx(single, rel=1e-14)
-    with pytest.raises(ValueError, match="parabola only"):
-        kv.sweep(WEDGE, over=over, quantities="hops")
-    with pytest.raises(ValueError, match="circle"):
-        kv.sweep(kv.Scene(indenter=kv.Circle(radius=0.01)), over={V: [0.1]}, method="exact")
-
-
 def plan_of(name, points):
     axes = axes_of(kv.Scene(), {V: np.geomspace(1e-3, 1.0, points)})
     return Plan(kv.Scene(), axes, columns_of(name, series=False), None, "exact", 1e-6)

@@ -66,14 +66,6 @@ def test_measures_are_those_of_the_dense_series(case):
     assert found["depth.max"] <= dense.depth.max() + step
 
 
-def test_at_rest_the_edge_leads_that_led_before():
-    scene = kv.Scene(drive=kv.Drive(history=[(0.0, -0.1), (0.02, -0.1), (0.02, 0.0)]))
-    end = kv.transient(scene, at=[scene.run.duration])
-    for name, value in one(scene, ["leading_edge.end", "trailing_edge.end"]).items():
-        assert value == pytest.approx(getattr(end, name.removesuffix(".end"))[0], rel=1e-9)
-    assert end.leading_edge[0] > 0.0 > end.trailing_edge[0]
-
-
 def test_events_hops_and_the_peak_are_those_of_the_transient(case):
     name, scene, _, found = case
     events, mine = kv.transient(scene).events, json.loads(found["events"])
