@@ -38,7 +38,8 @@ from kvtheory.scene.base_motion import evaluate
 
 CLOSED = 0.03
 """Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens at a
-penetration of the square of this width."""
+penetration of the square of this width. The pressure on ground that is met again there is wrong in proportion
+to it, the forces as its cube."""
 BRIEF = 100.0
 """A contact that closes within so many of the shortest steps is closed too."""
 SAMPLES, REFINED, BISECTIONS = 3, 40, 60
