@@ -444,8 +444,8 @@ class Solver:
             move = -inverse @ r
             z = z + move
             change = residual(z) - r
-            r, size, down = r + change, np.abs(move).max() * h, move @ inverse @ change
-            if size < 1e-15 or (turn > 3 and 0.5 * last <= size < 1e-13):
+            r, size, down = r + change, np.abs(move).max(), move @ inverse @ change
+            if size < 1e-14 or (turn > 3 and 0.5 * last <= size < 1e-11):
                 return state["rates"], state["step"], state["found"]
             if abs(down) > 1e-300:  # Broyden
                 inverse += np.outer(move - inverse @ change, move @ inverse) / down
@@ -604,7 +604,7 @@ SCENES = {
         1e7,
         drive={"stiffness": 1e6, "damping": 100.0, "mass": 10.0},
     ),
-    "hop": scene([[3e11, 0.01]], 0.3, 0.0168, steps=(0.025, 0.015)),
+    "hop": scene([[3e11, 0.01]], 0.3, 0.0168, steps=(0.06, 0.04)),
 }
 
 

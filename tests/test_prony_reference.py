@@ -20,11 +20,15 @@ from tests.prony_reference import DEPTH, LOAD, QUANTITIES, STIFFNESS, TABLE
 CASES = {case["name"]: case for case in json.loads(TABLE.read_text())}
 ALL = SCENES > 200
 """All scenes take a minute, on demand: KVTHEORY_TEST_SCENES=201."""
-UNCERTIFIED = {"ramp"}
-"""The solution with the tighter tolerance fails, and the error is unknown."""
 FINE = "start, fixed", "start, suspended", "stop, fixed", "reversal, fixed"
 ROUGH = "start, ten arms", "ramp", "to and fro", "spring and damper", "stick-slip, fixed", "hop"
-FINE_CASES = [(name, 1e-9) for name in (CASES if ALL else FINE)]
+FAILS = pytest.mark.xfail(
+    reason="the steps become ever shorter where an edge leaves the ground at rest"
+)
+FINE_CASES = [
+    pytest.param(name, 1e-9, marks=FAILS if name == "ramp" else ())
+    for name in (CASES if ALL else FINE)
+]
 ROUGH_CASES = [(name, 1e-6) for name in (CASES if ALL else ROUGH)]
 
 
@@ -77,7 +81,7 @@ def test_values_agree_with_an_independent_program(name, rtol):
         largest = float(np.nanmax(np.abs(difference))) / measures[quantity]
         assert largest <= 1e-8 + error
         assert largest <= certified[quantity] + 2.0 * error + 1e-12
-        assert certified[quantity] <= 1e-6 or name in UNCERTIFIED
+        assert certified[quantity] <= 1e-6
 
 
 @pytest.mark.parametrize(("name", "rtol"), ROUGH_CASES + FINE_CASES)
