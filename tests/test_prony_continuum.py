@@ -214,6 +214,19 @@ def test_a_peak_is_found_where_all_elements_in_contact_entered_within_one_step()
     assert found.certificate.relative_error["peak_pressure"] < 1e-4
 
 
+def test_an_iteration_that_overflows_only_shortens_a_step():
+    foundation = kv.GeneralizedMaxwell(0.75, [(4.024, 2.574), (3.1413, 0.16707)])
+    points = [(0.0, 0.0), (1.1528, -7.8496), (1.6596, -7.8496), (2.1765, 7.8496)]
+    scene = kv.Scene(
+        kv.Parabola(0.5), foundation, kv.DeadWeight(mass=0.1, load=1.0), kv.Drive(history=points),
+        kv.Run(2.16),
+    )  # fmt: skip
+    found, tight = (
+        kv.transient(scene, at=[2.1, 2.16], rtol=r, certify=False) for r in (1e-5, 1e-7)
+    )
+    assert apart(found, tight, scene, SERIES[:5]) < 1e-3
+
+
 def test_many_arms_are_interpreted_at_once():
     """A hundred arms need little more Python than a few, each of which an array would not make faster."""
     calls = []

@@ -215,7 +215,10 @@ def edge_at(
         else:
             move *= toward
         before, at, last = f, x, xi
-        if not bracketed and (toward * move < 0.0 or abs(move) >= reach):
+        stands = move == 0.0 and abs(f) > STALLED * (
+            1.0 + run.given.glass
+        )  # X does, where sliding began
+        if not bracketed and (stands or toward * move < 0.0 or abs(move) >= reach):
             move, reach, secant = toward * reach, FASTER * reach, False
         elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):
             move = 0.5 * (inner + outer) - x

@@ -130,7 +130,8 @@ def solve(
             run = as_arrays(run)
         interpreted = isinstance(run.steps, list)
         perform = evaluation.perform if interpreted else kernel()
-        status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
+        with np.errstate(all="ignore"):  # an iteration that diverges ends a step, compiled or not
+            status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
         before, left = left, max_steps - now.steps - now.rejected
         Tally.steps += before - left if interpreted else 0
