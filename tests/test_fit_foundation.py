@@ -328,7 +328,10 @@ def test_the_command_writes_a_scene_that_loads_and_slides(tmp_path):
     text = path.read_text()
     assert "misfit" in text
     small = ["foundation", str(written(tmp_path, HEAD + ROWS)), *layer, "-o", str(path)]
-    assert CliRunner().invoke(main, small).exit_code == 0
+    bare = tmp_path / "bare.toml"
+    bare.write_text(re.sub(r"(?s)\[foundation\].*?(?=\n\[)", "", kv.to_toml(kv.Scene())))
+    assert CliRunner().invoke(main, [*small, "--scene", str(bare)]).exit_code == 0
+    assert kv.load_scene(path).support == kv.Scene().support
     path.write_text("mine")
     assert CliRunner().invoke(main, small).exit_code == 2
     assert path.read_text() == "mine"

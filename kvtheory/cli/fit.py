@@ -40,7 +40,11 @@ def scene_output(command: Any) -> Any:
 @click.option("--modulus", metavar="E|G", help="What the moduli are, if the headers do not say.")
 @click.option("--arms", type=click.IntRange(1), help="Default: the fewest within the scatter.")
 @click.option("--rtol", type=float, help="Relative misfit allowed, instead of the scatter.")
-@click.option("--scene", type=FILE, help="Scene that is given this foundation; default: Table 1.")
+@click.option(
+    "--scene",
+    type=FILE,
+    help="Scene that is given this foundation; it may have none. Default: Table 1.",
+)
 @scene_output
 def foundation(
     data: Path,
@@ -60,7 +64,7 @@ def foundation(
     from kvtheory.scene import load_scene
 
     with console.progress_bar("foundation"):
-        found = fit_foundation(data, load_scene(scene), **how)
+        found = fit_foundation(data, load_scene(scene, foundation=False), **how)
     _finish(found, output, plot, as_json=as_json)
     if found.scene is None and not as_json:
         click.echo("Give --thickness and --poisson-ratio for the foundation of a scene.")

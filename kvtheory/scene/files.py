@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.scene.arguments import a_scene, checked, file_name, names
+from kvtheory.scene.arguments import a_scene, checked, file_name, flag, names
 from kvtheory.scene.columns import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
@@ -54,8 +54,10 @@ DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
 
 
-@checked(path=file_name, overrides=names)
-def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) -> Scene:
+@checked(path=file_name, overrides=names, foundation=flag)
+def load_scene(
+    path: str | Path | None = None, overrides: Iterable[str] = (), *, foundation: bool = True
+) -> Scene:
     """Read a scene from a TOML file, or take Table 1 where `path` is None.
 
     Parameters
@@ -66,6 +68,8 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
         Texts ``"section.key=value"`` that replace or add keys. A new ``support.kind`` or
         ``indenter.shape`` keeps the keys that it has in common with the old one; without a file,
         Table 1 gives the others.
+    foundation
+        Whether the file must have a section ``[foundation]``; otherwise Table 1's replaces a missing one.
 
     Raises
     ------
@@ -85,9 +89,11 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     tables, problems = _overridden(path, overrides)
     unknown = [name for name in tables if name not in SECTIONS]
     problems += [f"[{name}]: unknown section; {nearest(name, SECTIONS)}" for name in unknown]
-    needed = [name for name in absent(SECTIONS, tables) if name != "run"]
+    optional = ("run",) if foundation else ("run", "foundation")
+    needed = [name for name in absent(SECTIONS, tables) if name not in optional]
     problems += [f"[{name}]: this section is missing" for name in needed]
-    parts, per_width = {}, _is_per_width(tables)
+    parts: dict[str, Any] = {} if "foundation" in tables else {"foundation": Scene().foundation}
+    per_width = _is_per_width(tables)
     for section in (name for name in SECTIONS if name in tables):
         with problems.catching(section, tables[section]):
             parts[section] = _part(section, tables[section], per_width)
