@@ -102,22 +102,22 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
         if not high - low > ROUNDING * s:
             continue
         j = NEVER if at_rest else step_at(run, low)
-        best, before, place, after, at = -math.inf, low, low, high, low
+        best, before, after, last, at = -math.inf, low, high, low, low
         while True:
             p = pressure_of(run, s, state, number, at)
             if p > best:
-                best, before, place, after = p, last_of(at, low, place), at, math.inf
+                best, before, after = p, last, math.inf
             elif after == math.inf:
                 after = at
             if at >= high:
                 break
-            if at_rest:
-                at = min(at + (high - low) / (2 * SAMPLES), high)
-            else:
-                width = min(run.steps[j].span, high - low) / SAMPLES
-                at = min(at + width, high)
+            last = at
+            width = (high - low) / (2 * SAMPLES)
+            if not at_rest:
                 while j < index and run.steps[j + 1].start <= at:
                     j += 1
+                width = min(run.steps[j].span, high - low) / SAMPLES
+            at = at + width if at + 1.5 * width < high else high  # not twice, but for rounding
         largest = max(largest, best)
         if best > 0.0:
             largest = max(largest, golden(run, s, state, number, before, min(after, high)))
@@ -134,11 +134,6 @@ def inside(
     if pressure_of(run, s, state, number, high) == -math.inf:
         high = instant_of(run, number, s, state[last] - state[TRAVEL])
     return low, high
-
-
-def last_of(at: float, low: float, place: float) -> float:
-    """Return the sample before the best one, which was the best until then, or the first."""
-    return place if at > low else low
 
 
 def golden(run: Run, s: float, state: Any, number: int, low: float, high: float) -> float:
