@@ -245,6 +245,24 @@ def test_sweeps_shift_to_the_master_curve_and_wlf_is_found():
     )
 
 
+def test_a_loss_of_a_thousandth_of_the_modulus_tells_the_shifts():
+    """On the plateau of a rubber the storage modulus is nearly constant, and tells none."""
+    rng, law = np.random.default_rng(1), shifting.Law("wlf", (8.86, 101.6))
+    times, rows = 10.0 ** np.arange(-8.0, 2.1, 0.5), []
+    arms = 60e6 * 10.0 ** (-0.28 * np.arange(times.size))
+    for T in np.arange(-20.0, 61.0, 10.0):
+        for f in np.geomspace(0.1, 50.0, 10):
+            x = 2j * np.pi * f * 10.0 ** law.log_shift(T, 20.0) * times
+            E = 1.8e6 + (arms * x / (1.0 + x)).sum()
+            rows.append((T, f, *(E.real, E.imag) * (1.0 + 0.01 * rng.standard_normal(2))))
+    names = "T [degC]", "f [Hz]", "E' [Pa]", "E'' [Pa]"
+    found = kv.fit_foundation(dict(zip(names, np.transpose(rows), strict=True)))
+    T, shift = np.array(found.shift_factors).T
+    assert shift == pytest.approx(law.log_shift(T, 20.0), abs=0.02)
+    assert found.misfit < 0.02
+    assert not any("Kramers" in remark for remark in found.remarks)
+
+
 def test_moduli_shift_vertically_if_allowed():
     data, law = wlf_sweeps(0.003, vertical=0.004)
     found = kv.fit_foundation(data, temperature=293.15, vertical=True)

@@ -134,6 +134,8 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
     assert note in repr(state)
     assert note in state._repr_html_()
     assert state.as_dict()["notes"] == [note]
+    for found in (kv.asymptotes(thick), kv.transient(thick, at=[0.0], certify=False)):
+        assert "not thin for its contact" in found.notes[-1]
     assert kv.steady(thick, over={"foundation.stiffness": 1e9}).notes == ()
     (several,) = kv.steady(thick, over={"foundation.thickness": [1e-6, 1e-3, 2e-3]}).notes
     assert "in 2 of 3 scenes" in several

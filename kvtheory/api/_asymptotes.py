@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._edge import double_precision, layer_note, scene_of
 from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results import AsymptoteReport
@@ -77,7 +77,9 @@ def asymptotes(
     with double_precision(scene):
         found = maxima.report(scene, method)
         report = regimes.report(scene, tolerance, found, method)
-        return replace(report, notes=(*report.notes, *_extrapolated(scene, report, method)))
+        thick = layer_note(scene, METHODS[method](scene).half_length)
+        notes = [*report.notes, *_extrapolated(scene, report, method), thick]
+        return replace(report, notes=tuple(filter(None, notes)))
 
 
 def _extrapolated(scene: Scene, report: AsymptoteReport, method: str) -> list[str]:

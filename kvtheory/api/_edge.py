@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
-from kvtheory.scene.foundations import extrapolates
+from kvtheory.scene.foundations import extrapolates, thick_layer
 from kvtheory.scene.mistakes import SceneError, problem
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -39,15 +39,26 @@ def times_of(scene: Scene, at: list[float] | None, problems: list[str] | None = 
     return at
 
 
+def layer_note(scene: Scene, half_length: Any) -> str:
+    """Return a note if the layer is thick for its contact, or an empty text."""
+    foundation, stretch = scene.foundation, getattr(scene.indenter, "stretch", 1.0)
+    if foundation.modulus is None:
+        return ""
+    shortest = half_length * np.minimum(1.0, stretch)
+    return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+
+
 def noted(scene: Scene, series: Any) -> Any:
-    """Return a time series with a note if V/c leaves the frequencies of the measured foundation."""
-    if scene.foundation.lowest_frequency is None:
-        return series
+    """Return a time series with notes: V/c leaves the measured frequencies; the layer is thick."""
     length = np.abs(series.trailing_edge - series.leading_edge)
-    passing = np.nan_to_num(np.abs(series.velocity) / np.where(length > 0.0, length, np.nan))
-    k = int(passing.argmax())
-    note = extrapolates(scene.foundation, passing[k], 1.0)
-    return replace(series, notes=(note,)) if note else series
+    length = np.where(length > 0.0, length, np.nan)
+    if np.isnan(length).all():
+        return series
+    notes = [layer_note(scene, 0.5 * np.nanmin(length))]
+    if scene.foundation.lowest_frequency is not None:
+        passing = np.nan_to_num(np.abs(series.velocity) / length)
+        notes.append(extrapolates(scene.foundation, passing.max(), 1.0))
+    return replace(series, notes=tuple(filter(None, notes))) if any(notes) else series
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.api._edge import double_precision, one_scene, scene_of
+from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of
 from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
@@ -19,7 +19,7 @@ from kvtheory.scene.capabilities import (
     lacks_quadrature,
     require,
 )
-from kvtheory.scene.foundations import extrapolates, thick_layer
+from kvtheory.scene.foundations import extrapolates
 from kvtheory.scene.model import Scene
 
 LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
@@ -94,12 +94,11 @@ def steady(
             units = {**state.units, **{key: specs[key].unit for key in arrays}}
             varied = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
             state = replace(state, over=varied, units=units)
-        foundation = scene.foundation
         length = state.trailing_edge - state.leading_edge
-        notes = [extrapolates(foundation, scene.drive.final_velocity, length)]
-        if foundation.modulus is not None:
-            shortest = state.half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
-            notes.append(thick_layer(foundation.thickness, shortest, foundation.poisson_ratio))
+        notes = [
+            extrapolates(scene.foundation, scene.drive.final_velocity, length),
+            layer_note(scene, state.half_length),
+        ]
         return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
 
 

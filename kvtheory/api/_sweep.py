@@ -58,7 +58,7 @@ def sweep(
         Steady quantities by name (default: all of them), and ``stable``: 1, or 0 where steady sliding is
         unstable on the spring in the drive (included by default with a spring). Of a transient:
         ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
-        ``peak_to_steady_friction``, the ratio of the largest |F_x| to the steady one; ``settling_time``,
+        ``peak_to_steady_friction``, the largest |F_x| of the run over the steady one; ``settling_time``,
         after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
         ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run shows
         neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the indenter

@@ -25,6 +25,9 @@ USUAL = 0.1
 """Deviation of log10 a_T from a law that is usual even for well measured shifts."""
 LEAST_SCATTER = 1e-3
 """Smallest scatter of a log10 of a modulus that is used as a weight."""
+FLOOR = 0.01
+"""Smallest modulus whose logarithm is compared, over the scale of a misfit: a loss modulus of a thousandth of
+|E*| may tell a shift that the storage modulus, nearly constant there, cannot."""
 LEAST_OVERLAP = 2
 """Fewest points of each curve in the overlap."""
 NEARBY, MOST_VARIANCE = 0.02, 1e4
@@ -151,7 +154,7 @@ def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, flo
     """
     sign = 1.0 if cold.dynamic else -1.0  # towards the stiff end
     one, two = (
-        (sign * np.log10(each.x), np.log10(np.maximum(each.values, each.scale)))
+        (sign * np.log10(each.x), np.log10(np.maximum(each.values, FLOOR * each.scale)))
         for each in (cold, warm)
     )
     one, two = ((x[np.argsort(x)], y[:, np.argsort(x)]) for x, y in (one, two))
