@@ -77,8 +77,9 @@ def asymptotes(
     with double_precision(scene):
         found = maxima.report(scene, method)
         report = regimes.report(scene, tolerance, found, method)
-        thick = layer_note(scene, METHODS[method](scene).half_length)
-        notes = [*report.notes, *_extrapolated(scene, report, method), thick]
+        notes = [*report.notes, *_extrapolated(scene, report, method)]
+        if scene.foundation.modulus is not None:  # else no state need be solved again
+            notes.append(layer_note(scene, METHODS[method](scene).half_length))
         return replace(report, notes=tuple(filter(None, notes)))
 
 
