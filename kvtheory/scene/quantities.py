@@ -6,7 +6,7 @@ floats, in SI.
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
@@ -202,15 +202,14 @@ def quantity(
     return field(default=default, metadata={"quantity": spec})
 
 
-def quantities(cls: Any) -> dict[str, Quantity]:
+def quantities(cls: Any) -> Mapping[str, Quantity]:
     """Return the quantities that a dataclass or its instance declares, by name."""
-    return dict(_declared(cls if isinstance(cls, type) else type(cls)))
+    return _declared(cls if isinstance(cls, type) else cls.__class__)
 
 
 @cache
-def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
-    fields = dataclasses.fields(cls)
-    return tuple((f.name, f.metadata["quantity"]) for f in fields if "quantity" in f.metadata)
+def _declared(cls: type) -> Mapping[str, Quantity]:
+    return {f.name: f.metadata["quantity"] for f in dataclasses.fields(cls) if f.metadata}
 
 
 def given(instance: Any) -> dict[str, Quantity]:
@@ -302,7 +301,23 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
     return np.array(rows, dtype=float)
 
 
-def items(text: str) -> list[str]:
+def listed(value: Any, spec: Quantity) -> NDArray[np.float64]:
+    """Return the values in SI of one list: a text with commas and ranges, an array or a list.
+
+    >>> listed("1 ms, 2 ms:3 ms:2", Quantity("s", "time", 0.0, False)).tolist()
+    [0.001, 0.002, 0.003]
+    """
+    if isinstance(value, str) and (items := split(value)):
+        return np.concatenate([item_values(item, spec) for item in items])
+    array = np.atleast_1d(array_of(value, spec))
+    if array.ndim > 1:
+        raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
+    if array.size == 0:
+        raise ValueError("is empty; expected at least one value")
+    return array
+
+
+def split(text: str) -> list[str]:
     """Split a text at its commas."""
     return [item.strip() for item in text.split(",") if item.strip()]
 
