@@ -254,11 +254,10 @@ def _one_way(found: Iterable[Span]) -> Iterator[Span]:
         start, powers = a, coefficients
         for zero in _reversals(coefficients, a, b):
             yield start, zero, powers
-            start, shifted = zero, list(coefficients)
-            for first in range(len(shifted) - 1):
-                for k in range(len(shifted) - 2, first - 1, -1):
-                    shifted[k] += (zero - a) * shifted[k + 1]
-            powers = (0.0, *shifted[1:])
+            start, shifted = zero, np.zeros(len(coefficients))
+            moved = Polynomial(coefficients)(Polynomial([zero - a, 1.0])).coef
+            shifted[1 : moved.size] = moved[1:]  # at the zero itself V = 0
+            powers = tuple(shifted.tolist())
         yield start, b, powers
 
 
