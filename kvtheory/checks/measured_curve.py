@@ -85,10 +85,7 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
 
 
 def _scatter(order: Array, values: Array, curve: Array) -> Array:
-    """Return sigma of the values, without what is smooth, although the points may be far apart.
-
-    A wrong curve may resemble theory times a factor, or be flat.
-    """
+    """Return sigma without what is smooth: a wrong curve may be theory times a factor, or flat."""
     square = float(curve @ curve)
     factors = 1.0, float(values @ curve) / square if square else 0.0, 0.0
     found = [noise(order, values - factor * curve, curve) for factor in factors]

@@ -108,10 +108,7 @@ def finish(
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Provide a function that shows the fraction done, and a text, if the work takes long.
-
-    A terminal is updated about every second, even if no progress is reported.
-    """
+    """Provide a function that shows the fraction done, and a text, if the work takes long."""
     from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
     context = click.get_current_context(silent=True)
@@ -171,10 +168,7 @@ def print_json(result: Any) -> None:
 
 
 def print_series(result: Any, *, whole: bool, remedy: str) -> None:
-    """Print a time series as a table: every row, or about twenty of them with both ends.
-
-    A large error is printed above it, with its remedy.
-    """
+    """Print a time series: every row, or about twenty; above it a large error, with its remedy."""
     errors = result.certificate.relative_error
     if large := {name: error for name, error in errors.items() if not error <= LARGE_ERROR}:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
