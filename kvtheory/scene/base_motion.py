@@ -57,9 +57,7 @@ class BaseMotion:
 
     @classmethod
     def from_points(cls, points: Sequence[tuple[float, float]], end: float) -> "BaseMotion":
-        """Return the motion that is linear between `points` (t, V), with a jump where t repeats.
-
-        It keeps its last velocity until `end`.
+        """Return the motion, linear between `points` (t, V), a jump where t repeats, then at a constant V.
 
         >>> motion = BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], end=3.0)
         >>> [motion.at(t)[:2] for t in (0.5, 1.0, 3.0)]

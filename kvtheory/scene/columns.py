@@ -251,10 +251,7 @@ class Reader:
         return Table(str(path), columns, numbers, tables[0][3])
 
     def _header(self, line: str, first: str) -> tuple[list[str], str] | None:
-        """Return the cells and the separator of a row of text that names what is needed.
-
-        The separator is that of a first line such as ``sep=;``, or the one by which most names are known.
-        """
+        """Return the cells and the separator, that of ``sep=;`` or the best, of a row that is a header."""
         told, best, most = SEPARATED.match(first), None, 0
         for separator in told[1] if told else SEPARATORS:
             cells = _split(line, separator)
@@ -397,10 +394,7 @@ HISTORY = Reader(
 
 
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
-    """Return the points (t, V) in SI of a table of time and velocity; other columns are ignored.
-
-    It raises SceneError if the file cannot be read; the message says in which line.
-    """
+    """Return the points (t, V) in SI of a table of time and velocity, or raise SceneError with the line."""
     try:
         table = HISTORY.read(path)
         t, V = table.si("time", "s")[0], table.si("velocity", "m/s")[0]

@@ -26,10 +26,7 @@ Value = Any
 
 
 class Derived(float):
-    """A quantity that follows from others, and is computed again when these are replaced.
-
-    For a time that is shifted by temperature, `given` is its value before the shift; otherwise None.
-    """
+    """A quantity that follows from others, computed again with them; `given` is a time before its shift."""
 
     given: Any = None
 
@@ -227,10 +224,7 @@ def free(instance: Any) -> dict[str, Quantity]:
 
 @cache
 def required(cls: Any, given: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the quantities that must be given in addition to the `given` ones.
-
-    A quantity that another one excludes adds no requirement: it is reported as a separate mistake.
-    """
+    """Return what must be given beside the `given` quantities; one that these exclude is another mistake."""
     specs, names = quantities(cls), set(given)
     for name in specs:
         if name in names:
@@ -302,11 +296,7 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
 
 
 def listed(value: Any, spec: Quantity) -> NDArray[np.float64]:
-    """Return the values in SI of one list: a text with commas and ranges, an array or a list.
-
-    >>> listed("1 ms, 2 ms:3 ms:2", Quantity("s", "time", 0.0, False)).tolist()
-    [0.001, 0.002, 0.003]
-    """
+    """Return the values in SI of one list: a text with commas and ranges, an array or a list."""
     if isinstance(value, str) and (items := split(value)):
         return np.concatenate([item_values(item, spec) for item in items])
     array = np.atleast_1d(array_of(value, spec))
@@ -348,11 +338,7 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
 
 
 def validate(instance: Any, section: str) -> None:
-    """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
-
-    A derived quantity is removed, to be computed again. Values whose unit tells whether they are per unit
-    width are kept in `written`, for the scene to check.
-    """
+    """Convert and check every quantity; `written` keeps those whose unit tells a line from a ball."""
     specs, written, values = quantities(instance), {}, {}
     for name in specs:
         value = as_given(getattr(instance, name))

@@ -40,10 +40,7 @@ class StaticState:
 
     @classmethod
     def of(cls, scene: Scene) -> "StaticState":
-        """Return the static state of a scene with a parabola or a ball: other shapes have more numbers.
-
-        Other scenes, and those that leave the range of double precision, raise ValueError.
-        """
+        """Return the static state of one scene with a parabola or a ball, or raise ValueError."""
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
         R, K = scene.indenter.radius, scene.foundation.stiffness
