@@ -57,10 +57,7 @@ class Data(NamedTuple):
         return next(iter(self.measured.values())).size
 
     def part(self, step: int) -> "Data":
-        """Return one row in `step`: of a time series at equal distances, else at random in each step.
-
-        Loads or directions may take turns from row to row.
-        """
+        """Return one row in `step`; over velocity at random in each step, as loads may take turns."""
         rows = np.arange(0, self.size, step)
         if self.time is None:
             shift = np.random.default_rng(0).integers(step, size=rows.size)
