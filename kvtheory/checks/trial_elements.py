@@ -137,18 +137,8 @@ class Elements:
         R = scene.indenter.radius  # type: ignore[union-attr]
         surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
-        seen = np.zeros(places.size)
-        return cls(
-            scene,
-            rule,
-            places,
-            heights,
-            areas,
-            length,
-            surface,
-            moduli * rule.loaded * surface,
-            seen,
-        )
+        stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
+        return cls(scene, rule, places, heights, areas, length, surface, stress, seen)
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
