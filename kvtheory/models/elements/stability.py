@@ -33,11 +33,9 @@ ELEMENTS = 4.0
 
 
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
-    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
+    """Return contact lengths (of a ball areas) that bound the step: in steady sliding, and at static depth.
 
-    Of a ball, they are areas (m^2). Each is the longest over the velocities of the drive, at the slowest
-    motion in each direction; an indenter on a spring may stick, which is a contact at rest. A step that is
-    too long at the static depth only is unstable at first and may recover.
+    A step that is too long at the static depth only is unstable at first and may recover.
     """
     velocities = [0.0, *path.velocities] if model.sprung else path.velocities
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
@@ -52,9 +50,8 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
 def limit_at(scheme: Scheme, c: Constants, length: float) -> float:
     """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1.
 
-    Along x, F_x = -∫ h' p dx holds the indenter as a contact of the length ∫ h'^2 dx would, with k_x and
-    c_x beside it. The rates of both together are at most the sum of those of each (Weyl), and so are the
-    inverse limits.
+    Along x a contact of the length ∫ h'^2 dx holds the indenter, with k_x and c_x. The rates of both together
+    are at most the sum of those of each (Weyl).
     """
     if not scheme.tableau:
         return math.inf
