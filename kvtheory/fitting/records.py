@@ -31,8 +31,7 @@ VISIBLE = 3.0
 LARGEST = 1e30
 """Largest number that is accepted as a measured one; squares of larger ones overflow."""
 SAME_DRIVE = 0.05
-"""Median difference of a column of velocities from the drive of the scene, over its largest velocity, up to
-which they are the same."""
+"""Median difference of velocities from the drive of the scene, over the largest, up to which they are it."""
 
 
 class Data(NamedTuple):

@@ -27,8 +27,7 @@ FEWEST_STRIPS = 16
 FEWEST, MOST = 8, 2_000_000
 """Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
 SAMPLES = {False: 4096, True: 256}
-"""Elements in a line contact, and along a ball, where no spacing is given: the size of the contact is known
-to about a thousandth then."""
+"""Elements in a line contact, and along a ball, without a spacing: sizes are known to a thousandth then."""
 CREEP = 1e-12
 """Share of a_0/tau that counts as rest."""
 DEPTH_RTOL, STALLED = 1e-12, 0.9

@@ -88,8 +88,7 @@ Rows = dict[str, Any]
 COLUMNS = (*SERIES_UNITS, "doubt")
 
 Timetable = tuple[Array, Array, Array, Array]
-"""Times before and after the steps, their lengths, after which of them something is reported, and what: see
-`kernels.Course`."""
+"""Times around the steps, their lengths, after which something is reported, and what: see `Course`."""
 
 
 def simulate(

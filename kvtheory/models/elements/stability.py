@@ -26,8 +26,7 @@ RISE = 5.0
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
 GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
-"""Search for the largest stable step: growth per step above rounding, least step times the fastest rate, and
-relative tolerance."""
+"""Search for a stable step: growth above rounding, least step times the fastest rate, tolerance."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
