@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.columns import SPELLINGS, Reader, Table
-from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.tables import parts
 
 Array = NDArray[np.float64]
