@@ -28,13 +28,10 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
     return scene
 
 
-def times_of(scene: Scene, at: list[float] | None, problems: list[str] | None = None) -> Any:
-    """Return the times in s, or None; those after the end are reported to `problems`, or else raised."""
+def times_of(scene: Scene, at: list[float] | None) -> Any:
+    """Return the times in s, or None; those after the end of the run raise SceneError."""
     late = f"is after the end of the run, run.duration = {scene.run.duration} s"
-    found = [problem("`at`", time, late) for time in at or () if time > scene.run.duration]
-    if problems is not None:
-        problems += found
-    elif found:
+    if found := [problem("`at`", time, late) for time in at or () if time > scene.run.duration]:
         raise SceneError(found)
     return at
 

@@ -97,7 +97,8 @@ def solve(
     problems = Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
     names = _names(quantity, units, over_time, problems)
-    times = times_of(scene, at, problems)
+    with problems.catching("`at`", at):
+        times_of(scene, at)
     problems.report()
     if over_time:
         follow = partial(transient, progress=progress)
@@ -111,7 +112,7 @@ def solve(
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
         rungs = sliding.rungs(steady)
     with double_precision(scene):
-        return climb(scene, Request(names, rtol, times, units), rungs)
+        return climb(scene, Request(names, rtol, at, units), rungs)
 
 
 def _names(
