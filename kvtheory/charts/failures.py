@@ -18,27 +18,22 @@ TEXTS = "key", "title", "scene", "why", "quantity", "notice", "package"
 
 @dataclass(frozen=True)
 class Entry:
-    """One way in which a method fails.
-
-    `unit` and `factor` show the numbers, which are in SI; `x` and `y` are label, factor and scale of the
-    axes; `tolerance` is the allowed error of the package relative to the right number (or to `scale`, in
-    SI, where that is zero).
-    """
+    """One way in which a method fails."""
 
     key: str
     title: str
     scene: str
     why: str
     quantity: str
-    unit: str
-    factor: float
+    unit: str  # in which numbers are shown
+    factor: float  # to it from SI
     notice: str
     package: str
-    tolerance: float
-    x: tuple[str, float, str]
+    tolerance: float  # allowed error of the package relative to the right number, or to `scale`
+    x: tuple[str, float, str]  # label, factor and scale of an axis
     y: tuple[str, float, str]
     measure: Callable[[], Outcome]
-    scale: float = 0.0
+    scale: float = 0.0  # in SI, where the right number is zero
 
 
 @dataclass(frozen=True)

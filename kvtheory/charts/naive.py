@@ -26,19 +26,14 @@ LOAD = 4.0 / 3.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """The numbers of a failure in SI: the wrong one, the right one and that of the package.
-
-    `right` comes from a formula or a method that shares no code with that of `package`. A method without a
-    result gives NaN or infinity. The curves `naive` and `ours` are pairs x, y; `said` is the message of
-    the package, if any.
-    """
+    """The numbers of a failure in SI, NaN or infinite without a result, and its curves."""
 
     wrong: float
-    right: float
+    right: float  # by a formula or a method that shares no code with that of `package`
     package: float
-    naive: tuple[Array, Array]
+    naive: tuple[Array, Array]  # x and y
     ours: tuple[Array, Array]
-    said: str = ""
+    said: str = ""  # the message of the package
 
     def __post_init__(self) -> None:
         for name in ("wrong", "right", "package"):  # may be NumPy scalars

@@ -60,18 +60,14 @@ CLASSES = "stable", "unstable at first", "unstable in steady sliding"
 
 @dataclass(frozen=True)
 class Map:
-    """One map of one scheme: rows over `y`, columns over `x`.
-
-    `start` and `steady` hold the measured growth per step, from rest and in steady sliding;
-    `predicted_start` and `predicted_steady` the step in units of its predicted limit.
-    """
+    """One map of one scheme: rows over `y`, columns over `x`."""
 
     scheme: str
     x: Array
     y: Array
-    start: Array
-    steady: Array
-    predicted_start: Array
+    start: Array  # measured growth per step from rest
+    steady: Array  # and in steady sliding
+    predicted_start: Array  # the step in units of its predicted limit
     predicted_steady: Array
 
     @property

@@ -67,21 +67,18 @@ class Reference:
 
 @dataclass(frozen=True)
 class Method:
-    """A way to solve a problem; `solve` returns the solution and the work it took.
-
-    `kind` is ``"model"`` where the error is that of a simpler model, which no parameter can reduce; `work`
-    names the counted operations; `suits` says whether the method applies to a problem; `scenes` is how
-    many are solved at once.
-    """
+    """A way to solve a problem; `solve` returns the solution and the work it took."""
 
     name: str
     knob: str
     values: Sequence[float]
-    work: Literal["evaluations", "element updates"]
+    work: Literal["evaluations", "element updates"]  # what is counted
     solve: Callable[[Any, float, Clock], tuple[Any, int]]
-    kind: Literal["numerical", "model"] = "numerical"
+    kind: Literal["numerical", "model"] = (
+        "numerical"  # the error of a model no parameter can reduce
+    )
     suits: Callable[[Any], bool] = lambda problem: True
-    scenes: int = 1
+    scenes: int = 1  # solved at once
 
 
 @dataclass(frozen=True)

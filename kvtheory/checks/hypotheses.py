@@ -49,24 +49,20 @@ VELOCITY = "drive.velocity"
 
 
 class Hypothesis(NamedTuple):
-    """A possible fault: its name, its description, and the data and theory that it compares.
-
-    With `starts` it has an unknown x, fitted by least squares from the best of them; `remote` starts are
-    tried if nothing explains the data. Its number, `unit` times x, or e^x with `log`, is passed to `make` and
-    shown in the text as {0}, and `shown` times it as {1}. Without an unknown, `factor` is reported. `powers`
-    are those of the scene's quantities that scale with it.
-    """
+    """A possible fault; with `starts` it has an unknown x, and `number`, from x, goes to `make`."""
 
     name: str
-    text: str
-    make: Callable[[float], Pair | None]
-    starts: Sequence[float] = ()
-    unit: float = 1.0
+    text: str  # the description, with the number as {0}, and `shown` times it as {1}
+    make: Callable[[float], Pair | None]  # the data and theory that it compares
+    starts: Sequence[float] = ()  # x is fitted by least squares from the best of them
+    unit: float = 1.0  # the number is `unit` times x, or e^x with `log`
     shown: float = 1e3
     log: bool = False
-    remote: Sequence[float] = ()
-    powers: Mapping[str, float] | None = None
-    factor: float | None = None
+    remote: Sequence[float] = ()  # starts that are tried if nothing explains the data
+    powers: Mapping[str, float] | None = (
+        None  # of the scene's quantities that scale with the number
+    )
+    factor: float | None = None  # reported without an unknown
 
     def number(self, x: float) -> float | None:
         """Return what is reported for the unknown."""

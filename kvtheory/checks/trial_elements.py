@@ -22,41 +22,27 @@ from kvtheory.scene.static_state import StaticState
 
 
 class Rule(NamedTuple):
-    """How an element presses on the indenter; any value but the default is a mistake.
+    """How an element presses on the indenter; any value but the default is a mistake."""
 
-    `depth_rate`, `slide_rate`: factors on delta' and on -h' V in the compression rate.
-    `decay`: the free surface decays as exp(-`decay` t/tau); infinite means no memory.
-    `pulls`: an element sticks, and pulls, until it is back at z = 0.
-    `stale`: part of the pressure of receding elements that the equation of motion misses.
-    `drops`: part of the whole force that it misses while the indenter rises.
-    `hunt`: damping is this times C u/delta_0, as in the law of Hunt and Crossley.
-    `friction`: factor on h' V in the pressure from which friction is computed.
-    `central`: friction is F_z times the slope in the middle of the patch.
-    `front`, `back`: weights of elements before and behind the lowest point.
-    `lost`: part of the half length without elements at the leading edge.
-    `flat`: every strip of a ball is as deep as the middle one.
-    `start`: initial depth over the static depth.
-    `loaded`, `freezes`: arms bear load at the start; arms do not relax once the indenter has left them.
-    `damper`: a damper on the indenter, in units of C times the contact.
-    """
-
-    depth_rate: float = 1.0
-    slide_rate: float = 1.0
-    decay: float = 1.0
-    pulls: bool = False
-    stale: float = 0.0
-    drops: float = 0.0
-    hunt: float = 0.0
-    friction: float = 1.0
-    central: bool = False
-    front: float = 1.0
-    back: float = 1.0
-    lost: float = 0.0
-    flat: bool = False
-    start: float = 1.0
-    loaded: bool = False
-    freezes: bool = False
-    damper: float = 0.0
+    depth_rate: float = 1.0  # factor on delta' in the compression rate
+    slide_rate: float = 1.0  # factor on -h' V there
+    decay: float = 1.0  # the free surface decays as exp(-decay t/tau); infinite: no memory
+    pulls: bool = False  # an element sticks, and pulls, until it is back at z = 0
+    stale: float = (
+        0.0  # part of the pressure of receding elements that the equation of motion misses
+    )
+    drops: float = 0.0  # part of the whole force that it misses while the indenter rises
+    hunt: float = 0.0  # damping is this times C u/delta_0, as in the law of Hunt and Crossley
+    friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
+    central: bool = False  # friction is F_z times the slope in the middle of the patch
+    front: float = 1.0  # weight of elements before the lowest point
+    back: float = 1.0  # weight of those behind it
+    lost: float = 0.0  # part of the half length without elements at the leading edge
+    flat: bool = False  # every strip of a ball is as deep as the middle one
+    start: float = 1.0  # initial depth over the static depth
+    loaded: bool = False  # arms bear load at the start
+    freezes: bool = False  # arms do not relax once the indenter has left them
+    damper: float = 0.0  # a damper on the indenter, in units of C times the contact
 
 
 COLUMNS, ROWS = {False: 100, True: 26}, 8

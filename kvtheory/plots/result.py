@@ -160,13 +160,5 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
 
 
 def save_plot(result: Any, path: Path) -> None:
-    """Draw a result and write it in the format given by the suffix of `path`.
-
-    Raises
-    ------
-    ValueError
-        If the name does not end in .png, .svg or .pdf, or the result has no picture.
-    OSError
-        If the file cannot be written.
-    """
+    """Draw a result and write it in the format given by the suffix of `path`, or raise with the reason."""
     save_picture(lambda: plot_result(result), path)

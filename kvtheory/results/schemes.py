@@ -8,24 +8,15 @@ from typing import NamedTuple
 
 
 class SchemeRow(NamedTuple):
-    """The properties of a scheme.
-
-    `order_in_time` is the order of the motion of the indenter while no element enters or leaves the contact;
-    `order` is that of the depth when spacing and step are refined together; forces summed over whole
-    elements are of order one. `stability_limit` is the largest stable h C L/M, L the length of the contact:
-    where |R(-z)| = 1, R the stability polynomial (F15); infinite if every step is stable.
-    `parts_of_elements` says whether fractions of elements at the edges are counted. `papers_step` says
-    whether h = 2 dx/V, as in the paper. All this is for Kelvin-Voigt; on a Prony series the explicit schemes
-    have other limits, and the paper's scheme is of order two in time.
-    """
+    """A scheme on Kelvin-Voigt; on a Prony series limits are other, and the paper's order in time is two."""
 
     name: str
     summary: str
-    order_in_time: int
-    order: int
-    stability_limit: float
-    parts_of_elements: bool = False
-    papers_step: bool = False
+    order_in_time: int  # of the motion while no element enters or leaves the contact
+    order: int  # of the depth when spacing and step are refined together; of forces it is one
+    stability_limit: float  # largest stable h C L/M, L the length of the contact: |R(-z)| = 1 (F15)
+    parts_of_elements: bool = False  # whether fractions of elements at the edges are counted
+    papers_step: bool = False  # whether h = 2 dx/V, as in the paper
 
 
 RK4_LIMIT = 2.785293563405282

@@ -136,25 +136,20 @@ _names: Any = cache(lambda cls: tuple(f.name for f in dataclasses.fields(cls)))
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity: its SI unit, its meaning, and its range, from `minimum` to `maximum` and below `below`.
-
-    An `exclusive` range excludes its minimum. A `needed` quantity must be given, unless the one named by
-    `instead` is; it must be given with those in `beside`, and not with those in `excludes`. A `per_width`
-    quantity is a total for a ball. A `difference` is a temperature difference.
-    """
+    """A quantity of a scene, as a field declares it."""
 
     unit: str
     doc: str
     minimum: float
-    exclusive: bool
+    exclusive: bool  # whether the range excludes its minimum
     below: float = math.inf
     maximum: float = math.inf
-    needed: bool = False
+    needed: bool = False  # it must be given, unless the one named by `instead` is
     instead: str = ""
-    beside: tuple[str, ...] = ()
-    excludes: tuple[str, ...] = ()
-    per_width: bool = False
-    difference: bool = False
+    beside: tuple[str, ...] = ()  # those with which it must be given
+    excludes: tuple[str, ...] = ()  # those with which it must not
+    per_width: bool = False  # a total for a ball
+    difference: bool = False  # of temperatures
 
     def fitting(self, per_width: bool) -> "Quantity":
         """Return this quantity per unit width, for a line contact, or as a total, for a ball."""
