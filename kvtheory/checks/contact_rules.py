@@ -17,18 +17,16 @@ from kvtheory.scene import Scene
 
 
 class Mistake(NamedTuple):
-    """A fault: its name, its description, and its rules, of which the one that fits best counts.
-
-    `shows` is the kind of scenes in which it can show (`SHOWS`). `strengths`, one for each rule, make the
-    strength an unknown, which is interpolated and shown in the text; `right` is the one without effect.
-    """
+    """A fault: its name, its description, and its rules, of which the one that fits best counts."""
 
     name: str
     text: str
     rules: Sequence[Rule]
-    shows: str = ""
-    strengths: Sequence[float] = ()
-    right: float | None = None
+    shows: str = ""  # the kind of scenes in which it can show (`SHOWS`)
+    strengths: Sequence[
+        float
+    ] = ()  # one for each rule: an unknown, interpolated, shown in the text
+    right: float | None = None  # the strength without effect
 
 
 SHOWS: Mapping[str, Callable[[Scene], bool]] = {

@@ -34,20 +34,15 @@ SAME_DRIVE = 0.05
 
 
 class Data(NamedTuple):
-    """Conditions by key of the scene, and measured quantities, in SI, a value for each row.
-
-    Those of a time series have a `time` (s), and one value for each condition. A row may be the mean of
-    several: `spread` is then the standard deviation of their times, and `weight` the square root of their
-    number, relative to its root mean square.
-    """
+    """Conditions by key of the scene, and measured quantities, in SI, a value for each row."""
 
     source: str
-    conditions: Mapping[str, Array]
+    conditions: Mapping[str, Array]  # one value of each in a time series
     measured: Mapping[str, Array]
     notes: tuple[str, ...]
-    time: Array | None = None
-    spread: Any = 0.0
-    weight: Any = 1.0
+    time: Array | None = None  # s, of a time series
+    spread: Any = 0.0  # of a row that is a mean of several, the standard deviation of their times
+    weight: Any = 1.0  # and the square root of their number, relative to its root mean square
 
     @property
     def size(self) -> int:

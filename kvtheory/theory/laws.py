@@ -301,21 +301,15 @@ def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
 
 
 class ElementStep(NamedTuple):
-    """The response of an element over a time step h, or over several along the first axis.
-
-    `fall` are the decay factors of the modes of a free element, `held` those of the arms at constant
-    compression, `weights` the ratios of their mean to their initial force then. A unit ramp adds `ramp` to
-    the arms and `stiffness` to the mean pressure; `damping` is that of the damper which, beside a spring,
-    responds to a ramp in the same way.
-    """
+    """The response of an element over a time step h, or over several along the first axis."""
 
     h: Any
-    fall: Array
-    held: Array
-    weights: Array
-    ramp: Array
-    stiffness: Any
-    damping: Any
+    fall: Array  # decay factors of the modes of a free element
+    held: Array  # those of the arms at constant compression
+    weights: Array  # ratios of their mean to their initial force then
+    ramp: Array  # what a unit ramp adds to the arms
+    stiffness: Any  # and to the mean pressure
+    damping: Any  # of the damper which, beside a spring, responds to a ramp in the same way
 
 
 class Element(NamedTuple):
