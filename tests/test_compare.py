@@ -13,9 +13,10 @@ from kvtheory.checks.comparing import verdict
 from kvtheory.checks.comparison_case import make_case
 from kvtheory.checks.hypotheses import scaled_scene
 from kvtheory.checks.theory import Theory
-from kvtheory.fitting.series import MOST_ROWS, SPELLINGS, read
+from kvtheory.fitting.series import MOST_ROWS, read
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.scene.columns import SPELLINGS
 from tests import SCENES as MANY
 from tests import confusion
 from tests.commands import printed, refused, run
@@ -382,8 +383,11 @@ def test_columns_are_recognised_by_name_and_unit(header, quantity, factor):
 
 
 def test_no_spelling_has_two_meanings_and_si_is_read_exactly():
-    spellings = [s.casefold() for names in SPELLINGS.values() for s in names.split(", ")]
-    assert len(spellings) == len(set(spellings))
+    meant = {}  # only letters that stand alone have a case
+    for name, spellings in SPELLINGS.items():
+        for each in spellings.split(", "):
+            key = each if len(each) == 1 else each.casefold()
+            assert meant.setdefault(key, name) == name
     exact = read({"t [s]": range(8), "F_z [N/m]": range(8), "z_A [m]": range(8)}).columns
     assert exact["normal_force"].tolist() == list(range(8)) == (-exact["depth"]).tolist()
 

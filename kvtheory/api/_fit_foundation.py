@@ -118,17 +118,11 @@ def fit_foundation(
         raise ValueError(
             "`thickness`: the data are stiffnesses of a foundation, not moduli of a layer"
         )
-    series = replace(
-        found.series,
-        relaxed=_rounded(found.series.relaxed * factor) / factor,
-        modulus=np.array([_rounded(E * factor) / factor for E in found.series.modulus]),
-        time=np.array([_rounded(tau) for tau in found.series.time]),
-    )
-    pairs = tuple(
-        (_rounded(E * factor), tau)
-        for E, tau in zip(series.modulus, series.time.tolist(), strict=True)
-    )
-    relaxed, master, law = _rounded(series.relaxed * factor), found.shifted, found.law
+    relaxed, master, law = _rounded(found.series.relaxed * factor), found.shifted, found.law
+    arm = found.series.modulus * factor, found.series.time
+    pairs = tuple((_rounded(E), _rounded(tau)) for E, tau in zip(*arm, strict=True))
+    moduli, times = np.array(pairs).T
+    series = replace(found.series, relaxed=relaxed / factor, modulus=moduli / factor, time=times)
     thermal: dict[str, Any] = {}
     if law is not None and master is not None:
         constants = tuple(map(_rounded, law.constants))

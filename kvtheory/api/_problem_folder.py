@@ -125,47 +125,17 @@ def readme(name: str, found: Any, kind: str, rule: str) -> str:
         "elements": "a simulation by elements, with its estimated error",
         "steady": "steady sliding over velocity",
     }[kind]
-    return _README.format(
+    texts = {
+        part: (DRIVERS / f"{part}.md").read_text(encoding="utf-8")
+        for part in ("README", rule, "point_contact")
+    }
+    unit = "N/mm" if problem(name).indenter.per_width else "N"
+    return texts["README"].format(
         title=problems()[name], about=about(name), name=name, scene=problem_text(name), what=what,
         certificate=f"{found.certificate.kind}: {found.certificate.statement}",
-        rule=_RULES[rule] if problem(name).indenter.per_width else _RULES[rule].replace("N/mm", "N"),
-        more=_POINT_CONTACT if name == "point-contact" else "",
+        rule=texts[rule].strip().replace("N/mm", unit),
+        more=texts["point_contact"] if name == "point-contact" else "",
     )  # fmt: skip
-
-
-_RULES = {
-    "compare": "`python judge.py my-series.csv` compares a series with columns such as\n`t [ms],z_A [mm],"
-    "F_z [N/mm],F_x [N/mm]` with theory. The tolerance of each check follows from the sampling\nand the "
-    "noise of the data, and a disagreement is explained.",
-    "within": "`python judge.py my-series.csv` compares a series with `reference.csv`; columns and units "
-    "are read as by"
-    " `kvtheory compare`.\n`criteria.json` gives the allowed difference of each quantity.",
-}
-_POINT_CONTACT = """
-## The failure of a point contact
-
-`simulate.py` supports the indenter by one nonlinear spring and damper, F_z = k d^(3/2) (1 + c d'), after
-Hunt and Crossley, with Coulomb friction; the static depth and the friction of steady sliding are fitted.
-`python simulate.py && python judge.py point-contact.csv` finds that it disagrees. The normal force of a
-contact without length does not depend on sliding: the indenter does not rise from 0.3 mm to 0.09 mm, and
-neither force has a peak at the onset of sliding. A hydroelastic contact whose surface has no damping fails
-in the same way.
-"""
-_README = """# {title}
-
-{about}
-
-```toml
-{scene}```
-
-The reference, `reference.csv`, is {what}. Its certificate is {certificate}.
-
-![The reference](reference.png)
-
-{rule}
-{more}
-`kvtheory.problem("{name}")` loads the scene; the command `kvtheory scene` prints it, and writes this folder.
-"""
 
 
 def _json(content: dict[str, Any]) -> str:

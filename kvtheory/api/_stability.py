@@ -1,6 +1,7 @@
 """Whether steady sliding is stable: `stability`."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
@@ -10,10 +11,7 @@ from kvtheory.scene.capabilities import lacks_stability, require
 from kvtheory.scene.mistakes import SceneError, nearest, problem
 from kvtheory.scene.model import Scene
 
-QUANTITIES = (
-    "stable", "rates", "time_constants", "critical_stiffness", "lower_critical_stiffness",
-    "critical_velocity", "frequency",
-)  # fmt: skip
+QUANTITIES = [field.name for field in fields(Stability)][:7]
 
 
 @checked(scene=a_scene, over=replacements, quantity=names)

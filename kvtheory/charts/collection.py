@@ -20,10 +20,7 @@ VELOCITIES = {"table-1": 0.1, "low-velocity": 1e-3, "high-velocity": 10.0}
 
 
 def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
-    """Return a job for each chart: for the standard scenes named, or else for the scene.
-
-    The chart of steady sliding, where it suits the scene, comes before that of the transient.
-    """
+    """Return a job for each chart, steady sliding first: for standard scenes, or for the scene."""
     for name in standard:
         if name not in (*STANDARD, ALL):
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')

@@ -54,10 +54,7 @@ def scaled_scene(pieces: Sequence[Piece], epsilon: float) -> Scene:
 
 
 def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
-    """Return f_z and f_x with the edges of Eqs. 32 and 33 as written, which have no memory.
-
-    A negative radicand of Eq. 33 is taken as zero; for a negative drive number the forces are mirrored.
-    """
+    """Return f_z and f_x with the edges of Eqs. 32 and 33 as written, without memory; radicands >= 0."""
     speed = abs(number)
     l, r = -math.sqrt(max(d, 0.0)), math.sqrt(max(d + v + speed * speed, 0.0)) - speed
     mean = d + v
@@ -110,11 +107,7 @@ def without_memory(
 
 
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
-    """Return t (s) and depth (m) by the paper's scheme, with surfaces kept fixed within a step.
-
-    In each Runge-Kutta stage an element is in contact if the indenter is below its surface at the end of the
-    last step. For a parabola under a dead weight, driven at a constant velocity.
-    """
+    """Return t (s) and depth (m) by the paper's scheme, with contact judged by surfaces of the last step."""
     R: float = scene.indenter.radius  # type: ignore[union-attr]
     K, tau = scene.foundation.stiffness, scene.foundation.retardation_time
     M, W, V = scene.support.mass, scene.support.weight, scene.drive.final_velocity

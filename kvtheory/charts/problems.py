@@ -172,11 +172,7 @@ def standard_scene(name: str) -> Scene:
 
 
 def errors(found: Curves, right: Curves) -> dict[str, float]:
-    """Return the errors of depth, friction force and its largest value, by their names.
-
-    Depths are relative to the static depth, forces to the largest friction force of the run; L2 is the
-    root of the mean square over the instants.
-    """
+    """Return errors of depth and friction by name, relative to the static depth and the largest friction."""
     peaks = [float(np.abs(curves.friction).max()) for curves in (found, right)]
     largest = peaks[1] or 1.0
     result = {}

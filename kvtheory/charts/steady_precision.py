@@ -50,10 +50,7 @@ class SteadyProblem:
         return R, foundation.stiffness, l_r, self.scene.support.weight
 
     def by_simpson(self) -> tuple[Decimal, Decimal]:
-        """Return the solution with 40 digits, from the pressure itself.
-
-        Its integrals are those of polynomials of degree two and three, for which Simpson's rule is exact.
-        """
+        """Return 40 digits of the solution, from the pressure: Simpson's rule is exact for its integrals."""
         R, K, l_r, W = map(Decimal, self.numbers)
 
         def forces(delta: Decimal) -> list[Decimal]:

@@ -184,10 +184,7 @@ def make_chart(
 def _attempt(
     problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
 ) -> float:
-    """Run each setting once, and record failures; return the time of a first call, which compiles.
-
-    Once a setting has timed out, the more expensive ones count as timed out and are not run.
-    """
+    """Run each setting once, costlier ones only after one in time; return the time of a first call."""
     rated = method.kind == "numerical" and method.knob == "rtol"
     clock = Clock(effort.longest)
     # Overflow is reported below, by its error or its reason.

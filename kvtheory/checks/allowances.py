@@ -88,11 +88,7 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
 
 
 class Band(NamedTuple):
-    """Range of theory within a few time steps, and the errors allowed outside it.
-
-    `systematic` bounds the smooth error, of which `rounding` is due to the digits; `noise` is the standard
-    deviation of the random error.
-    """
+    """Range of theory within a few steps; the smooth error outside, of which `rounding`, and sigma."""
 
     low: Array
     high: Array
@@ -179,9 +175,8 @@ def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curve
 def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     """Return the lag of the rate that a first-order scheme keeps after a fast change.
 
-    The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T): an eighth of the width of the band
-    times t/T, and it lasts after the band has narrowed. T = M/(C L) is that of the current contact, and
-    (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
+    The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T), an eighth of the band's width times
+    t/T, with T = M/(C L) of the current contact; and (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
     damping, mass = theory.scene.foundation.damping, theory.scene.support.mass
     rate = 0.5 * damping * contact_extent(theory, curves) / mass
@@ -203,8 +198,8 @@ def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
 def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     """Return b = p dx/2 at the edge with the larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
-    On arms the pressure builds up while an element enters. For a ball, p of the middle plane times the mean
-    width is an upper bound. At rest p = 0 at both edges, and the error is of second order, K dx^2 a/R.
+    For a ball, p of the middle plane times the mean width is an upper bound. At rest p = 0 at both edges, and
+    the error is K dx^2 a/R.
     """
     R, foundation = theory.radius, theory.scene.foundation
     p = np.zeros_like(curves["depth"])
@@ -223,11 +218,10 @@ def _systematic(
     theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array], late: Array,
     fine: Resolution,
 ) -> dict[str, Array]:  # fmt: skip
-    """Return the smooth error of each curve.
+    """Return the smooth error of each curve by b, the error of the force by a lag, and the lag of the rate.
 
-    `forces` are b and the error of the force by a lag, `late` is the lag of the rate. The errors of the edges
-    follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32 and 33); that of
-    friction is b at x = a, with F_x in proportion to delta^(3/2).
+    The errors of the edges follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32
+    and 33); that of friction is b at x = a, with F_x in proportion to delta^(3/2).
     """
     K, tau = theory.scene.foundation.stiffness, theory.scene.foundation.retardation_time
     R, dx, (force, lagging) = theory.radius, fine.spacing, forces
@@ -261,11 +255,10 @@ def _systematic(
 def _response(
     theory: Theory, curves: Curves, time: Array, force: Array, a: Array, fine: Resolution
 ) -> tuple[Array, Array]:
-    """Return the errors of the depth and of its rate due to b.
+    """Return the errors of the depth and of its rate due to b; in flight the rate keeps its error.
 
     The rate answers C L d' + (K A + k_s) d = b at once, and by b h/M in a step; the depth follows with the
-    time constant C L/(K A + k_s) of the current contact. In flight the rate keeps its error, and that of the
-    depth grows with it.
+    time constant C L/(K A + k_s) of the current contact.
     """
     foundation, static = theory.scene.foundation, theory.static
     length = _contact_length(curves)
@@ -295,11 +288,10 @@ def _response(
 def _spring_response(
     theory: Theory, now: Curves, time: Array, force: Array, step: float, rtol: float
 ) -> Curves:
-    """Return the error of each curve on a spring due to b (N/m) and to the step (s).
+    """Return the error of each curve on a spring due to b (N/m), and to the step (s) of a first-order scheme.
 
-    Motion along x decays slowly, or grows to a cycle whose phase shifts more and more (F22). Linear response
-    does not cover that, so theory of a disturbed scene does (`_disturbed`). Besides, the friction b a/R acts
-    on the spring at once. `step` is 0 for a scheme of higher order, whose error is negligible.
+    Motion along x decays slowly, or grows to a cycle whose phase shifts more and more (F22): theory of a
+    disturbed scene covers that. Besides, the friction b a/R acts on the spring at once.
     """
     inertia, stiffness = theory.scene.drive_mass, float(theory.scene.drive.stiffness or 0.0)
     swing = math.sqrt(inertia / stiffness)  # period over 2 pi, in s
@@ -321,11 +313,7 @@ def _spring_response(
 
 
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
-    """Yield the scene with a load larger by a share, and with the damping of first-order steps.
-
-    A fixed indenter gets a stiffer foundation instead. A first-order step h acts like a damper c_x = h k_x,
-    or excites as much.
-    """
+    """Yield the scene with a larger load or stiffness; and with c_x = h k_x, as a first-order step acts."""
     support = scene.support
     if isinstance(support, Fixed):
         yield replace(scene, foundation=scene.foundation.plain(1.0 + share))

@@ -117,11 +117,7 @@ class Case:
 def make_case(
     theory: Theory, series: Series, per_length: float | None, tolerance: float, coarsest: float
 ) -> Case:
-    """Compare a series with theory.
-
-    An unknown spacing is estimated from noise that is due to elements, up to a force of half an element of
-    `coarsest`, relative to the load.
-    """
+    """Compare a series with theory; an unknown spacing is estimated, up to a sawtooth of `coarsest` loads."""
     names = tuple(name for name in CURVES if name in series.columns)
 
     def of(fine: Resolution) -> Case:
@@ -159,10 +155,7 @@ def _coarser(case: Case) -> float:
 
 
 def common_noise(case: Case) -> float | None:
-    """Return the squared correlation of the noise of both forces, if both are given.
-
-    An element that enters changes both; the noise of a file or a sensor does not.
-    """
+    """Return the squared correlation of the noise of both forces, which an entering element changes alike."""
     if not {"normal_force", "friction_force"} <= set(case.columns):
         return None
     parts = []
@@ -284,11 +277,7 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
 
 
 def _grows(case: Case) -> bool:
-    """Whether the difference from theory is small at first and becomes large.
-
-    For the depth at any time, as an indenter that was thrown off falls back; for a force at the end, as it
-    may jump.
-    """
+    """Whether the difference from theory becomes large: of the depth at any time, of a force at the end."""
     quarter = max(case.time.size // 4, 1)
     for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):
         if name in case.names:

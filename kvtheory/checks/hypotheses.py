@@ -97,10 +97,7 @@ def power_of_ten(factor: float) -> int | None:
 
 
 class Trial(NamedTuple):
-    """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
-
-    `enough` says whether the remaining difference is allowed; `value` is the unknown.
-    """
+    """How a hypothesis fits: RMS over what is allowed, whether that is enough, and its unknown."""
 
     hypothesis: Hypothesis
     score: float = math.inf
@@ -238,10 +235,7 @@ class Bench(Case):
 
 
 def deviation(*slopes: Array) -> float:
-    """Return the standard deviation of the first unknown with the others free, by the slopes of n values.
-
-    Slopes are in units of what is allowed, an error that all n values may share: hence the factor n.
-    """
+    """Return the deviation of the first unknown, others free, for an error that all n values share."""
     return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 

@@ -4,21 +4,23 @@ It is a case whose "time" is the velocity, so that faults are tried as for a tim
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property, partial
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from kvtheory.checks import comparing
 from kvtheory.checks.allowances import Band, Resolution
-from kvtheory.checks.checklist import RELATIVE, largest, root_mean_square
+from kvtheory.checks.checklist import RELATIVE, Row, judge, largest, root_mean_square
 from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.noise import SURE, noise, rounded
 from kvtheory.checks.theory import CURVES, Array, Theory
 from kvtheory.checks.trial_elements import steady_changes
 from kvtheory.fitting.series import Series
-from kvtheory.results.comparison import Check, Comparison
+from kvtheory.results.comparison import Comparison
 
 NAMES = ("friction_coefficient", "friction_force", "normal_force", "depth", "leading_edge", "trailing_edge",
          "peak_pressure")  # fmt: skip
@@ -72,7 +74,10 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
     case = Case(
         steady, series, names, Resolution(1.0, 1.0, True, True), now, bands, zero, tolerance
     )
-    checks = tuple(_checks(case))
+    checks = tuple(
+        replace(check, note=check.note.replace(" ms", " mm/s"))  # the "time" is the velocity
+        for check in judge(case, _rows(case))
+    )
     text, explanations = comparing.diagnose(case, checks, FAMILIES)
     if comparing.verdict(checks) == "agrees":
         text += STEADY_ONLY
@@ -85,32 +90,28 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
 
 
 def _scatter(order: Array, values: Array, curve: Array) -> Array:
-    """Return sigma of the values, without what is smooth, although the points may be far apart.
-
-    A wrong curve may resemble theory times a factor, or be flat.
-    """
+    """Return sigma without what is smooth: a wrong curve may be theory times a factor, or flat."""
     square = float(curve @ curve)
     factors = 1.0, float(values @ curve) / square if square else 0.0, 0.0
     found = [noise(order, values - factor * curve, curve) for factor in factors]
     return min(found, key=rms)
 
 
-def _checks(case: Case) -> Iterator[Check]:
+def _rows(case: Case) -> Iterator[Row]:
     """Yield the scatter, and for each column the largest difference, the root mean square and the mean."""
-    loud = max(rms(case.bands[name].noise) / rms(case.now[name]) for name in case.names)
-    most, unit = case.tolerance * LARGEST_SCATTER, "root mean square, relative to the curve"
-    yield Check(comparing.SCATTER, loud, most, loud <= most, "F1", unit)
     equation = "F17" if case.theory.scene.foundation.arms else "F1"
-    for name in case.names:
-        for kind, measure in (
-            ("largest", largest),
-            ("RMS", root_mean_square),
-            ("mean difference", _mean),
-        ):
-            measured, limit, note = measure(case, name)
-            title, words = f"{name.replace('_', ' ')}, {kind}", note.replace(" ms", " mm/s")
-            ok = bool(measured <= limit)
-            yield Check(title, float(measured), float(limit), ok, equation, RELATIVE, words)
+    unit = "root mean square, relative to the curve"
+    yield Row(comparing.SCATTER, "F1", unit, _loudest)
+    kinds = {"largest": largest, "RMS": root_mean_square, "mean difference": _mean}
+    for name, (kind, measure) in product(case.names, kinds.items()):
+        title = f"{name.replace('_', ' ')}, {kind}"
+        yield Row(title, equation, RELATIVE, partial(measure, name=name))
+
+
+def _loudest(case: Case) -> tuple[float, float, str]:
+    """Compare the scatter of the noisiest column with what still tests a curve."""
+    loud = max(rms(case.bands[name].noise) / rms(case.now[name]) for name in case.names)
+    return loud, case.tolerance * LARGEST_SCATTER, ""
 
 
 def _mean(case: Case, name: str) -> tuple[float, float, str]:

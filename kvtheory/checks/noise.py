@@ -43,8 +43,7 @@ def extreme(count: int) -> float:
 def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
     """Return how far values are from the line between their neighbours, and the indices of these values.
 
-    For white noise this has the variance sigma^2 (1 + w^2 + (1 - w)^2), w the weight of the earlier
-    neighbour; it is scaled to sigma^2, and its magnitude returned.
+    White noise has the variance sigma^2 (1 + w^2 + (1 - w)^2) there, w the weight of the earlier neighbour.
     """
     known = np.flatnonzero(np.isfinite(residual))
     t, r = time[known], residual[known]
@@ -81,11 +80,7 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
 
 
 def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Array:
-    """Return the rounding error: half the step of a grid that all values lie on, or half their last digit.
-
-    Digits are counted after the point or as significant ones, whichever leaves the larger error.
-    Values with fewer of them than `fewest` count as exact.
-    """
+    """Return the rounding error: half the step of a grid that all values lie on, or half their last digit."""
     distinct = np.unique(values[np.isfinite(values)])
     steps = np.diff(distinct)
     steps = steps[steps > DISTINCT * np.abs(distinct).max(initial=0.0)]

@@ -57,11 +57,7 @@ class Methods(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """The shortest and the longest time constant near steady sliding, in s; complex if it oscillates.
-
-    They are the two of F12, or on a spring two of F22. `settling` (s) is that of the decay of the slowest
-    motion, infinite if steady sliding is unstable.
-    """
+    """Shortest and longest time constant (s) near steady sliding (F12, F22); that of the last decay."""
 
     fast: complex
     slow: complex
@@ -148,9 +144,8 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        They follow from the rates of F22, or with a rigid drive from M s^2 + C B s + K A + k_s = 0 with
-        B = x_TE + a (F12). On arms, with the damping of slow sliding, and for a ball, with its mean width,
-        they are approximate; they only set windows and allowances.
+        Those of F22, or with a rigid drive of M s^2 + C B s + K A + k_s = 0, B = x_TE + a (F12). On arms and
+        for a ball they are approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
         if not self.scene.drive.rigid:
@@ -189,10 +184,7 @@ class Theory:
         return self._known[key]
 
     def _settled(self, end: float) -> float:
-        """Return the time in s after which nothing changes, or `end` if that is sooner.
-
-        On a spring there may be none, as the motion may end in a cycle.
-        """
+        """Return the time in s after which nothing changes, or `end`; on a spring there may be none."""
         foundation, run = self.scene.foundation, self.scene.run.duration
         if self.by_elements and end > MOST_RUNS * run:
             raise ArithmeticError(f"that is {end / run:.3g} times run.duration")

@@ -90,11 +90,7 @@ IMPLICIT = 0.52
 
 
 class Pressed(NamedTuple):
-    """Forces, edges, peak pressure and new state of the elements after a step, by rule.
-
-    `lift` is the normal force in the equation of motion; `slope` and `drag` are derivatives of both forces by
-    the velocities.
-    """
+    """Forces (`lift` moves the indenter), their slopes, edges, peak and new state, by rule."""
 
     normal: Array
     lift: Array
@@ -110,10 +106,9 @@ class Pressed(NamedTuple):
 
 @dataclass
 class Elements:
-    """Elements of every rule as arrays (rules, rows, columns), with their state.
+    """Elements of every rule as arrays (rules, rows, columns); `stress` has the arms as first axis.
 
-    `surface` is the compression, `stress` that of the arms (first axis), `seen` the time to which a column is
-    up to date. `heights` are y^2/(2 R'); `areas` are lengths for a line contact.
+    `seen` is the time to which a column is up to date; `heights` are y^2/(2 R').
     """
 
     scene: Scene
@@ -142,18 +137,8 @@ class Elements:
         R = scene.indenter.radius  # type: ignore[union-attr]
         surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
-        seen = np.zeros(places.size)
-        return cls(
-            scene,
-            rule,
-            places,
-            heights,
-            areas,
-            length,
-            surface,
-            moduli * rule.loaded * surface,
-            seen,
-        )
+        stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
+        return cls(scene, rule, places, heights, areas, length, surface, stress, seen)
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
@@ -282,11 +267,7 @@ def instants(scene: Scene, motion: Any, end: float) -> Array:
 
 @lru_cache(maxsize=8)
 def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, dict[str, Array]]:
-    """Return times, and each curve as an array (times, rules), of simulations up to a time in s.
-
-    A step is one Newton step of the trapezoidal rule, from the rates before it. The last results are
-    kept: one scene is often compared with several simulations.
-    """
+    """Return times, and each curve as an array (times, rules), up to a time (s): Newton-trapezoidal steps."""
     static = StaticState.of(scene)
     motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)

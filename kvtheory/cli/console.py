@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from kvtheory.cli.group import main
+from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
 
 LARGE_ERROR = 0.05
@@ -60,11 +60,17 @@ def scene_options(command: Callable[..., Any]) -> Any:
     return click.argument("scene", required=False, type=path)(command)
 
 
-def scene_command(example: str) -> Callable[[Callable[..., Iterator[Any]]], click.Command]:
+Save = Callable[[Any, Any, Path], Any]
+"""Writes a result, and its scene, to the file that `-o` or `--report` names."""
+
+
+def scene_command(
+    example: str, save: Save = lambda result, _, path: result.save(path)
+) -> Callable[[Callable[..., Iterator[Any]]], click.Command]:
     """Declare a command on an optional scene file, with `--set` and `--json`.
 
     Its body gets the scene and a function that reports progress, and yields its result. This is written to
-    the files of `result_options`, all or none, or printed as JSON; else the body goes on, and prints it.
+    files, all or none, or printed as JSON; else the body goes on, and prints it.
     """
 
     def declare(body: Callable[..., Iterator[Any]]) -> click.Command:
@@ -76,25 +82,33 @@ def scene_command(example: str) -> Callable[[Callable[..., Iterator[Any]]], clic
             with progress_bar(body.__name__) as progress:
                 from kvtheory.scene import load_scene
 
-                steps = body(load_scene(scene, overrides), progress, **how)
+                given = load_scene(scene, overrides)
+                steps = body(given, progress, **how)
                 result = next(steps)
-            write_files({output: result.save} if output else {}, result, plot)
-            if as_json:
-                print_json(result.as_dict())
-            else:
-                next(steps, None)
+            finish(result, steps, plot, {output: partial(save, result, given)}, as_json=as_json)
+            if getattr(result, "verdict", "") == "disagrees":
+                click.get_current_context().exit(DISAGREES)
 
         return main.command(example=example)(scene_options(json_option(command)))
 
     return declare
 
 
+def finish(
+    result: Any, steps: Iterator[Any], plot: Path | None,
+    writers: Mapping[Path | None, Callable[[Path], Any]], *, as_json: bool,
+) -> None:  # fmt: skip
+    """Write the files of a result and its picture, all or none; then print it, or its JSON."""
+    write_files({path: write for path, write in writers.items() if path}, result, plot)
+    if as_json:
+        print_json(result.as_dict())
+    else:
+        next(steps, None)
+
+
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Provide a function that shows the fraction done, and a text, if the work takes long.
-
-    A terminal is updated about every second, even if no progress is reported.
-    """
+    """Provide a function that shows the fraction done, and a text, if the work takes long."""
     from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
     context = click.get_current_context(silent=True)
@@ -154,10 +168,7 @@ def print_json(result: Any) -> None:
 
 
 def print_series(result: Any, *, whole: bool, remedy: str) -> None:
-    """Print a time series as a table: every row, or about twenty of them with both ends.
-
-    A large error is printed above it, with its remedy.
-    """
+    """Print a time series: every row, or about twenty; above it a large error, with its remedy."""
     errors = result.certificate.relative_error
     if large := {name: error for name, error in errors.items() if not error <= LARGE_ERROR}:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())

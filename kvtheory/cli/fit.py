@@ -1,8 +1,9 @@
 """`kvtheory foundation` and `fit`: from measurements to a scene."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -10,18 +11,23 @@ from kvtheory.cli import console
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import OutputFile
 
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
+
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
 def scene_output(command: Any) -> Any:
-    """Give a command `-o` for the scene that it finds, `--plot` and `--json`."""
+    """Give a command `-o` for the scene that it finds, and `--plot`."""
     option = click.option(
-        "-o",
-        "--output",
-        type=OutputFile(".toml"),
+        "-o", "--output", type=OutputFile(".toml"),
         help="Write the scene that is found to FILE.toml.",
-    )
-    return option(console.plot_option(console.overwrite_option(console.json_option(command))))
+    )  # fmt: skip
+    return option(console.plot_option(console.overwrite_option(command)))
+
+
+def _save_scene(found: Any, _: Any, path: Path) -> None:
+    path.write_text(found.to_toml(), encoding="utf-8")
 
 
 @main.command(
@@ -46,15 +52,10 @@ def scene_output(command: Any) -> Any:
     help="Scene that is given this foundation; it may have none. Default: Table 1.",
 )
 @scene_output
+@console.json_option
 def foundation(
-    data: Path,
-    scene: Path | None,
-    output: Path | None,
-    plot: Path | None,
-    *,
-    as_json: bool,
-    **how: Any,
-) -> None:
+    data: Path, scene: Path | None, output: Path | None, plot: Path | None, *, as_json: bool, **how: Any
+) -> None:  # fmt: skip
     """Fit a Prony series to measured moduli DATA.
 
     DATA is a CSV of dynamic moduli over frequency (f [Hz],E' [MPa],E'' [MPa] or tan delta) or of a relaxation
@@ -65,16 +66,23 @@ def foundation(
 
     with console.progress_bar("foundation"):
         found = fit_foundation(data, load_scene(scene, foundation=False), **how)
-    _finish(found, output, plot, as_json=as_json)
-    if found.scene is None and not as_json:
+    console.finish(
+        found, _shown(found), plot, {output: partial(_save_scene, found, None)}, as_json=as_json
+    )
+
+
+def _shown(found: Any) -> Iterator[None]:
+    click.echo(str(found))
+    if found.scene is None:
         click.echo("Give --thickness and --poisson-ratio for the foundation of a scene.")
+    yield
 
 
-@main.command(
-    example="kvtheory fit --data mu.csv --free foundation.stiffness,foundation.retardation_time && "
-    "kvtheory fit --data run.csv --free foundation.retardation_time"
+@console.scene_command(
+    "kvtheory fit --data mu.csv --free foundation.stiffness,foundation.retardation_time && "
+    "kvtheory fit --data run.csv --free foundation.retardation_time",
+    _save_scene,
 )
-@console.scene_options
 @click.option(
     "--data", type=FILE, required=True, multiple=True,
     help="CSV of friction over velocity (V [mm/s],mu) or over time (t [ms],F_x [N/mm],z_A [mm]); repeatable.",
@@ -85,9 +93,8 @@ def foundation(
 )
 @scene_output
 def fit(
-    scene: str | None, overrides: Sequence[str], data: Sequence[Path], free: str | None,
-    output: Path | None, plot: Path | None, *, models: bool, as_json: bool,
-) -> None:  # fmt: skip
+    scene: "Scene", progress: Any, data: Sequence[Path], free: str | None, *, models: bool
+) -> Iterator[Any]:
     """Fit quantities of SCENE to measured friction.
 
     DATA is friction over velocity, or a time series of the transient. Over velocity, other columns vary
@@ -95,25 +102,8 @@ def fit(
     --data are fitted together.
     """
     from kvtheory.api import fit as find
-    from kvtheory.scene import load_scene
 
-    checked = load_scene(scene, overrides)
-    with console.progress_bar("fit") as progress:
-        found = find(
-            checked, list(data), free=console.split(free or ""), models=models, progress=progress
-        )
-    _finish(found, output, plot, as_json=as_json)
-
-
-def _finish(found: Any, output: Path | None, plot: Path | None, *, as_json: bool) -> None:
-    """Write the files, and print the result."""
-    text = found.to_toml() if output else ""
-
-    def save(path: Path) -> None:
-        path.write_text(text, encoding="utf-8")
-
-    console.write_files({output: save} if output else {}, found, plot)
-    if as_json:
-        console.print_json(found.as_dict())
-    else:
-        click.echo(str(found))
+    keys = console.split(free or "")
+    found = find(scene, list(data), free=keys, models=models, progress=progress)
+    yield found
+    click.echo(str(found))

@@ -5,6 +5,7 @@ import re
 import sys
 import traceback
 from contextlib import suppress
+from importlib.resources import files
 from typing import Any
 
 import click
@@ -148,22 +149,5 @@ def cite() -> None:
     """Print BibTeX entries for this version and for the paper."""
     from kvtheory import __version__
 
-    click.echo(CITATION % __version__)
-
-
-CITATION = """@software{kvtheory,
-  author  = {{The kvtheory developers}},
-  title   = {kvtheory: the sliding friction of elastomers, derived, exact and checked},
-  version = {%s},
-  year    = {2026},
-}
-
-@article{NakanoKono2020,
-  author  = {Nakano, Ken and Kono, Masaharu},
-  title   = {Transient and Steady Sliding Friction of Elastomers: Impact of Vertical Lift},
-  journal = {Frontiers in Mechanical Engineering},
-  volume  = {6},
-  pages   = {38},
-  year    = {2020},
-  doi     = {10.3389/fmech.2020.00038},
-}"""
+    text = files("kvtheory.cli").joinpath("citation.bib").read_text(encoding="utf-8")
+    click.echo(text % __version__, nl=False)

@@ -1,14 +1,12 @@
 """`kvtheory solve`, `transient`, `elements` and `compare`: by the cheapest model, and over time."""
 
-from collections.abc import Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from kvtheory.cli import console
-from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import OutputFile
 
 if TYPE_CHECKING:
@@ -110,9 +108,15 @@ def elements(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     console.print_error(f"{result.scheme}, {density}, {steps}", result)
 
 
-@main.command(example="kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
-@console.scene_options
-@console.json_option
+def _save_report(found: Any, scene: "Scene", path: Path) -> None:
+    from kvtheory.plots.comparison import save_comparison_report
+
+    save_comparison_report(found, scene, path)
+
+
+@console.scene_command(
+    "kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html", _save_report
+)
 @click.option(
     "--data", type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="CSV of a simulation: t [ms],z_A [mm],F_z [N/mm],F_x [N/mm],... Default: our own.",
@@ -125,37 +129,21 @@ def elements(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
 )  # fmt: skip
 @console.plot_option
 @click.option(
-    "--report", type=OutputFile(".html"),
+    "--report", "output", type=OutputFile(".html"),
     help="Write the comparison as one self-contained FILE.html.",
 )  # fmt: skip
 @console.overwrite_option
-def compare(
-    scene: str | None, overrides: Sequence[str], as_json: bool, data: Path | None, plot: Path | None,
-    report: Path | None, **how: Any,
-) -> None:  # fmt: skip
+def compare(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     """Compare a simulation with theory, and diagnose a disagreement.
 
     Exit status: 0 if it agrees or the data cannot tell, 1 if it disagrees, 2 for bad input.
     """
     from kvtheory.api._compare import compare as compare_with_theory
     from kvtheory.results.comparison import HEADS
-    from kvtheory.scene import load_scene
 
-    checked = load_scene(scene, overrides)
-    with console.progress_bar("compare") as progress:
-        found = compare_with_theory(checked, data, **how, progress=progress)
-    pages = {}
-    if report:
-        from kvtheory.plots.comparison import save_comparison_report
-
-        pages[report] = partial(save_comparison_report, found, checked)
-    console.write_files(pages, found, plot)
-    if as_json:
-        console.print_json(found.as_dict())
-    else:
-        theory = "" if found.verdict == "cannot tell" else " with theory"
-        click.echo(f"{found.source}: {found.verdict}{theory}\n")
-        console.print_table(HEADS, found.rows)
-        click.echo(f"\n{found.diagnosis}")
-    if found.verdict == "disagrees":
-        click.get_current_context().exit(DISAGREES)
+    found = compare_with_theory(scene, **how, progress=progress)
+    yield found
+    theory = "" if found.verdict == "cannot tell" else " with theory"
+    click.echo(f"{found.source}: {found.verdict}{theory}\n")
+    console.print_table(HEADS, found.rows)
+    click.echo(f"\n{found.diagnosis}")

@@ -1,6 +1,6 @@
 """`kvtheory sweep`: many scenes into one file."""
 
-import importlib
+import pkgutil
 import sys
 import time
 from collections.abc import Iterable, Sequence
@@ -143,29 +143,22 @@ def from_factory(text: str, jobs: int | None) -> Executor:
     """Call the factory ``module:name`` of executors, with the number of jobs if one is given."""
     from kvtheory.scene.mistakes import nearest
 
-    name, sign, factory = text.partition(":")
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it
     try:
-        if not (name and sign and factory):
+        if ":" not in text:
             raise ValueError(
                 "expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
             )
-        module = _call("the module cannot be imported", importlib.import_module, name)
-        if not hasattr(module, factory):
-            known = [each for each in dir(module) if not each.startswith("_")]
-            raise ValueError(nearest(factory, known))
-        given = [] if jobs is None else [jobs]
-        executor = _call("the factory cannot be called", getattr(module, factory), *given)
+        executor = pkgutil.resolve_name(text)(*[] if jobs is None else [jobs])
         if not isinstance(executor, Executor) or type(executor) is Executor:
             raise ValueError(f"expected a concurrent.futures.Executor, got {executor!r}")
-    except ValueError as error:
-        raise ValueError(f'--executor "{text}": {error}') from None
+    except (Exception, SystemExit) as error:  # whatever a user's module raises
+        known = [name for name in dir(getattr(error, "obj", None)) if name[0] != "_"]
+        hint = f"; {nearest(text.partition(':')[2], known)}" if known else ""
+        told = (
+            f"{error}"
+            if isinstance(error, ValueError)
+            else f"{type(error).__name__}: {error}{hint}"
+        )
+        raise ValueError(f'--executor "{text}" cannot be imported and called: {told}') from None
     return executor
-
-
-def _call(failure: str, function: Any, *arguments: Any) -> Any:
-    """Call what a user gave, and report whatever it raises."""
-    try:
-        return function(*arguments)
-    except (Exception, SystemExit) as error:
-        raise ValueError(f"{failure}: {type(error).__name__}: {error}") from None

@@ -145,10 +145,7 @@ def _friction(state: Any) -> Any:
 def reduced(
     solve: Callable[[Scene], Any], scene: Scene, V: Array, rtol: float, *, proved: bool
 ) -> Fewer:
-    """Return the scene with the fewest arms found that change mu at the velocities by at most `rtol`.
-
-    What is held to it is the bound if `proved`, else the difference.
-    """
+    """Return the scene with the fewest arms whose change of mu, or its bound if `proved`, is in `rtol`."""
     foundation: Any = scene.foundation
     size = np.array([arm.stiffness for arm in foundation.arms])
     time = np.array([arm.relaxation_time for arm in foundation.arms])

@@ -85,10 +85,7 @@ def fit(
 
 
 def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> float:
-    """Return the misfit that is allowed: `rtol`, or what the scatter of the data makes likely.
-
-    The scatter is estimated from the best series, by its degrees of freedom.
-    """
+    """Return the misfit that is allowed: `rtol`, or what the scatter about the best series makes likely."""
     if rtol is not None:
         if least > rtol:
             told = f"no Prony series is as close: the least misfit of any is {least:.3g}"
@@ -129,10 +126,7 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
 
 
 def _inconsistent(data: Moduli, series: Series, least: float) -> list[str]:
-    """Return a remark if no Prony series fits the data within their scatter, and where not.
-
-    The scatter is that of the residuals from one value to the next.
-    """
+    """Return a remark if no Prony series fits within the scatter between neighbours, and where not."""
     r = series.residuals(data)
     if r.shape[1] < 2 * WINDOW:
         return []

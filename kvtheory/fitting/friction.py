@@ -77,11 +77,7 @@ rise of the sum of squares there, and the relative change of a diagonal that kee
 
 @dataclass(frozen=True)
 class Problem:
-    """A scene, its free quantities, the data, and the theory; `weights` multiply the residuals.
-
-    `precise` tells whether `follow` keeps to fine tolerances, `rough` that coarse ones suffice. `memory`
-    holds the transients by data set and unknowns.
-    """
+    """A scene, its free keys, data and theory; `memory` holds transients by data set and unknowns."""
 
     scene: Scene
     keys: tuple[str, ...]
@@ -111,10 +107,7 @@ class Problem:
         return STEP[self.rtol]
 
     def theory(self, points: Array) -> list[dict[str, Array]]:
-        """Return what is measured, of unknowns in rows, a column for each row of the data.
-
-        NaN where theory has no answer.
-        """
+        """Return what is measured, of unknowns in rows, a column for each row; NaN without an answer."""
         return [self._values(i, points) for i in range(len(self.data))]
 
     def _values(self, i: int, points: Array) -> dict[str, Array]:
@@ -156,8 +149,8 @@ class Problem:
     def columns(self, points: Array) -> list[Array]:
         """Return the residuals of each column measured, of unknowns in rows.
 
-        Over velocity they are relative to the geometric mean of data and theory, as residuals relative to
-        the data alone would bias the fit; over time, to the root mean square of the column.
+        Over velocity relative to the geometric mean of data and theory, without bias; over time to
+        the root mean square.
         """
         found = []
         for data, own in zip(self.data, self.theory(points), strict=True):
@@ -303,11 +296,7 @@ def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tupl
 
 
 def intervals(problem: Problem, found: Fit) -> Array:
-    """Return the limits of ln of each unknown (profile likelihood), infinite where none is found.
-
-    By the method of Venzon and Moolgavkar (1988): the sum of squares is as large as wanted, and the smallest
-    over the other unknowns. It allows for the same scatter as the standard errors.
-    """
+    """Return profile-likelihood limits of ln of each unknown (Venzon and Moolgavkar 1988), or infinity."""
     size, (low, high) = found.point.size, problem.limits
     errors = np.maximum(np.sqrt(np.diag(found.covariance)), problem.step**2)
     least = float(found.residuals @ found.residuals)
@@ -357,11 +346,7 @@ def intervals(problem: Problem, found: Fit) -> Array:
 
 
 def standard_errors(found: Fit, limits: Array) -> Array:
-    """Return the standard errors relative to the values.
-
-    They are those of linear theory, or the longer side of the 95 % interval over Student's t where that is
-    larger: where errors are not elliptic, two linear ones hold less than 95 %.
-    """
+    """Return relative standard errors: linear ones, or the longer side of 95 % over Student's t."""
     linear = np.sqrt(np.diag(found.covariance))
     sides = np.abs(np.expm1(limits - found.point[:, None])).max(axis=1)
     sides /= stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE)

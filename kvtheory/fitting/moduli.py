@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.fitting.spectrum import Array, Moduli
-from kvtheory.scene.columns import Reader, Table
+from kvtheory.scene.columns import SPELLINGS, Reader, Table
 
-SPELLINGS = {
+NAMES = {
     "frequency": "f, freq, frequency, Frequenz",
     "angular frequency": "ω, omega, w, angular frequency, ang. frequency, Kreisfrequenz",
-    "time": "t, time, Zeit",
-    "temperature": "T, temp, temp., temperature, Temperatur",
+    "time": SPELLINGS["time"],
+    "temperature": SPELLINGS["temperature"],
     "E'": "E', E_stor, E_storage, E1, tensile storage modulus",
     "G'": "G', G_stor, G_storage, G1, shear storage modulus",
     "storage modulus": "storage modulus, Speichermodul, storage_modulus",
@@ -49,7 +49,7 @@ def _needed(found: set[str]) -> bool:
     return bool(dynamic or ("time" in found and found & set(RELAXING)))
 
 
-READER = Reader(SPELLINGS, _needed, "a row such as f [Hz],E' [MPa],E'' [MPa] or t [s],E(t) [MPa]")
+READER = Reader(NAMES, _needed, "a row such as f [Hz],E' [MPa],E'' [MPa] or t [s],E(t) [MPa]")
 
 
 class Sweep(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.columns import Reader, Table
+from kvtheory.scene.columns import SPELLINGS, Reader, Table
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Scene
@@ -15,19 +15,11 @@ from kvtheory.scene.tables import parts
 Array = NDArray[np.float64]
 
 CONDITIONS = {
-    "drive.velocity": "V, v, velocity, speed, sliding velocity, drive velocity, Geschwindigkeit",
-    "load": "W, load, F_z, F_n, normal force, normal load, Last, Normalkraft",
-    "depth": "depth, delta, δ, indentation, indentation depth, Eindringtiefe",
-    "indenter.radius": "R, radius",
-    "foundation.temperature": "T, temp, temperature, Temperatur",
-}
-FRICTION = {
-    "friction_coefficient": "mu, μ, µ, friction coefficient, COF, Reibungszahl, Reibwert",
-    "friction_force": "F_x, F_t, F, friction, friction force, tangential force, Reibkraft, Reibungskraft",
-    "spring_force": "F_s, F_spring, spring force, drive force, pulling force, Federkraft, Zugkraft",
-}
-HEIGHT = "z_A, z, position, height, Höhe"
-"""Names of a height of the indenter, z_A = -depth (Eq. 18)."""
+    "drive.velocity": ("velocity", "sliding_velocity"), "load": ("load", "normal_force"), "depth": ("depth",),
+    "indenter.radius": ("radius",), "foundation.temperature": ("temperature",),
+}  # fmt: skip
+"""What may vary from row to row, by the names of its spellings."""
+FRICTION = "friction_coefficient", "friction_force", "spring_force"
 STATIC = {"load": "support.load", "depth": "support.depth"}
 """The keys of a support that are conditions of a row if it has them; on other supports they are measured."""
 MOST_ROWS = 2000
@@ -65,10 +57,7 @@ class Data(NamedTuple):
         return next(iter(self.measured.values())).size
 
     def part(self, step: int) -> "Data":
-        """Return one row in `step`: of a time series at equal distances, else at random in each step.
-
-        Loads or directions may take turns from row to row.
-        """
+        """Return one row in `step`; over velocity at random in each step, as loads may take turns."""
         rows = np.arange(0, self.size, step)
         if self.time is None:
             shift = np.random.default_rng(0).integers(step, size=rows.size)
@@ -147,10 +136,10 @@ def _needed(found: set[str]) -> bool:
 def read(data: Any, scene: Scene) -> Data:
     """Return a table of friction over velocity, or of friction, forces or depth over time."""
     keys = scene.replaceable
-    spelt = {key: key for key in keys} | {
-        name: f"{name}, {own}" for name, own in CONDITIONS.items()
-    }
-    names = spelt | FRICTION | {"time": "t, time, Zeit", "-depth": HEIGHT}
+    names = {key: key for key in keys}
+    for name, spelt in CONDITIONS.items():
+        names[name] = ", ".join([name, *(SPELLINGS[each] for each in spelt)])
+    names |= {name: SPELLINGS[name] for name in (*FRICTION, "time", "-depth")}
     table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
     for head in table.ignored:
         if head.partition(".")[0] in SECTIONS:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.results.table import SERIES_UNITS
-from kvtheory.scene.columns import Array, Reader, Table
+from kvtheory.scene.columns import SPELLINGS, Array, Reader, Table
 
 PRESSURE = {"peak_pressure": "N/m^2"}
 """The unit as `kvtheory.scene.units` spells it."""
@@ -22,28 +22,8 @@ CURVE = {"friction_coefficient": "1", **PRESSURE}
 SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **CURVE}
 """The units of the series of a line contact, in that spelling."""
 
-SPELLINGS = {
-    "time": "time, t, Zeit",
-    "velocity": "velocity, V, drive velocity, drive.velocity, v_drive, Geschwindigkeit",
-    "sliding_velocity": "sliding_velocity, sliding velocity, v_s, v_slide, slip velocity, "
-    "Gleitgeschwindigkeit",
-    "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
-    "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
-    "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
-    "-depth_rate": "v_z, vz_A, dz_A/dt, z_A_dot, vertical velocity",
-    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
-    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
-    "Reibkraft, Reibungskraft, Tangentialkraft",
-    "spring_force": "spring_force, spring force, F_s, F_spring, drive force, pulling force, Federkraft, "
-    "Zugkraft",
-    "friction_coefficient": "friction_coefficient, mu, µ, friction coefficient, coefficient of friction, "
-    "COF, "
-    "Reibungszahl, Reibwert, Reibungskoeffizient",
-    "leading_edge": "leading_edge, x_LE, Vorderkante",
-    "trailing_edge": "trailing_edge, x_TE, Hinterkante",
-    "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
-}
-"""Names of each quantity; a minus sign marks those that point the other way."""
+NAMES = ("-depth", "-depth_rate", *SI_UNITS)
+"""What is read; a minus sign marks a quantity that points the other way."""
 SHOWN = (
     "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
 )
@@ -56,7 +36,7 @@ MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """Quantities that do not exist in flight: some of their cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""
-READER = Reader(SPELLINGS, bool, SHOWN, SPELLINGS)
+READER = Reader({name: SPELLINGS[name] for name in NAMES}, bool, SHOWN, NAMES)
 """Reads columns by these names; `_checked` reports what is missing or not finite."""
 
 

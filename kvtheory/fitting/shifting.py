@@ -74,10 +74,7 @@ class Law(NamedTuple):
 
 
 class Shifted(NamedTuple):
-    """The master curve and its reference temperature (K); temperature and shifts of each sweep.
-
-    `errors` are the standard errors of log10 a_T, zero where it was given.
-    """
+    """The master curve at its reference temperature (K), and temperature, shifts and errors of each sweep."""
 
     moduli: Moduli
     reference: float
@@ -117,10 +114,7 @@ def shifted(
     *,
     vertical: bool,
 ) -> Shifted:
-    """Return the master curve of sweeps in order of temperature, with given shift factors or its own.
-
-    The reference temperature is that of the factors, or of the sweep nearest to `near`, or in the middle.
-    """
+    """Return the master curve of sweeps in order of temperature, at that nearest to `near` or midway."""
     T = np.array([sweep.temperature for sweep in sweeps])
     if factors is None:
         steps = [_step(cold.moduli, warm.moduli, vertical) for cold, warm in pairwise(sweeps)]
@@ -148,10 +142,7 @@ def shifted(
 
 
 def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, float]:
-    """Return the changes of log10 a_T and log10 b_T to the next warmer sweep, and the first's variance.
-
-    The variance is the sum of squares at the minimum over its curvature and the number of values.
-    """
+    """Return the changes of log10 a_T and b_T to the next warmer sweep, and the variance of the first."""
     sign = 1.0 if cold.dynamic else -1.0  # towards the stiff end
     one, two = (
         (sign * np.log10(each.x), np.log10(np.maximum(each.values, FLOOR * each.scale)))
@@ -203,10 +194,7 @@ def _scatter(x: Array, y: Array) -> Array:
 
 
 def law_of(master: Shifted) -> Law | None:
-    """Return the law that fits shift factors better for its number of constants; None if none does.
-
-    Shift factors count by their standard errors, if these exceed the usual deviation from a law.
-    """
+    """Return the law that fits shift factors better for its number of constants; None if none does."""
     T, log_shift, reference = master.temperatures, master.log_shift, master.reference
     off = np.abs(T - reference) > 0.0
     if not off.any():

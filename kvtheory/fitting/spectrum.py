@@ -177,11 +177,7 @@ def _series(held: Array, time: Array) -> Series:
 
 
 def dual(data: Moduli, series: Series) -> tuple[float, Array]:
-    """Return the dual bound, below which no misfit of any series is, and the times of arms that help.
-
-    The bound is sharp if the series is optimal. The dual function is evaluated on a fine grid, with twice
-    what its curvature adds between the points.
-    """
+    """Return the dual bound, below which no misfit of any series is, and the times of arms that help."""
     times, arms = data.fine
     r, one = -series.residuals(data).reshape(-1), np.abs(data.target)
     slope, size = (np.einsum("ij,i->j", arms, each) for each in (r, one))
@@ -197,10 +193,7 @@ def dual(data: Moduli, series: Series) -> tuple[float, Array]:
 
 
 def best(data: Moduli) -> tuple[Series, float]:
-    """Return the best non-negative spectrum, and the dual bound on the misfit of any.
-
-    Where the dual function has positive peaks between the points of the grid, points are added.
-    """
+    """Return the best non-negative spectrum, on a grid refined where arms help, and the dual bound."""
     spectrum, least = solved(data, grid(data, FAR, PER_DECADE)), 0.0
     for _ in range(ROUNDS):
         bound, more = dual(data, spectrum)
@@ -225,10 +218,7 @@ def _gathered(series: Series, joined: NDArray[np.bool_]) -> Series:
 
 
 def fewer(data: Moduli, series: Series, steps: int = FEW_STEPS) -> Series:
-    """Return the series with one arm less: two neighbours as one, or the slowest one as part of the spring.
-
-    The pairs that change the moduli least are tried, and the best one is refined.
-    """
+    """Return the best series with one arm less: two neighbours as one, or the slowest one in the spring."""
     cost, tau = _merging_costs(data, series), series.time
     merged = [_gathered(series, np.arange(cost.size) == i).time for i in np.argsort(cost)[:TRIED]]
     found = min((_solved(data, times) for times in [*merged, tau[:-1], tau[1:]]), key=itemgetter(0))
@@ -265,11 +255,7 @@ def arms_of(data: Moduli, start: Series, count: int | None, target: float) -> Se
 
 
 def refined(data: Moduli, series: Series, steps: int = MOST_STEPS) -> Series:
-    """Return the series after bounded least squares in the logarithms of its times; NNLS gives the moduli.
-
-    By Levenberg and Marquardt, with the slopes of variable projection: what the moduli cannot take up.
-    Normal equations suffice for a minimum in which times are apart, and are small.
-    """
+    """Return the series after variable projection: least squares in ln of its times, NNLS for moduli."""
     if not (steps and series.time.size):
         return series
     low, high = np.log(data.times) + np.log(10.0) * BEYOND * np.array([-1.0, 1.0])

@@ -17,11 +17,7 @@ TOO_LARGE, USED = "error too large", "used"
 
 @dataclass(frozen=True)
 class Request:
-    """What is requested of a scene.
-
-    `quantities` must be within `rtol`; `times` (s) are those of a series, None for its own times;
-    `units` lists all quantities of the answer: those of a series or of steady sliding.
-    """
+    """Quantities to be within `rtol`, times (s) of a series or None, and units of all of the answer."""
 
     quantities: tuple[str, ...]
     rtol: float
@@ -38,10 +34,7 @@ class Answer(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What a model offers before it runs: a bound or an estimate of its error, NaN if unknown.
-
-    `run` may raise ValueError or ArithmeticError where an assumption turns out to be wrong.
-    """
+    """What a model offers: a bound or an estimate of its error (NaN if unknown), and a run that may raise."""
 
     error: float
     run: Callable[[], Answer]
@@ -49,11 +42,7 @@ class Offer(NamedTuple):
 
 @dataclass(frozen=True)
 class Rung:
-    """A model: its name, its assumptions, and its offer for a scene and a request.
-
-    `judge` is cheap for any scene; if the model does not apply it raises ValueError or ArithmeticError with
-    the reason.
-    """
+    """A model: name, assumptions, and a cheap offer for a scene and a request, or a reason against."""
 
     name: str
     assumed: str
@@ -67,13 +56,7 @@ def need(*reasons: str) -> None:
 
 
 def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
-    """Return the answer of the first rung that is known to be within the tolerance.
-
-    Raises
-    ------
-    ToleranceError
-        If none is.
-    """
+    """Return the answer of the first rung known to be within the tolerance, or raise `ToleranceError`."""
     steps: list[ClimbStep] = []
     for rung in rungs:
         begun = judged = perf_counter()

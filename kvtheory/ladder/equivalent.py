@@ -50,13 +50,7 @@ def foundation(scene: Scene, rate: float = 0.0) -> Foundation:
 
 
 def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
-    """Return the fastest rate of the motion at the times (1/s).
-
-    Raises
-    ------
-    ValueError
-        If the arms relax too slowly for it.
-    """
+    """Return the fastest rate of the motion at the times (1/s), or raise ValueError if arms are too slow."""
     changes = np.array([0.0, *scene.drive.changes])
     shortest = min(t - changes[changes <= t].max(initial=0.0) for t in times)
     fastest = max(map(abs, _velocities(scene)))

@@ -246,8 +246,7 @@ def _widened(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
 def _elements(models: Models, scene: Scene, request: Request) -> Offer:
     """Refine until the certificate is within the tolerance, or the work would be too much.
 
-    A certificate compares with half as many elements, and both may be too coarse to resolve fast motion.
-    So the difference from the previous, coarser run, divided by the ratio of elements, counts too.
+    The difference from the previous, coarser run, divided by the ratio of elements, counts too.
     """
     need(lacks_arms(scene))
 
@@ -290,10 +289,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 def _with_fewer_arms(
     models: Models, scene: Scene, request: Request, answer: Answer, run: Simulation
 ) -> tuple[Scene, dict[str, float], str]:
-    """Return the scene with fewer arms, what that changes in a coarse run, and a statement of it.
-
-    Where it changes too much, or steady sliding costs more than elements, the scene stays.
-    """
+    """Return the scene with fewer arms, if that changes little and pays, what it changes, and a statement."""
     arms, V = len(scene.foundation.arms), np.abs(run.velocity).max(initial=0.0)
     if arms < MANY_ARMS or request.times is None or V == 0.0 or lacks_closed_form(scene):
         return scene, {}, ""

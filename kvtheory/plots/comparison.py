@@ -9,7 +9,8 @@ import numpy as np
 
 from kvtheory.plots.files import inline, save_page, template
 from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, Picture, with_unit
-from kvtheory.results import Check, Comparison
+from kvtheory.results.comparison import HEADS, Comparison
+from kvtheory.results.presented import aligned
 from kvtheory.results.table import QUANTITIES, SPRING_UNITS
 from kvtheory.scene import Scene, to_toml
 
@@ -23,8 +24,8 @@ CURVES = {
 """Curves that are drawn if the data contain them: symbol, sign."""
 DOTS = 200
 """With more samples than this the data are drawn as a line."""
-MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
-HTML_MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "not made")}
+LOOKS = {"ok": ("yes", BLACK), "NO": ("no", RED), "not made": ("none", "#777777")}
+"""Class on the page and colour in the picture of each mark of a check."""
 HTML_VERDICTS = {
     "agrees": ("#00674b", "#e8f5f0", "The data agree with theory."),
     "disagrees": ("#b34700", "#fdf0e7", "The data disagree with theory."),
@@ -38,8 +39,8 @@ EXPLANATIONS = """<h2>Possible explanations</h2>
 </tbody></table></div>"""
 MARGIN = 1.6
 """Limit of the axis of residuals, relative to the band, which leaves space for the legend above it."""
-LONGEST_NOTE = 74
-WIDTH = 7.2
+WIDTH, LONGEST = 7.2, 154
+"""Width of a picture in inches, and most characters of a line of it."""
 
 
 def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> list[Any]:
@@ -103,28 +104,17 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     axes[0][0].set_title("data over theory", fontsize=9)
     axes[0][1].set_title("data minus theory", fontsize=9)
     if checks:
-        _list_checks(parts[1].subplots(), comparison.checks)
+        _list_checks(parts[1].subplots(), comparison)
     return figure
 
 
-def _list_checks(ax: Any, checks: Sequence[Check]) -> None:
+def _list_checks(ax: Any, comparison: Comparison) -> None:
     """Write the checks as lines of text."""
     ax.set_axis_off()
-    ax.set(xlim=(0, 1), ylim=(len(checks) + 0.5, -1.0))
-    columns = 0.0, 0.25, 0.355, 0.455, 0.54
-    for x, head in zip(
-        columns, ("check", "measured", "allowed", "", "equation, note"), strict=True
-    ):
-        ax.text(x, -0.6, head, fontsize=7, fontweight="bold", va="center")
-    for row, check in enumerate(checks):
-        mark, colour = MARKS[check.ok]
-        values = () if check.ok is None else (check.measured, check.allowed)
-        numbers = [f"{value:.2e}" for value in values] or ["", ""]
-        note = "; ".join(filter(None, (check.equation, check.note)))
-        short = note if len(note) <= LONGEST_NOTE else note[: LONGEST_NOTE - 3] + "..."
-        for x, cell in zip(columns, (check.name, *numbers, mark, short), strict=True):
-            shade = colour if cell == mark else BLACK
-            ax.text(x, row + 0.4, cell, fontsize=6.5, va="center", color=shade)
+    looks = [BLACK, *(LOOKS[row[3]][1] for row in comparison.rows)]
+    ax.set(ylim=(len(looks), 0.0))
+    for row, (line, colour) in enumerate(zip(aligned(HEADS, comparison.rows), looks, strict=True)):
+        ax.text(0.0, row, line[:LONGEST], fontsize=5.5, family="monospace", color=colour)
 
 
 def save_comparison_report(comparison: Comparison, scene: Scene, path: Path) -> None:
@@ -135,14 +125,9 @@ def save_comparison_report(comparison: Comparison, scene: Scene, path: Path) -> 
 def comparison_report(comparison: Comparison, scene: Scene) -> str:
     """Return a comparison as the text of one HTML page, with its picture as inline SVG."""
     colour, tint, sentence = HTML_VERDICTS[comparison.verdict]
-    checks = []
-    for check in comparison.checks:
-        values = check.measured, check.allowed
-        numbers = ["" if value is None else f"{value:.3g}" for value in values]
-        kind, mark = HTML_MARKS[check.ok]
-        note = "; ".join(filter(None, (check.unit, check.note)))
-        cells = check.name, *numbers, mark, check.equation, note
-        checks.append(_row(cells, ("", "number", "number", kind, "", "")))
+    checks = [
+        _row(row, ("", "number", "number", LOOKS[row[3]][0], "", "")) for row in comparison.rows
+    ]
     explanations = []
     for each in comparison.explanations:
         part = "a symptom" if each.explained is None else f"{each.explained:.1%}"

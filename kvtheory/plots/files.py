@@ -21,13 +21,7 @@ PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
-    """Draw a figure in the style of the package and write it in the format given by the suffix of `path`.
-
-    Raises
-    ------
-    ValueError, OSError
-        If the name does not end in .png, .svg or .pdf, or the file cannot be written.
-    """
+    """Draw a figure in the style of the package and write it in the format of the suffix, or raise."""
     check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         replace_file(path, draw().savefig)

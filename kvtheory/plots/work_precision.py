@@ -36,10 +36,7 @@ SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “s
 def plot_work_precision(
     ax: Any, rail: Any, chart: Chart, error: str, *, work: bool = False
 ) -> list[Any]:
-    """Draw a chart over one of its errors: points on `ax`, failures on `rail`, and return the lines.
-
-    With `work` the ordinate is the number of evaluations or updates instead of the time.
-    """
+    """Draw time, or `work`, over one of the errors on `ax`, failures on `rail`, and return the lines."""
     floor = chart.floor[error]
     artists = []
     for series in chart.series:

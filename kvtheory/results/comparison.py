@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from kvtheory.export import Columns
-from kvtheory.results.presented import Exported, above, html_table
+from kvtheory.results.presented import Exported, html_table
 from kvtheory.results.table import SERIES_UNITS
 
 
@@ -107,7 +107,3 @@ class Comparison(Exported):
 
     def _attributes(self) -> Mapping[str, str]:
         return {"verdict": self.verdict, "diagnosis": self.diagnosis}
-
-    def plot(self) -> Any:
-        """Draw data over theory, the residual, and the checks, and return the figure."""
-        return above("plots").plot_result(self)

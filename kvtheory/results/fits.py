@@ -1,28 +1,61 @@
 """What was fitted to measurements: the foundation from moduli, the quantities of a scene from friction."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kvtheory.export import Columns
 from kvtheory.results.certificate import Recorded
-from kvtheory.results.presented import Exported, above, aligned
+from kvtheory.results.presented import Exported, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 
 ZERO_CELSIUS = 273.15
-HEADING = "# A scene whose foundation was fitted to measured moduli"
-FITTED = "# A scene whose quantities were fitted to measured friction"
-"""First lines of files."""
 WIDTH = 100
 
 
+class _Fit(Exported):
+    """What fits have in common: a scene that was found, and remarks."""
+
+    heading: ClassVar[str]
+    source: str
+    scene: Scene | None
+
+    @property
+    def remarks(self) -> list[str]:
+        """What should be known about the fit, a line each."""
+        raise NotImplementedError
+
+    @property
+    def _found(self) -> Scene:
+        if self.scene is None:
+            told = "a foundation from moduli is a layer: give `thickness` and `poisson_ratio`"
+            raise ValueError(told)
+        return self.scene
+
+    def to_toml(self) -> str:
+        """Return the scene with the fitted values as TOML text, with remarks as comments."""
+        lines = [self.heading]
+        for line in to_toml(self._found).splitlines():
+            if line.startswith("arms = "):  # an arm in each line
+                pairs = line.removeprefix("arms = [[").removesuffix("]]").split("], [")
+                lines += ["arms = [", *(f"  [{pair}]," for pair in pairs), "]"]
+                continue
+            lines.append(line)
+            for remark in self.remarks if line == "[foundation]" else ():
+                lines += wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="# ")
+        return "\n".join([*lines, ""])
+
+    def _attributes(self) -> Mapping[str, str]:
+        return {"source": self.source, "remarks": " ".join(self.remarks)}
+
+
 @dataclass(frozen=True, repr=False)
-class FoundationFit(Exported):
+class FoundationFit(_Fit):
     """A Prony series fitted to measured moduli, in SI.
 
     `arms` are pairs of modulus (Pa) and relaxation time (s), by increasing time; `modulus` is that of the
@@ -37,6 +70,7 @@ class FoundationFit(Exported):
     `foundation` needs `thickness` and `poisson_ratio`.
     """
 
+    heading = "# A scene whose foundation was fitted to measured moduli"
     arms: tuple[tuple[float, float], ...]
     modulus: float | None
     stiffness: float | None
@@ -57,11 +91,7 @@ class FoundationFit(Exported):
     @property
     def foundation(self) -> GeneralizedMaxwell:
         """The foundation of `scene`."""
-        if self.scene is None:
-            raise ValueError(
-                "a foundation from moduli is a layer: give `thickness` and `poisson_ratio`"
-            )
-        return self.scene.foundation  # type: ignore[return-value]
+        return self._found.foundation  # type: ignore[return-value]
 
     @property
     def remarks(self) -> list[str]:
@@ -91,11 +121,6 @@ class FoundationFit(Exported):
         first = f"Prony series, relaxed {relaxed:.6g} {unit}"
         return "\n".join([first, *aligned(heads, rows), *self.remarks])
 
-    def to_toml(self) -> str:
-        """Return the scene with this foundation as TOML text, with remarks as comments."""
-        _ = self.foundation
-        return commented(self.scene or Scene(), HEADING, "foundation", self.remarks)
-
     def _columns(self) -> Columns:
         x, rows, fitted = self.data["x"], self.data["measured"], self.data["fitted"]
         names = ("storage", "loss") if len(rows) == 2 else ("relaxation",)
@@ -105,13 +130,6 @@ class FoundationFit(Exported):
             columns[f"{name}_modulus, data"] = measured, unit
             columns[f"{name}_modulus, fit"] = fit, unit
         return columns
-
-    def _attributes(self) -> Mapping[str, str]:
-        return {"source": self.source, "remarks": " ".join(self.remarks)}
-
-    def plot(self) -> Any:
-        """Draw data and fit, residuals and arms, and the shift of the sweeps, and return the figure."""
-        return above("plots").plot_result(self)
 
 
 class Parameter(NamedTuple):
@@ -138,7 +156,7 @@ class WeighedModel(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class FrictionFit(Exported):
+class FrictionFit(_Fit):
     """Quantities of a scene fitted to measured friction.
 
     `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
@@ -148,6 +166,7 @@ class FrictionFit(Exported):
     weighed. `scene` is the scene with the fitted values.
     """
 
+    heading = "# A scene whose quantities were fitted to measured friction"
     parameters: Mapping[str, Parameter]
     correlations: tuple[tuple[float, ...], ...]
     not_identifiable: tuple[tuple[str, ...], ...]
@@ -195,10 +214,6 @@ class FrictionFit(Exported):
             lines += ["", *aligned(columns, weighed)]
         return "\n".join([f"Fit of {self.model}", *lines, "", *self.remarks])
 
-    def to_toml(self) -> str:
-        """Return the scene with the fitted values as TOML text, with remarks as comments."""
-        return commented(self.scene, FITTED, "foundation", self.remarks)
-
     def _columns(self) -> Columns:
         specs, units = self.scene.replaceable, self.data["units"]
         sets, columns = self.data["sets"], dict[str, Any]()
@@ -218,13 +233,6 @@ class FrictionFit(Exported):
                 columns[f"{name}{of}"] = held, unit
         return columns
 
-    def _attributes(self) -> Mapping[str, str]:
-        return {"source": self.source, "remarks": " ".join(self.remarks)}
-
-    def plot(self) -> Any:
-        """Draw data and fit over velocity, and the residuals, and return the figure."""
-        return above("plots").plot_result(self)
-
 
 @dataclass(frozen=True)
 class FewerArms(Recorded):
@@ -240,18 +248,3 @@ class FewerArms(Recorded):
     difference: float
     velocities: tuple[float, float]
     scene: Scene = field(repr=False)
-
-
-def commented(scene: Scene, heading: str, section: str, remarks: Sequence[str]) -> str:
-    """Return a scene as TOML text with remarks as comments in a section, and an arm in each line."""
-    lines = [heading]
-    for line in to_toml(scene).splitlines():
-        if line.startswith("arms = "):
-            pairs = line.removeprefix("arms = [[").removesuffix("]]").split("], [")
-            lines += ["arms = [", *(f"  [{pair}]," for pair in pairs), "]"]
-            continue
-        lines.append(line)
-        if line == f"[{section}]":
-            for remark in remarks:
-                lines += wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="# ")
-    return "\n".join([*lines, ""])

@@ -39,6 +39,10 @@ class Exported(Recorded):
         """Write one row for each time, or for each state, with units in the header, in SI."""
         save_csv(Path(path), self._columns())
 
+    def plot(self) -> Any:
+        """Draw the result, with what it is compared with, and return the figure."""
+        return above("plots").plot_result(self)
+
     def save(self, path: str | Path) -> None:
         """Write to ``.csv``, or to ``.nc`` with xarray; raise `ValueError` for any other suffix."""
         path = Path(path)
@@ -86,12 +90,14 @@ class Presented(Exported):
         errors = self.certificate.relative_error.values()
         worst = max((float(np.max(error, initial=0.0)) for error in errors), default=0.0)
         scale, kind = self.certificate.relative_to, self.certificate.kind
-        return "\n".join([self._title, *pairs, f"errors up to {worst:.1e} of {scale} ({kind})"])
+        errors_up_to = f"errors up to {worst:.1e} of {scale} ({kind})"
+        return "\n".join([self._title, *pairs, errors_up_to, *getattr(self, "notes", ())])
 
     def _repr_html_(self) -> str:
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
         reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
-        return f"{html_table(self._title, heads, self._shown())}<p>{escape(reason)}</p>"
+        notes = "".join(f"<p>{escape(note)}</p>" for note in (reason, *getattr(self, "notes", ())))
+        return html_table(self._title, heads, self._shown()) + notes
 
     def plot(self, *, ax: Any = None, **style: Any) -> Any:
         """Draw the result and return the figure; `ax` is an axes or several, else they are new.

@@ -59,12 +59,6 @@ class SteadyState(Presented):
         of = "" if np.ndim(self.stable) == 0 else f" in {count} of {np.size(self.stable)} scenes"
         return UNSTABLE.format(of) if count else ""
 
-    def __repr__(self) -> str:
-        return "\n".join([super().__repr__(), *self.notes])
-
-    def _repr_html_(self) -> str:
-        return super()._repr_html_() + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
-
 
 @dataclass(frozen=True)
 class Stability(Recorded):

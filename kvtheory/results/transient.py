@@ -39,9 +39,6 @@ class TimeSeries(Presented):
     )
     notes: tuple[str, ...] = field(default=(), compare=False)
 
-    def __repr__(self) -> str:
-        return "\n".join([super().__repr__(), *self.notes])
-
     @property
     def _title(self) -> str:
         end, count = float(self.time[-1]) if len(self.time) else 0.0, len(self.time)

@@ -18,7 +18,7 @@ from kvtheory.progress import listening
 from kvtheory.scene.drives import TIME
 from kvtheory.scene.mistakes import SHORT, Problems, SceneError, nearest, problem, shown
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, array_of, convert, item_values, items
+from kvtheory.scene.quantities import Quantity, convert, listed, split
 from kvtheory.scene.units import bare, to_si
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -100,16 +100,11 @@ def measured(spec: Quantity) -> Kind:
 
 def times(value: Any) -> list[float]:
     """Read times in s: one or several, also as text; report every mistake with its value."""
-    problems = Problems()
-    found: list[float] = []
+    problems, found = Problems(), list[float]()
     for one in value if isinstance(value, (list, tuple)) else [value]:
-        for given in items(one) if isinstance(one, str) else [one]:
+        for given in split(one) if isinstance(one, str) else [one]:
             with problems.catching("`at`", given):
-                read = item_values if isinstance(given, str) else array_of
-                array = np.atleast_1d(read(given, TIME))
-                if array.ndim > 1:
-                    raise ValueError("expected one list of times")
-                found += array.tolist()
+                found += listed(given, TIME).tolist()
     if not found and not problems:
         problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
     problems.report()

@@ -57,9 +57,7 @@ class BaseMotion:
 
     @classmethod
     def from_points(cls, points: Sequence[tuple[float, float]], end: float) -> "BaseMotion":
-        """Return the motion that is linear between `points` (t, V), with a jump where t repeats.
-
-        It keeps its last velocity until `end`.
+        """Return the motion, linear between `points` (t, V), a jump where t repeats, then at a constant V.
 
         >>> motion = BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], end=3.0)
         >>> [motion.at(t)[:2] for t in (0.5, 1.0, 3.0)]
@@ -254,11 +252,10 @@ def _one_way(found: Iterable[Span]) -> Iterator[Span]:
         start, powers = a, coefficients
         for zero in _reversals(coefficients, a, b):
             yield start, zero, powers
-            start, shifted = zero, list(coefficients)
-            for first in range(len(shifted) - 1):
-                for k in range(len(shifted) - 2, first - 1, -1):
-                    shifted[k] += (zero - a) * shifted[k + 1]
-            powers = (0.0, *shifted[1:])
+            start, shifted = zero, np.zeros(len(coefficients))
+            moved = Polynomial(coefficients)(Polynomial([zero - a, 1.0])).coef
+            shifted[1 : moved.size] = moved[1:]  # at the zero itself V = 0
+            powers = tuple(shifted.tolist())
         yield start, b, powers
 
 

@@ -35,6 +35,29 @@ INCH = re.compile(r'(?<=[EG])"(?=\s*[\[(/])')
 """A double prime written as a quotation mark, before a unit."""
 MISSPELT = 0.8
 """Similarity to a known name from which a name counts as misspelt."""
+SPELLINGS = {
+    "time": "time, t, Zeit",
+    "velocity": "velocity, V, v, speed, drive velocity, drive.velocity, v_drive, Geschwindigkeit",
+    "sliding_velocity": "sliding_velocity, v_s, v_slide, slip velocity, Gleitgeschwindigkeit",
+    "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
+    "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
+    "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
+    "-depth_rate": "v_z, vz_A, dz_A/dt, z_A_dot, vertical velocity",
+    "load": "load, W, Last",
+    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
+    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
+    "Reibkraft, Reibungskraft, Tangentialkraft",
+    "spring_force": "spring_force, F_s, F_spring, drive force, pulling force, Federkraft, Zugkraft",
+    "friction_coefficient": "friction_coefficient, mu, μ, µ, coefficient of friction, COF, Reibungszahl, "
+    "Reibwert, Reibungskoeffizient",
+    "leading_edge": "leading_edge, x_LE, Vorderkante",
+    "trailing_edge": "trailing_edge, x_TE, Hinterkante",
+    "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
+    "radius": "radius, R",
+    "temperature": "temperature, T, temp, temp., Temperatur",
+}
+"""Names of each quantity in measured tables, case, spaces and underscores aside; a minus sign marks those
+that point the other way."""
 BEFORE_UNITS = 2
 """Most blank rows between a header and its row of units."""
 
@@ -228,10 +251,7 @@ class Reader:
         return Table(str(path), columns, numbers, tables[0][3])
 
     def _header(self, line: str, first: str) -> tuple[list[str], str] | None:
-        """Return the cells and the separator of a row of text that names what is needed.
-
-        The separator is that of a first line such as ``sep=;``, or the one by which most names are known.
-        """
+        """Return the cells and the separator, that of ``sep=;`` or the best, of a row that is a header."""
         told, best, most = SEPARATED.match(first), None, 0
         for separator in told[1] if told else SEPARATORS:
             cells = _split(line, separator)
@@ -367,20 +387,14 @@ def _numbers(
 
 KEY = "drive.file"
 HISTORY = Reader(
-    {
-        "time": "t, time, Zeit",
-        "velocity": "V, v, velocity, speed, drive velocity, v_drive, Geschwindigkeit",
-    },
+    {name: SPELLINGS[name] for name in ("time", "velocity")},
     {"time", "velocity"}.issubset,
     'a first line such as "t [ms],V [mm/s]", and then numbers',
 )
 
 
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
-    """Return the points (t, V) in SI of a table of time and velocity; other columns are ignored.
-
-    It raises SceneError if the file cannot be read; the message says in which line.
-    """
+    """Return the points (t, V) in SI of a table of time and velocity, or raise SceneError with the line."""
     try:
         table = HISTORY.read(path)
         t, V = table.si("time", "s")[0], table.si("velocity", "m/s")[0]

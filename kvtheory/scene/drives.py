@@ -249,8 +249,7 @@ class Drive(Part):
     def motion(self, end: float, least: float) -> BaseMotion:
         """Return V(t) and Y(t) as polynomials, up to the time `end` (s) or the end of a longer history.
 
-        The error of a function is relative to |V|, or to the speed `least` (m/s), a_0/tau, if that is larger.
-        It raises ValueError if it is not smooth between its breaks, or not finite, or changes too often.
+        The error of a function is relative to max(|V|, `least`); one with more breaks raises ValueError.
         """
         wave = self.waveform
         if self.function is None:

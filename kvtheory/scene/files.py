@@ -262,10 +262,7 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
 
 
 def _switched(old: Any, section: str, choice: str, table1: bool) -> dict[str, Any]:
-    """Return a section for another model, with the keys that it shares with the old one.
-
-    Table 1 gives both the mass and the depth, so that its support can be switched.
-    """
+    """Return a section for another model, with the keys that it shares with the old one, or with Table 1."""
     meant = closest(choice, MODELS[section])
     names = _keys(MODELS[section][meant]) if meant else ()
     built_in = _tables(Scene.table1(choice))[section] if table1 and choice in SUPPORTS else {}

@@ -96,10 +96,7 @@ def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
 
 
 def extrapolates(foundation: "AnyFoundation", velocity: Any, contact_length: Any) -> str:
-    """Return a note if V/c is outside the frequencies of the measurement, or an empty text; or arrays.
-
-    Times shift by a_T, and so do frequencies: V a_T/c counts.
-    """
+    """Return a note if V/c, or V a_T/c, is outside the measured frequencies, or an empty text; or arrays."""
     low, high = foundation.lowest_frequency, foundation.highest_frequency
     if low is None:
         return ""

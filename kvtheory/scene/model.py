@@ -335,11 +335,7 @@ PARTS: dict[str, tuple[Any, ...]] = {
 
 
 def inconsistencies(parts: Mapping[str, Any]) -> Problems:
-    """Report where the parts of a scene, as far as given, are inconsistent.
-
-    The values of a ball are totals, those of a line contact are per unit width; and on a spring a fixed
-    indenter needs a mass, as its support has none.
-    """
+    """Report parts that do not fit: totals with a line contact, or no mass for a spring in the drive."""
     found = Problems()
     indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
     per_width = indenter is None or indenter.per_width

@@ -6,7 +6,7 @@ floats, in SI.
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
@@ -26,10 +26,7 @@ Value = Any
 
 
 class Derived(float):
-    """A quantity that follows from others, and is computed again when these are replaced.
-
-    For a time that is shifted by temperature, `given` is its value before the shift; otherwise None.
-    """
+    """A quantity that follows from others, computed again with them; `given` is a time before its shift."""
 
     given: Any = None
 
@@ -202,15 +199,14 @@ def quantity(
     return field(default=default, metadata={"quantity": spec})
 
 
-def quantities(cls: Any) -> dict[str, Quantity]:
+def quantities(cls: Any) -> Mapping[str, Quantity]:
     """Return the quantities that a dataclass or its instance declares, by name."""
-    return dict(_declared(cls if isinstance(cls, type) else type(cls)))
+    return _declared(cls if isinstance(cls, type) else cls.__class__)
 
 
 @cache
-def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
-    fields = dataclasses.fields(cls)
-    return tuple((f.name, f.metadata["quantity"]) for f in fields if "quantity" in f.metadata)
+def _declared(cls: type) -> Mapping[str, Quantity]:
+    return {f.name: f.metadata["quantity"] for f in dataclasses.fields(cls) if f.metadata}
 
 
 def given(instance: Any) -> dict[str, Quantity]:
@@ -228,10 +224,7 @@ def free(instance: Any) -> dict[str, Quantity]:
 
 @cache
 def required(cls: Any, given: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the quantities that must be given in addition to the `given` ones.
-
-    A quantity that another one excludes adds no requirement: it is reported as a separate mistake.
-    """
+    """Return what must be given beside the `given` quantities; one that these exclude is another mistake."""
     specs, names = quantities(cls), set(given)
     for name in specs:
         if name in names:
@@ -302,7 +295,19 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
     return np.array(rows, dtype=float)
 
 
-def items(text: str) -> list[str]:
+def listed(value: Any, spec: Quantity) -> NDArray[np.float64]:
+    """Return the values in SI of one list: a text with commas and ranges, an array or a list."""
+    if isinstance(value, str) and (items := split(value)):
+        return np.concatenate([item_values(item, spec) for item in items])
+    array = np.atleast_1d(array_of(value, spec))
+    if array.ndim > 1:
+        raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
+    if array.size == 0:
+        raise ValueError("is empty; expected at least one value")
+    return array
+
+
+def split(text: str) -> list[str]:
     """Split a text at its commas."""
     return [item.strip() for item in text.split(",") if item.strip()]
 
@@ -333,11 +338,7 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
 
 
 def validate(instance: Any, section: str) -> None:
-    """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
-
-    A derived quantity is removed, to be computed again. Values whose unit tells whether they are per unit
-    width are kept in `written`, for the scene to check.
-    """
+    """Convert and check every quantity; `written` keeps those whose unit tells a line from a ball."""
     specs, written, values = quantities(instance), {}, {}
     for name in specs:
         value = as_given(getattr(instance, name))

@@ -1,7 +1,6 @@
 """The scene at rest, and the dimensionless numbers that govern its motion."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -9,7 +8,6 @@ import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, lacks_quadratic, require
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
-from kvtheory.scene.quantities import as_given, given
 
 
 @dataclass(frozen=True)
@@ -42,10 +40,7 @@ class StaticState:
 
     @classmethod
     def of(cls, scene: Scene) -> "StaticState":
-        """Return the static state of a scene with a parabola or a ball: other shapes have more numbers.
-
-        Other scenes, and those that leave the range of double precision, raise ValueError.
-        """
+        """Return the static state of one scene with a parabola or a ball, or raise ValueError."""
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
         R, K = scene.indenter.radius, scene.foundation.stiffness
@@ -146,28 +141,14 @@ def out_of_range(scene: Scene, why: str = "") -> str:
     """Return the message that a scene leaves double precision; it names values far from those of Table 1."""
     usual: dict[str, float] = {}
     for support in TABLE1_SUPPORTS:
-        usual |= {key: size for key, size, _ in _sizes(Scene.table1(support))}
+        usual |= Scene.table1(support).values()
+    units = {key: spec.unit.removeprefix("1") for key, spec in scene.replaceable.items()}
+    shift = {"a_T of foundation.temperature": scene.foundation.shift_factor}
     far = [
-        f"{key} = {size:g} {unit}".strip()
-        for key, size, unit in _sizes(scene)
+        f"{key} = {size:g} {units.get(key, '')}".strip()
+        for key, value in {**scene.values(), **shift, "run.duration": scene.run.duration}.items()
+        for size in {float(abs(each)) for each in (np.min(value), np.max(value))}
         if 0.0 < size < math.inf and abs(math.log10(size / usual.get(key, 1.0))) > FAR
     ]
     told = ", ".join(dict.fromkeys(far)) or "its values"
     return f"the scene leaves the range of double precision: {why and f'{why}; '}check {told}"
-
-
-def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
-    """Yield the keys of a scene with the least and the largest magnitude of each in SI, and its unit."""
-    parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
-    for section, part in parts.items():
-        for name, spec in given(part).items():
-            sizes = np.abs(as_given(getattr(part, name)))
-            unit = "" if spec.unit == "1" else spec.unit
-            for size in (np.min(sizes, initial=math.inf), np.max(sizes, initial=0.0)):
-                yield f"{section}.{name}", float(size), unit
-    shift = np.ravel(scene.foundation.shift_factor)
-    for size in (shift.min(initial=1.0), shift.max(initial=1.0)):
-        yield "a_T of foundation.temperature", float(size), ""
-    speeds = [abs(velocity) for _, velocity in scene.drive.history or ()]
-    if speeds:
-        yield "drive.history", max(speeds), "m/s"

@@ -122,10 +122,9 @@ def to_si(value: Any, unit: str) -> float:
 
 
 def bare(value: Any) -> tuple[Any, str | None]:
-    """Return a number or an array without its unit, an array of any library as one of NumPy, and the unit.
+    """Return a number or an array (as one of NumPy) without its unit, and the unit or None.
 
-    The unit is that of pint, or the attribute ``units`` of xarray and pandas; None if there is none. Masked
-    values, and arrays of other libraries that cannot be read, raise ValueError.
+    The unit is that of pint, or the attribute ``units`` of xarray and pandas; masked values raise ValueError.
     """
     written = None
     if type(value) in (float, int):

@@ -146,10 +146,7 @@ def _transients(given: Task, steady: Measured) -> Measured:
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
-    """Compile the kernels in this process, if each worker would otherwise do it for so many `points`.
-
-    Workers load the compiled kernels from the disk, if they share it and the kind of processor.
-    """
+    """Compile the kernels here if each worker would otherwise do so; workers share the disk."""
     if not plan.transient or lacks_continuum(plan.scene):
         return
     from kvtheory.sweeps.measures import compiles

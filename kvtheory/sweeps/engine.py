@@ -157,10 +157,7 @@ def _result(future: Future[Block], given: Task) -> Block | None:
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
-    """Yield tasks for all points outside the `done` ranges, at most `block` points each.
-
-    Edges of blocks lie on multiples of `block`, except at the ends of those ranges.
-    """
+    """Yield tasks of at most `block` points outside the `done` ranges, cut at multiples of `block`."""
     size = block or (VECTORISED_BLOCK if plan.vectorised else QUADRATURE_BLOCK)
     if plan.transient and not block:
         together = find_spec("numba") is not None and not plan.texts

@@ -45,8 +45,7 @@ DOUBLINGS = 2
 def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
     """Solve scenes, by their index in a block; return the columns of transients, with rows for all indices.
 
-    The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
-    (N/m) at each index. The errors are those of the series; a maximum has that of the quantity itself.
+    `friction` is the steady friction force (N/m) at each index. A maximum has the error of the quantity.
     """
     block = _Motions(plan, scenes, friction)
     block.follow()

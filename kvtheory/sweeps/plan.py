@@ -26,7 +26,7 @@ from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.mistakes import Problems, SceneError, nearest, problem
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, array_of, item_values, items, quantities
+from kvtheory.scene.quantities import listed, quantities
 
 Array = NDArray[np.float64]
 Table = dict[str, NDArray[Any]]
@@ -114,7 +114,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
                     raise SceneError([f"`over` {key} is swept twice"])
                 if key not in specs:
                     raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
-                swept[key] = arrays[key] = _values(value, specs[key])
+                swept[key] = arrays[key] = listed(value, specs[key])
         if len({array.size for array in arrays.values()}) > 1:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
             problems.append(f"`over`: values that vary together must be equally many, got {sizes}")
@@ -128,18 +128,6 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     joint = sum(len(arrays) > 1 for arrays in axes)
     names = iter(["point"] if joint == 1 else [f"point_{i + 1}" for i in range(joint)])
     return tuple(Axis(next(names if len(each) > 1 else iter(each)), each) for each in axes)
-
-
-def _values(value: Any, spec: Quantity) -> Array:
-    """Return the values of a key in SI."""
-    if isinstance(value, str) and items(value):
-        return np.concatenate([item_values(item, spec) for item in items(value)])
-    array = np.atleast_1d(array_of(value, spec))
-    if array.ndim > 1:
-        raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
-    if array.size == 0:
-        raise ValueError("is empty; expected at least one value")
-    return array
 
 
 @dataclass(frozen=True)

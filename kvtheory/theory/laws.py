@@ -225,10 +225,7 @@ class Fractional:
         return Moments(0.5 * K + P, 0.5 * K + Q, K / 12.0 + D, E, K + end, -self.alpha * end)
 
     def dissipated(self, M: Moments, c: Array, work: Array) -> tuple[Array, Array]:
-        """Return the share of the work lost in the contact: that not stored at the trailing edge.
-
-        Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
-        """
+        """Return the share of the work lost in the contact, and its error: it cancels towards order 0."""
         eta, rest, two = M.eta, 1.0 - self.alpha, 2.0**-self.alpha
         third, fourth = self.known[2:4]
         none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w

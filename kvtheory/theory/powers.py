@@ -9,10 +9,7 @@ SPECIAL = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """Return base^exponent, to the same bits however many scenes are in an array.
-
-    NumPy uses its special routines only where all exponents are one scalar; here they are always used.
-    """
+    """Return base^exponent, to the same bits however many scenes are in an array."""
     if not isinstance(exponent, np.ndarray):
         return base**exponent
     special = [(exponent == value, routine) for value, routine in SPECIAL]

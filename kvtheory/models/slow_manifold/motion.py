@@ -90,10 +90,7 @@ def depth_rate(depth: Array, number: float, support_number: float = 0.0) -> Arra
 
 
 def _manifold(given: Start, moved: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return a, b, d' = G, f_v and f_d where a exceeds its steady value by `moved`.
-
-    Near steady sliding b and G would cancel: they are computed as differences from it.
-    """
+    """Return a, b, d' = G, f_v and f_d where a exceeds its steady value by `moved`, without cancellation."""
     number, kappa, a_0 = given.number, given.kappa, given.steady
     r_0 = a_0 * trailing_edge_ratio(number / a_0)
     b_0 = a_0 + r_0

@@ -238,10 +238,7 @@ class Contact:
         return left + self.l_r * drag, self.l_r * drag, error / drag
 
     def quantities(self) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
-
-        The edges are those of all contacts together.
-        """
+        """Return quantities over the stiffness, of all contacts, their errors, and d ln/d ln delta."""
         nearby = Contact(self.surface, self.l_r, self.depth * (1.0 - DEPTH_STEP))
         (values, own), (others, _) = self._values(), nearby._values()
         powers = {
@@ -263,10 +260,7 @@ class Contact:
 
 
 def _root(function: Callable[[float], float], low: float, high: float, ends: Any = None) -> float:
-    """Return a root between two points; one of them, if the signs are equal by rounding only.
-
-    `ends` are the values there, if they are not those of the function, which may jump at a kink.
-    """
+    """Return a root between two points, or one of them, if the signs of `ends` differ by rounding only."""
     low, high = low or beside(low, high), high or beside(high, low)
     left, right = ends or (function(low), function(high))
     if (left > 0.0) == (right > 0.0):

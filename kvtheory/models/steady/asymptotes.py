@@ -143,11 +143,7 @@ def quantity(scene: Scene, limit: Limit, name: str = "friction_coefficient") -> 
 
 
 def critical_velocity(scene: Scene) -> Value:
-    """Return V*, where both limits of the friction coefficient meet: each is a power of V.
-
-    On Kelvin-Voigt these are Eqs. 47 and 48 with their coefficients, for every power law and for a ball
-    (derivations "F19-crossing", "F19-crossing-weight" and "F20-crossing").
-    """
+    """Return V* of the limits, powers of V (Eqs. 47, 48; F19-crossing, F19-crossing-weight, F20-crossing)."""
     _, _, n = _shape(scene)
     low, high = limits(scene)
     unit = at_rest(scene)[1] / scene.foundation.retardation_time
@@ -160,10 +156,7 @@ def critical_velocity(scene: Scene) -> Value:
 
 
 def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
-    """Return the limit of every quantity of steady sliding on Kelvin-Voigt.
-
-    At V = 0 those for high velocity are infinite or zero.
-    """
+    """Return the limit of every quantity on Kelvin-Voigt; for high velocity, infinite or zero at V = 0."""
     _, _, n = _shape(scene)
     K, V = scene.foundation.stiffness, scene.drive.final_velocity
     side = (V >= 0.0) * 2.0 - 1.0

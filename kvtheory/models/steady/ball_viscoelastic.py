@@ -74,11 +74,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
 
 def contact_length(scene: Scene, row: Law) -> Array:
-    """Return the length of the contact in the middle plane, on every support.
-
-    At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
-    and 5, so that the steps converge from any initial guess.
-    """
+    """Return the length of the contact in the middle plane; at a load by Newton in logarithms, from rest."""
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     if scene.held:
         half = np.broadcast_to(np.sqrt(2.0 * R * scene.support.depth), scene.shape)
@@ -99,10 +95,9 @@ def contact_length(scene: Scene, row: Law) -> Array:
 
 
 def _sums(scene: Scene, row: Law, c: Array, *, friction: bool = False) -> Array:
-    """Return the half length at rest of the middle plane, the load over the strips and d ln W/d ln c.
+    """Return the half length at rest, the load over the strips and d ln W/d ln c.
 
-    With `friction` also that, and the energy dissipated inside the contact per sliding distance with its
-    relative error. A part of the scenes is treated at a time.
+    With `friction` also that, and the energy dissipated in the contact per distance, with its error.
     """
     parts = []
     for i in range(0, c.size, PART):

@@ -242,12 +242,7 @@ class Surface:
 
 
 class ConvexProfile:
-    """A convex profile in the direction of sliding, as a series, for the convolution.
-
-    It evaluates thousands of slopes without calls of a Python function. A shape that is not convex where it
-    is below the depth may touch in several places; the memory of the surface between them is not modelled
-    here, and the shape is refused.
-    """
+    """A convex profile along x as a series, for the convolution; shapes that may touch twice are refused."""
 
     def __init__(self, profile: Profile, side: float) -> None:
         self.surface, self.reach = Surface(profile, side), profile.reach

@@ -97,10 +97,7 @@ class Contact:
         return *squared, left
 
     def quantities(self) -> Quantities:
-        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
-
-        The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
-        """
+        """Return quantities over K, their errors, d ln/d ln delta; F = l_r (int h'^2 dx + u_TE^2/(2 l_r))."""
         shape, l_r, depth, rolls = self.shape, self.l_r, self.depth, self.rolls
         a, x, load, a_moves, x_moves = (
             self.half_length,
@@ -238,11 +235,9 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
 
 
 def _peak(shape: Convex, l_r: Value, depth: Value, a: Value) -> Value:
-    """Return the highest p/K.
+    """Return the highest p/K, at y = -x > 0: p' = 0 means y = l_r y h''/h', or it is at the leading edge.
 
-    It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
-    for a power and rises with y for the circle, or else the peak is at the leading edge. Every iterate
-    is a pressure of this contact, so that the highest of them is never too high.
+    Every iterate is a pressure of this contact, so that the highest of them is never too high.
     """
     peak, last = l_r * shape.slope(a), (a, 0.0 * l_r)
     y, active = least(l_r, a) + FLOOR * a, l_r >= 0.0

@@ -76,10 +76,7 @@ class Arms:
         return np.expm1(-s / self.length) / np.expm1(-X / self.length)
 
     def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
-        """Return the work of the arms over the contact, and the part lost in it: sums of squares.
-
-        `left` is the pressure of each arm at the trailing edge.
-        """
+        """Return the work of the arms, and the part lost; `left` is their pressure at the trailing edge."""
         lost, _ = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
         return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
 

@@ -34,10 +34,7 @@ RTOL, LIMIT = 1e-14, 1e-6
 
 
 def _rule(step: float) -> tuple[Any, Any]:
-    """Return nodes from 0 to 1, and two rows of weights: for this step, and for twice that.
-
-    Takahasi and Mori (1974), doi:10.2977/prims/1195192451: the ends may be singular.
-    """
+    """Return nodes from 0 to 1, weights for this step and twice it (doi:10.2977/prims/1195192451)."""
     count = 2 * int(0.5 * LAST / step)
     t = step * np.arange(-count, count + 1)
     decay = np.exp(-np.pi * np.sinh(t))
@@ -47,11 +44,7 @@ def _rule(step: float) -> tuple[Any, Any]:
 
 
 def _gauss() -> tuple[Any, Any]:
-    """Return Gauss's rule likewise, and the same without the last two terms of the Legendre series.
-
-    For an analytic function these terms fall geometrically, and the error is that of the term of twice their
-    order.
-    """
+    """Return Gauss's rule likewise, and the same without the last two terms of the Legendre series."""
     nodes, weights = legendre.leggauss(SMOOTH)
     order = np.arange(SMOOTH - 2, SMOOTH)
     last = legendre.legvander(nodes, SMOOTH - 1)[:, -2:] @ (2.0 * order + 1.0)
@@ -119,11 +112,7 @@ def some(condition: Any) -> bool:
 
 
 def pick(condition: Any, chosen: Value, other: Value) -> Value:
-    """Return one of two values, element by element.
-
-    Thus converged scenes stay unchanged while the rest of a column is iterated, and no result depends on the
-    other scenes.
-    """
+    """Return one of two values, element by element, so that no result depends on the other scenes."""
     if isinstance(condition, np.ndarray):
         return np.where(condition, chosen, other)
     return chosen if condition else other
@@ -136,10 +125,7 @@ def share_lost(friction: Value, lost: Value) -> Value:
 
 
 def power_bounds(contact: Any) -> dict[str, float]:
-    """Return d ln W/d ln delta, and upper bounds of d ln/d ln delta where it is not known.
-
-    At a given retardation length the friction coefficient changes no faster than the depth.
-    """
+    """Return d ln W/d ln delta, and upper bounds of other powers; mu changes no faster than the depth."""
     load = contact.depth * contact.load_slope / contact.load
     bounds = load, load + 1.0, 1.0, 1.0
     return dict(zip(SUMS, bounds, strict=True))

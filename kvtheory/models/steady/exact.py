@@ -80,11 +80,7 @@ def depth(scene: Scene) -> Any:
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
-    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s = a/a_0 in (0, 1], by Halley's method.
-
-    The initial guess interpolates between the limits s = 1 at lambda = 0 and s^2 (3/4 lambda + kappa)
-    = 1 + kappa at lambda -> oo.
-    """
+    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s in (0, 1], by Halley's method from between its limits."""
     kappa = support_number
     s = np.sqrt((1.0 + kappa) / (kappa + np.hypot(1.0, 0.75 * drive_number)))
     for _ in range(HALLEY_STEPS):

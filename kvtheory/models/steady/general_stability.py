@@ -230,10 +230,7 @@ class Crossings(NamedTuple):
 
 
 class SmallMotions:
-    """Contacts of flat scenes in few strips, in enough and in twice as many; and all crossings.
-
-    Crossings are refined for more strips until these are enough; if one is lost, the search is repeated.
-    """
+    """Contacts of flat scenes in few strips, in enough and in twice as many; and all crossings."""
 
     def __init__(self, scene: Scene) -> None:
         self.size = scene.shape[0]
@@ -255,10 +252,7 @@ class SmallMotions:
                 known = _zeros(self.fine)
 
     def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-        """Return upper and lower critical stiffness, the frequency at the upper one, and their errors.
-
-        Between the lower and the upper one there may be stable ranges too.
-        """
+        """Return upper and lower critical stiffness (stable ranges may be between), frequency, errors."""
         found, (upper, lower) = self.crossings, np.full((2, 4, self.size), np.nan)
         hertz = found.omega / (2.0 * np.pi)
         known = np.stack([found.stiffness, hertz, found.error, found.omega_error])
@@ -274,11 +268,9 @@ class SmallMotions:
         return ~self.crossings.unstable(spring)
 
     def rates(self, spring: Array | None) -> tuple[Complex, Array]:
-        """Return the least stable rates of each scene and their relative errors: as many as on Kelvin-Voigt.
+        """Return the least stable rates of each scene, as many as on Kelvin-Voigt, and their relative errors.
 
-        These are four, or two for a rigid drive or a fixed indenter; NaN where fewer are found, as next to
-        rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says that the
-        count of the argument principle differs.
+        NaN where fewer are found, as at rest; infinite errors where the argument principle counts others.
         """
         pairs = []
         for i in range(self.size):

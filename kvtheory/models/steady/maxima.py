@@ -91,10 +91,7 @@ PEAK_BRACKET = 0.5, 4.0
 
 
 def _peak_of_dead_weight(scene: Scene) -> tuple[Array, Array]:
-    """Return velocity and friction coefficient at the one maximum of a dead weight on Kelvin-Voigt.
-
-    With l = l_r/a, s = a/a_0 and the power p of a with which the load grows, s^p w = w at rest.
-    """
+    """Return velocity and friction coefficient at the one maximum of a dead weight on Kelvin-Voigt."""
     line = scene.indenter.per_width
     slope = power_of(scene.indenter)[2] if line else np.asarray(2.0)
     n = np.broadcast_to(slope, scene.shape).astype(float)

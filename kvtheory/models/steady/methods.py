@@ -148,10 +148,7 @@ def _mirror(rows: Any, side: Any) -> None:
 
 
 def _check_range(values: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
-    """Raise if a value is not finite, or lost digits below the smallest normal number.
-
-    Zero is correct only at rest, or where the value has its own error, which then says so.
-    """
+    """Raise if a value is not finite, or subnormal; zero is right at rest, or has its own error."""
     size = np.abs(values)
     if not size.size or (size.min() >= SMALLEST and size.max() < math.inf):
         return

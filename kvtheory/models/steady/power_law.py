@@ -87,9 +87,8 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> tuple[Array, Array]:
     """Solve f(s) + kappa (s^n - 1) = 1; return s = a/a_0 in (0, 1] and delta/delta_0 = s^n.
 
-    Newton's method for the logarithm of f + kappa s^n, from the root of an interpolation between the
-    limits s = 1 at lambda = 0 and s^n (lambda (n + 1)/(2 n) + kappa) = 1 + kappa for lambda -> oo. The
-    depth is (1 + kappa)/(f/s^n + kappa), to the same order: so rounding of s is not multiplied by n.
+    Newton for the logarithm of f + kappa s^n, from between its limits. Depth is (1 + kappa)/(f/s^n +
+    kappa): so rounding of s is not multiplied by n.
     """
     n, lam, kappa = exponent, drive_number, support_number
     whole = 1.0 + kappa
@@ -113,10 +112,7 @@ def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> 
 
 
 def _edge_error(n: Array, l: Array, q: Array, Q: Array, x_te: Array) -> Array:
-    """Return the relative error of the trailing edge: none at the tip of a wedge, infinite below the range.
-
-    An error of l is amplified by -d ln q/d ln l, below 1/(n - 1) and l/q for a wedge.
-    """
+    """Return the error of the trailing edge, that of l times -d ln q/d ln l; none at the tip of a wedge."""
     with np.errstate(divide="ignore", invalid="ignore"):
         amplified = RELATIVE_ERROR * (1.0 + n * l * Q / ((n - 1.0) + q * Q))
     at_tip = (n == 1.0) & (l > 1.0 + RELATIVE_ERROR)

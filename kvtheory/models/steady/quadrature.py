@@ -144,11 +144,7 @@ def _lines(scene: Scene) -> Callable[[Value], Any]:
 
 
 def _carrying(line_at: Any, l_r: Value, load: Value, spring: Value) -> tuple[Any, Any, Value]:
-    """Return the line, its contact at a load, with or without a spring, and the error of the depth.
-
-    The spring is relaxed at the static depth. d ln W/d ln delta >= 1: the depth is no less accurate than the
-    load.
-    """
+    """Return the line, its contact at a load, and the error of the depth, no larger than that of the load."""
     relaxed_error = 0.0
     if largest(spring) > 0.0:
         rest = _contact(line_at(0.0 * l_r), load, 0.0 * spring)
@@ -168,9 +164,8 @@ def _carrying(line_at: Any, l_r: Value, load: Value, spring: Value) -> tuple[Any
 def _contact(line: Any, load: Value, spring: Value) -> Any:
     """Return the contact where W/K + spring * depth is the load.
 
-    As d ln W/d ln delta >= 1, and at most 2 for a convex line, Newton's method in logarithms converges, kept
-    between depths that carry too little and too much; the second derivative of W, where it is known, makes
-    it cubic (Chebyshev).
+    As d ln W/d ln delta is 1 to 2, Newton's method in logarithms converges, between depths that carry too
+    little and too much; the second derivative of W, where known, makes it cubic (Chebyshev).
     """
     depth, guess = line.first(load, spring)
     low, high, least = 0.0 * depth, line.deepest, SHALLOWEST * depth

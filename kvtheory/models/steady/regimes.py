@@ -266,9 +266,7 @@ def _ranges(
 ) -> dict[Line, tuple[Array, Array]]:
     """Return the velocity at which the range of each line ends, and up to or from which it is proved.
 
-    A range ends where the error first passes the tolerance, from the limit on. If it does not on the way to
-    the far end, the limit holds at every velocity (such as the load on a soft spring). If it is above the
-    tolerance at the limit already, the range is empty. All ends are found together.
+    A range ends where the error first passes the tolerance, from the limit on, if it does.
     """
     decades, order = (
         ON_ARMS if scene.foundation.arms else DECADES,

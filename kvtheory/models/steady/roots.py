@@ -11,11 +11,7 @@ Array = NDArray[np.float64]
 def converge(
     step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
 ) -> Array:
-    """Return the roots from `value` > 0 by steps of the logarithm.
-
-    An element is final after its first step that is no longer than `last_step`, so that no result depends on
-    the others of its block.
-    """
+    """Return the roots from `value` > 0 by steps of the logarithm, each final after a short enough step."""
     active = value > 0.0
     for _ in range(most_steps):
         step = step_of(value)

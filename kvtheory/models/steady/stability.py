@@ -99,10 +99,7 @@ class SmallMotions:
         )
 
     def onsets(self) -> tuple[Onset, Onset]:
-        """Return the lower and the upper critical stiffness, between which steady sliding is unstable.
-
-        Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
-        """
+        """Return lower and upper critical stiffness; the lower is 0 where friction falls with velocity."""
         T_z, T_x, S_z, S_c, g, h, e = (
             self.T_z, self.T_x, self.S_z, self.S_c, self.g, self.h, self.e,
         )  # fmt: skip
@@ -138,10 +135,7 @@ class SmallMotions:
         return ~((spring >= self.lower.stiffness) & (spring <= self.upper.stiffness))
 
     def rates(self, spring: Array | None) -> tuple[NDArray[np.complex128], Array]:
-        """Return the rates in 1/s along a new last axis, fastest growth first, and their relative errors.
-
-        Without a spring, in N/m^2, the drive is rigid.
-        """
+        """Return the rates in 1/s along a new last axis, fastest growth first; no spring: a rigid drive."""
         T_z, T_x, S_z, e = self.T_z, self.T_x, self.S_z, self.e
         if spring is None:
             terms = sizes = np.stack([S_z, np.ones_like(T_z), T_z], axis=-1)
@@ -192,9 +186,7 @@ def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], A
 def critical_velocity(scene: Scene) -> tuple[Array, Array]:
     """Return the smallest velocity in m/s at which each of flat scenes becomes unstable, and its error.
 
-    The critical stiffnesses are not always monotonic in the velocity: a damper or a suspension makes steady
-    sliding stable again at a high one, and a heavy indenter may flutter at a low one. The first change is
-    therefore found on a grid, then bisected; NaN if there is none.
+    Critical stiffnesses are not always monotonic in the velocity: the first change is found on a grid.
     """
     if scene.held:
         nothing = np.full(scene.shape, np.nan)

@@ -65,11 +65,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
 
 def contact_length(scene: Scene, row: Law) -> Array:
-    """Return the length of the contact, on every support.
-
-    At a load by Halley's method for ln(W + k_s delta) against ln c, from the contact at rest; the spring is
-    relaxed at the static depth.
-    """
+    """Return the length of the contact, at a load by Halley's method for ln(W + k_s delta) against ln c."""
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     if scene.held:
         a = np.sqrt(2.0 * R * scene.support.depth)
@@ -111,10 +107,7 @@ def growth(M: Moments) -> tuple[Array, Array, Array]:
 
 
 def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
-    """Return the quantities of a parabola from the length of its contact.
-
-    A given depth is kept to the last bit; otherwise it follows from the length of the contact.
-    """
+    """Return the quantities of a parabola from its contact length; a given depth is kept exactly."""
     R, delta = scene.indenter.radius, scene.support.depth
     M = row.moments(c)
     A, eta, slope = M.P + M.Q, M.eta, c / R
@@ -137,10 +130,7 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
 
 
 def _peak(R: Array, row: Law, a: Array) -> Array:
-    """Return the greatest pressure: p' = (a G - X mean G)/R falls, and has one root at X <= a.
-
-    Newton's method for ln(a G/(X mean G)) against ln X, with bisection where its steps alternate.
-    """
+    """Return the greatest pressure, the one root of p' = (a G - X mean G)/R at X <= a."""
     low, high = np.log(row.least_peak(a)), np.log(a)
     y, active = high, np.full(a.shape, True)
     for _ in range(PEAK_STEPS):
