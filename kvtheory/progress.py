@@ -14,7 +14,7 @@ Progress = Callable[[float, str], object]
 ``"600 of 1,000 points"``, which may be empty."""
 
 COMPILING = "compiling, once for this installation"
-"""Reported before kernels are compiled, which takes half a minute."""
+"""Reported before kernels are compiled, which takes a quarter to half a minute."""
 _LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
 PATIENCE, UNTIL_RATE = 1.0, 0.5

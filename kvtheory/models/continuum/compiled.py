@@ -44,7 +44,7 @@ SHORT = ("sliding_now", "_slack", "_probe")
 
 WORTHWHILE = 4000
 """Number of interpreted steps after which compiling pays: about a second. Loading the compiled kernels takes
-half a second; compiling them, once per installation, takes half a minute."""
+half a second; compiling them, once per installation, takes a quarter of a minute."""
 
 
 class Tally:
