@@ -208,12 +208,13 @@ def edge_at(
         index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
+    stiff = 1.0 + run.given.glass if state == PEELING else 1.0
     for _ in range(ITERATIONS):
         x = min(x, end, latest) if inward > 0.0 else max(min(x, latest), end)
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        exact = abs(f) <= EDGE_ERROR * (1.0 + run.given.glass)
+        exact = abs(f) <= EDGE_ERROR * stiff
         if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
             return xi, index, x
         if x == end and f < 0.0 and math.isnan(inner):
@@ -228,9 +229,7 @@ def edge_at(
         else:
             move *= toward
         before, at, last = f, x, xi
-        stands = move == 0.0 and abs(f) > STALLED * (
-            1.0 + run.given.glass
-        )  # X does, where sliding began
+        stands = move == 0.0 and abs(f) > STALLED * stiff  # X does, where sliding began
         if not bracketed and (stands or toward * move < 0.0 or abs(move) >= reach):
             move, reach, secant = toward * reach, FASTER * reach, False
         elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):

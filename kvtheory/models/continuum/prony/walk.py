@@ -283,11 +283,13 @@ def _advance(run: Run, until: float, longest: float) -> int:
         return _change(run, violated)
     overrun = PASSED if min(violated[2], violated[4]) < 0.0 else OVERRUN
     if theta < 1.0 - overrun and (1.0 - theta) * span > NEAR * run.given.end:
-        now.rejected += 1
         now.limit = theta * (1.0 + 0.5 * overrun) * span
+        if size > 1.0:  # what lies beyond the event is no better
+            return _reject(run, span, size)
+        now.rejected += 1
         return DONE
     longer = _longer(run, span, size)
-    now.span = max(now.span, longer) if limited else longer
+    now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
 
