@@ -3,7 +3,6 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 WORKERS ?= auto
 # Hundreds of modules are compiled once, and not in each of the many processes of the tests.
