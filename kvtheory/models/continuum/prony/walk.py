@@ -288,7 +288,7 @@ def _advance(run: Run, until: float, longest: float) -> int:
             return _reject(run, span, size)
         now.rejected += 1
         return DONE
-    longer = _longer(run, span, size)
+    longer = max(_longer(run, span, size), SHARP * shortest)
     now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
