@@ -551,6 +551,8 @@ def test_a_typed_value_is_understood_or_refused_and_not_kept(browser):
         shown, _, told = type_in(browser, key, text)
         assert (float(shown), told) == (float(value), ""), text
     assert "out of range" in type_in(browser, "indenter.radius", "-1 mm")[2]
+    browser.run("restore('#foundation=fractional-kelvin-voigt')")
+    assert "out of range" in type_in(browser, "foundation.order", "1.5")[2]
     browser.run("restore('#drive.velocity=fast&indenter.radius=-3&support.mass=2')")
     kept = browser.run("[state.values['drive.velocity'], as_hash(state)]")
     assert kept == ["100", "support.mass=2"]
