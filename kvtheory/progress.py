@@ -10,8 +10,7 @@ from contextvars import ContextVar
 from typing import TextIO
 
 Progress = Callable[[float, str], object]
-"""Called repeatedly with the share of the work done, from 0 to 1, and a text such as
-``"600 of 1,000 points"``, which may be empty."""
+"""Called repeatedly with the share done, from 0 to 1, and a text such as ``"600 of 1,000 points"``."""
 
 COMPILING = "compiling, once for this installation"
 """Reported before kernels are compiled, which takes a quarter to half a minute."""

@@ -56,7 +56,7 @@ def test_the_template_is_table_1(tmp_path, support):
     assert kv.load_scene(write(tmp_path, text)) == kv.Scene.table1(support)
     assert all("#" in line for line in text.splitlines() if "=" in line)
     assert tomllib.loads(text)["support"]["kind"] == support
-    models = [known for _, known in files.CHOICES.values()]
+    models = [known for chooser, known in files.SECTIONS.values() if chooser]
     names = [name for known in (*models, files.WAVEFORMS, files.DRIVES) for name in known]
     parts = [getattr(kv.Scene.table1(support), section) for section in files.SECTIONS]
     words = [spec.words for part in parts for spec in given_quantities(part).values()]

@@ -6,9 +6,8 @@ from typing import Any
 
 from generators.api import escaped
 from kvtheory.scene import template
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.files import CHOICES, DEFAULTS, DRIVES, SECTIONS
-from kvtheory.scene.model import Run, Scene
+from kvtheory.scene.files import DEFAULTS, DRIVES
+from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import quantities, required
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -16,10 +15,9 @@ from kvtheory.scene.waveforms import WAVEFORMS
 def pages() -> dict[str, str]:
     """Return one page about all keys."""
     parts = ["# Scene files", _HEAD]
-    for section in SECTIONS:
+    for section, (chooser, models) in SECTIONS.items():
         parts.append(f"## [{section}]")
-        if section in CHOICES:
-            chooser, models = CHOICES[section]
+        if chooser:
             default = (
                 f", `{DEFAULTS[section]}` by default" if section in DEFAULTS else ", to be given"
             )
@@ -31,7 +29,7 @@ def pages() -> dict[str, str]:
             if section == "foundation":
                 parts.append(_ARMS)
         else:
-            parts.append(_table({"drive": Drive, "run": Run}[section]))
+            parts.append(_table(models[section]))
         if section == "drive":
             parts.append(_DRIVES.format(ways=", ".join(f"`{name}`" for name in DRIVES)))
             for name, model in WAVEFORMS.items():

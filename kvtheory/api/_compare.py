@@ -29,8 +29,7 @@ SOONEST, SOON = 1e-4, 0.1
 MAXIMUM_STEPS = 1e8
 """Largest number of time steps of our simulation: an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
-"""Elements per static half length where theory is a simulation: on a Prony series that the continuum refuses
-(in trials, coarser), and for a ball."""
+"""Elements per static half length where theory is a simulation: on refused arms, of a ball."""
 COARSENING = 4.0
 """Factor by which trials of a diagnosis have fewer elements, as only their differences count."""
 MINIMUM_TIMES = 16

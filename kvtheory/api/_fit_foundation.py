@@ -20,8 +20,7 @@ LAYER = quantities(GeneralizedMaxwell)
 DIGITS = 6
 """Significant digits of a fitted number."""
 STEPS, PRECISE = 60, 1e-9
-"""Steps of V <- f c(V) at most, and the relative change that ends them: c falls so slowly with V that each
-divides the error by more than two."""
+"""Most steps of V <- f c(V), which halve the error at least, and the relative change that ends them."""
 
 
 @checked(

@@ -38,8 +38,7 @@ STEPS_SMEARED = 2.0
 ELEMENTS_AT_AN_EDGE = 2.0
 """Error of an edge in elements: two enter in a step of the paper's scheme, and edges lie on elements."""
 EDGES, COARSEST_EDGE, NEARLY_ALL = ("leading_edge", "trailing_edge"), 0.12, 0.97
-"""Columns that jump by one element; the largest element accepted, in half lengths; and the quantile of their
-changes that is taken for one element."""
+"""Columns that jump by one element; the largest accepted, in half lengths; and the quantile taken for one."""
 BALL_EDGE = 0.02
 """Element of a ball assumed for its edges, in half lengths: its forces need few elements."""
 LARGEST_NOISE = 0.1

@@ -33,8 +33,7 @@ FAMILIES: Families = (
 OF_TIME = {"delays and filters", "units of the time"}
 """The families that show in a series alone."""
 EXACT, BUDGET = 0.999, 8.0
-"""Part of the difference that a fault must explain to end the search; and processor time in s after which no
-other family is begun."""
+"""Part of the difference that ends the search; and processor time in s after which no family is begun."""
 REFINED, FLEXIBLE = 3, 0.1
 """Most remote starts that are followed; and the part by which a fault with an unknown must fit better than
 one without. A parameter must fit the better, the further it is from its value."""

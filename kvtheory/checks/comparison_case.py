@@ -29,8 +29,7 @@ LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
 """Force of half an element at an edge, over the load: beyond the first the contact is not resolved; beyond
 the second the data are wrong rather than coarse."""
 MARGIN, IN_STEP = 1.4, 1.75
-"""Margins on the spacing assumed or estimated from an even sawtooth; and from an uneven one, of which samples
-nearly in step with the elements show little."""
+"""Margins on the spacing assumed or read from an even sawtooth; and from one nearly in step with samples."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
 """Median and 95th percentile of the gaps of a sawtooth +-b sampled at random, in units of b."""
 EVEN = 0.6

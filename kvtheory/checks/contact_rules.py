@@ -43,8 +43,7 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
 FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
 TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
 STARTS, LOSSES = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95)
-"""Strengths at which mistakes are simulated: factors of damping, of a time and of the depth; parts of a
-force and of the half length."""
+"""Simulated strengths: factors of damping, of a time and of the depth; parts of a force and of a length."""
 HUGE, BEYOND = 1e100, 0.02
 """Largest change that is interpolated, as a wrong rule may diverge, and how far strengths may go beyond."""
 MISTAKES = (

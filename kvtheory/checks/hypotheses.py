@@ -39,8 +39,7 @@ NO_EFFECT = 1e-6
 LATE_START = 3.0
 """End of the data over their span from which the times must be off."""
 DENSE, SOON, AFTER = 1200, 60, 1e-4
-"""Instants at which theory is interpolated: evenly spread, and after each change of the drive, the first so
-soon, relative to the span."""
+"""Instants of interpolated theory: even, and after changes of the drive, the first so soon over the span."""
 POWER_OF_TEN = 0.02
 """Distance of a decadic logarithm from a whole number up to which a factor counts as a power of ten."""
 WRONG = "wrong "

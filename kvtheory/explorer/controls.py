@@ -8,21 +8,12 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import lacks_scripts
-from kvtheory.scene.drives import Drive
 from kvtheory.scene.foundations import FOUNDATIONS, MEASURED_RANGE, THERMAL, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Run, Scene
+from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import Quantity, given, required
 from kvtheory.scene.quantities import quantities as declared
 
-SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
-    "indenter": ("shape", SHAPES),
-    "foundation": ("kind", FOUNDATIONS),
-    "support": ("kind", SUPPORTS),
-    "drive": ("", {"drive": Drive}),
-    "run": ("", {"run": Run}),
-}
-"""By section: the key that selects a class, empty if there is only one, and the classes."""
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
     "stiffness": 1e10, "retardation_time": 0.1, "order": 0.5,

@@ -20,15 +20,7 @@ QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")
 
 
 def save_explorer(scene: Scene, path: str | Path) -> None:
-    """Write the explorer, opened at a scene, as one HTML file that needs no server and no network.
-
-    Raises
-    ------
-    ValueError
-        If the scripts of the page cannot compute the scene, or the name does not end in .html.
-    OSError
-        If the file cannot be written.
-    """
+    """Write the explorer, opened at a scene, as one HTML file without server and network, or raise."""
     path = Path(path)
     check_path(path, [".html"])
     page = explorer_page(scene)
@@ -36,15 +28,8 @@ def save_explorer(scene: Scene, path: str | Path) -> None:
 
 
 def explorer_page(scene: Scene) -> str:
-    """Return the text of the page.
+    """Return the text of the page, or raise ValueError if its scripts cannot compute the scene.
 
-    Raises
-    ------
-    ValueError
-        If the scripts of the page cannot compute the scene.
-
-    Examples
-    --------
     >>> explorer_page(Scene()).startswith("<!DOCTYPE html>")
     True
     """

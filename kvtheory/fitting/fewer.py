@@ -45,8 +45,7 @@ from kvtheory.scene.model import Scene
 PER_DECADE = 16
 """Times per decade at which slopes are compared, and at which arms are tried."""
 MARGIN = 1.5
-"""Factor by which slopes are compared beyond the contact times, as the contact under r W is at most r^2 times
-as long: c W'/W >= 1/2."""
+"""Factor of times beyond the contact at which slopes count: under r W it is r^2 times as long at most."""
 EARLY = 0.01
 """w_1 over the tolerance."""
 LATEST = 60.0

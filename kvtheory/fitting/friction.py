@@ -37,8 +37,7 @@ STIFF = "foundation.stiffness", "foundation.modulus"
 FLOOR = 0.01
 """Smallest scale of a residual, over the largest value measured."""
 PEAK = 0.886
-"""mu at the maximum over depth/half length at rest, for a parabola under a dead weight on Kelvin-Voigt
-(F3)."""
+"""mu at the maximum over depth/half length at rest: parabola, dead weight, Kelvin-Voigt (F3)."""
 DECADES = 3, 18
 """Range of stiffnesses (N/m^3 or Pa, in powers of ten) in which the first guess is searched for."""
 WIDE = {"stiffness": (1e-4, 1e2), "time": (1e-2, 1e2), "arm": (1e-2, 1e3), "other": (1e-2, 1e2)}

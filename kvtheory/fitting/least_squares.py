@@ -18,8 +18,7 @@ Residuals = Callable[[Array], Array]
 STEP = 1e-5
 """Change of an unknown for slopes by differences; the error of central ones is about 1e-10."""
 SETTLED, FIRST_DAMPING, MOST_DAMPING, LONGEST = 1e-10, 1e-2, 1e8, 2.0
-"""Relative gain of a step at which a descent ends, its first damping and the one at which it ends, and the
-longest step of an unknown."""
+"""Relative gain that ends a descent, its first and last damping, and the longest step of an unknown."""
 SINGULAR = 1e-9
 """Smallest singular value, over the largest, that is distinguished from zero."""
 PRECISE = 1e-8

@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.columns import SPELLINGS, Reader, Table
-from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.mistakes import nearest
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.tables import parts
 
 Array = NDArray[np.float64]
@@ -31,8 +30,7 @@ VISIBLE = 3.0
 LARGEST = 1e30
 """Largest number that is accepted as a measured one; squares of larger ones overflow."""
 SAME_DRIVE = 0.05
-"""Median difference of a column of velocities from the drive of the scene, over its largest velocity, up to
-which they are the same."""
+"""Median difference of velocities from the drive of the scene, over the largest, up to which they are it."""
 
 
 class Data(NamedTuple):

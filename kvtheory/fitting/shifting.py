@@ -33,8 +33,7 @@ LEAST_OVERLAP = 2
 NEARBY, MOST_VARIANCE = 0.02, 1e4
 """Change of log10 a_T that measures the curvature of its minimum, and the largest variance of a step."""
 LEAST_C_2, MOST_C_2 = 1.0, 1e4
-"""Least distance in K of the pole of the WLF law from the temperatures, and the largest C_2 that is
-meant."""
+"""Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant."""
 SAME = 1.5
 """Difference in K up to which a temperature of a file of shift factors is that of a sweep."""
 SHIFTS = Reader(

@@ -24,8 +24,7 @@ from scipy.optimize import nnls
 Array = NDArray[np.float64]
 
 PER_DECADE, FINER = 6, 8
-"""Relaxation times of the grid per decade, and the factor by which the grid of the dual function is
-finer."""
+"""Relaxation times of the grid per decade, and how many times finer that of the dual function is."""
 CLOSE = 0.125
 """Decades up to which neighbouring times of a spectrum are one arm."""
 BEYOND = 0.5

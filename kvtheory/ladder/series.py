@@ -65,15 +65,13 @@ LEAST_FINER, MOST_FINER, SPARE = 2.0, {True: 8.0, False: 3.0}, 1.3
 """Bounds of the refinement factor (upper: line contact or ball), and margin on the factor that second-order
 convergence requires. The work grows as its square, for a ball as its cube."""
 MOST_UPDATES = {True: 5e7, False: 1e9}
-"""Most element updates in one run, about a minute and a half: for a line contact, and for a ball, which has
-thousands of them per step."""
+"""Most element updates in one run, about a minute and a half, of a line contact and of a ball."""
 OF_AN_ARM = 0.4
 """Work of one arm of an element, in element updates."""
 DIMENSIONS = {True: 2, False: 3}
 """Number of dimensions refined together: elements, steps, and for a ball strips."""
 MANY_ARMS, SHARE_OF_ARMS, SAFETY_OF_ARMS = 4, 0.1, 2.0
-"""Number of arms from which fewer ones are tried on elements, their share of the tolerance, and the safety
-factor of what they change."""
+"""Arms from which fewer are tried on elements, their share of the tolerance, and a safety factor."""
 SLOWER = np.geomspace(0.03, 1.0, 8)
 """Velocities, over the largest one, at which fewer arms must give the friction."""
 BY_FEWER_ARMS = (

@@ -56,8 +56,7 @@ SPELLINGS = {
     "radius": "radius, R",
     "temperature": "temperature, T, temp, temp., Temperatur",
 }
-"""Names of each quantity in measured tables, case, spaces and underscores aside; a minus sign marks those
-that point the other way."""
+"""Names of quantities in tables, case, spaces and underscores aside; a minus sign points the other way."""
 BEFORE_UNITS = 2
 """Most blank rows between a header and its row of units."""
 

@@ -25,22 +25,15 @@ from kvtheory.scene.mistakes import (
     nearest,
     shown,
 )
-from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, inconsistencies
+from kvtheory.scene.model import SECTIONS, SUPPORTS, Drive, Scene, inconsistencies
 from kvtheory.scene.quantities import as_given, given, missing, quantities, required
 from kvtheory.scene.tables import read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
-SECTIONS = ("indenter", "foundation", "support", "drive", "run")
-CHOICES = {
-    "indenter": ("shape", SHAPES),
-    "foundation": ("kind", FOUNDATIONS),
-    "support": ("kind", SUPPORTS),
-}
-"""Sections in which one key selects the model, on which the other keys depend."""
-CHOOSERS = {section: chooser for section, (chooser, _) in CHOICES.items()}
-MODELS: dict[str, dict[str, Any]] = {section: models for section, (_, models) in CHOICES.items()}
-MODELS |= {"drive": {"": Drive}, "run": {"": Run}}
-DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt", "drive": "", "run": ""}
+CHOOSERS = {section: chooser for section, (chooser, _) in SECTIONS.items() if chooser}
+"""The key of each section that selects a model, on which the other keys depend."""
+MODELS = {section: models for section, (_, models) in SECTIONS.items()}
+DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run"}
 LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
@@ -155,8 +148,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
     for section in SECTIONS:
         part = getattr(scene, section)
         tables[section] = table = {}
-        if section in CHOICES:
-            table[CHOICES[section][0]] = getattr(part, CHOICES[section][0])
+        if section in CHOOSERS:
+            table[CHOOSERS[section]] = getattr(part, CHOOSERS[section])
         for name, spec in given(part).items():
             unit = spec.fitting(scene.indenter.per_width).unit
             table[name] = _text(as_given(getattr(part, name)), unit)

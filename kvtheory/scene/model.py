@@ -13,8 +13,8 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
-from kvtheory.scene.foundations import AnyFoundation, Arm, Foundation
-from kvtheory.scene.indenters import Indenter, Parabola, Revolved
+from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
+from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Revolved
 from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
     Part,
@@ -354,6 +354,12 @@ def inconsistencies(parts: Mapping[str, Any]) -> Problems:
         found.append(f"{needed}, which moves along x on the spring")
     return found
 
+
+SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
+    "indenter": ("shape", SHAPES), "foundation": ("kind", FOUNDATIONS), "support": ("kind", SUPPORTS),
+    "drive": ("", {"drive": Drive}), "run": ("", {"run": Run}),
+}  # fmt: skip
+"""By section of a file: the key that selects a class, empty if there is only one, and the classes."""
 
 TABLE1_SUPPORTS: dict[str, Support] = {
     "fixed": Fixed(depth=3e-4),

@@ -71,8 +71,7 @@ USUAL = {
     "delta K": dict.fromkeys(("K", "kelvin", "delta_degC", "delta_degree_Celsius"), 0),
     "J/mol": {"J/mol": 0, "kJ/mol": 3},
 }
-"""The usual ways to write each unit, and their powers of ten in SI. They spare importing pint, which takes
-longer than most computations."""
+"""Usual ways to write each unit, and their powers of ten: importing pint takes longer than a computation."""
 
 _FAHRENHEIT = Fraction(5, 9), Fraction(45967, 180)
 _CELSIUS = Fraction(1), Fraction(27315, 100)

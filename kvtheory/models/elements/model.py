@@ -27,8 +27,7 @@ FEWEST_STRIPS = 16
 FEWEST, MOST = 8, 2_000_000
 """Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
 SAMPLES = {False: 4096, True: 256}
-"""Elements in a line contact, and along a ball, where no spacing is given: the size of the contact is known
-to about a thousandth then."""
+"""Elements in a line contact, and along a ball, without a spacing: sizes are known to a thousandth then."""
 CREEP = 1e-12
 """Share of a_0/tau that counts as rest."""
 DEPTH_RTOL, STALLED = 1e-12, 0.9
@@ -112,8 +111,7 @@ class Model:
     def fastest(self, path: BaseMotion) -> float:
         """Return the speed of sliding to expect, in m/s: that of the drive, and of a spring let go.
 
-        Friction throws the mass along x to about F/sqrt(k_x M_x), F = W_0 δ_0/a_0, and through the
-        dampers of the contact no faster than about a_0/τ.
+        Friction throws M_x to about F/sqrt(k_x M_x), and through the dampers no faster than about a_0/τ.
         """
         if not self.sprung:
             return path.highest_speed
@@ -133,10 +131,7 @@ class Model:
 
 
 def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
-    """Return the contact of elements at a depth that slide steadily, on an undisturbed foundation.
-
-    Without a spacing, of `SAMPLES` elements.
-    """
+    """Return the contact of elements at a depth that slide steadily on undisturbed ground, else `SAMPLES`."""
     (low, high), law = span(c.surface, depth), c.law
     dx = c.spacing or (high - low) / SAMPLES[c.surface.ball]
     dy = c.across or strip_width(c.surface, depth, dx)
@@ -160,9 +155,8 @@ def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
 def sunk_depth(c: Constants, V: float = 0.0) -> float:
     """Return the depth at which this contact carries the load: to the last digit at rest.
 
-    By Newton's method: the force of the springs grows with the depth as K times the contact, that of the
-    dampers at the leading edge as C V. It is convex at rest, so that the steps never turn back; they stall
-    where the force jumps with the number of elements.
+    By Newton's method: the force is convex at rest, so that the steps never turn back; they stall where it
+    jumps with the number of elements.
     """
     depth, step, width = c.depth, math.inf, 1.0
     while True:
@@ -212,9 +206,7 @@ def surface_of(indenter: Indenter) -> Surface:
 
 @lru_cache(maxsize=1024)
 def span(s: Surface, depth: float) -> tuple[float, float]:
-    """Return the two places, left and right of its lowest point, where h = `depth`.
-
-    Beyond the reach of the shape there is no surface: then the reach counts.
+    """Return the places, left and right of the lowest point, where h = `depth`, at most the reach.
 
     >>> span(surface_of(Wedge(inclination=0.5)), 0.25)
     (-0.5, 0.5)

@@ -33,10 +33,7 @@ class OutgrownError(ArithmeticError):
 
 
 class IndenterState(NamedTuple):
-    """Time (s), depth (m) and its rate (m/s), and both along x.
-
-    `along` is how far the base has dragged the indenter on its spring, 0 on a rigid drive.
-    """
+    """Time (s), depth (m) and rate (m/s), and both along x, the way of the base on the spring."""
 
     time: float
     depth: float
@@ -59,10 +56,7 @@ def compiled_advance() -> Any:
 
 
 class ElementRow:
-    """The stored elements and the indenter, at rest in them, above a moving base.
-
-    `compiled` says whether its steps are compiled.
-    """
+    """The stored elements and the indenter, at rest in them, above a moving base; `compiled` or not."""
 
     def __init__(
         self, constants: Constants, path: BaseMotion, scheme: Scheme = SCHEMES[DEFAULT],
@@ -78,10 +72,7 @@ class ElementRow:
         self.lay(depth, lambda x, y: np.maximum(depth - height(x, y)[0], 0.0))
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
-        """Press the indenter to a depth into elements at Y = 0 that are compressed by `surface`(x, y).
-
-        In contact are those where `contact`(x) or, without it, those that are compressed.
-        """
+        """Press the indenter into elements compressed by `surface`(x, y); touching by `contact`(x)."""
         self.state[kernels.DEPTH], self.stored.counts[kernels.BEGUN] = depth, 0
         while kernels.set_window(self.stored, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
@@ -121,13 +112,7 @@ class ElementRow:
         return status, step, reported
 
     def step(self, state: IndenterState, h: float) -> IndenterState:
-        """Take one step from a state.
-
-        Raises
-        ------
-        OutgrownError
-            If the indenter sinks deeper than the row was made for.
-        """
+        """Take one step from a state, or raise `OutgrownError` deeper than the row was made for."""
         self.state[:4] = state[1:]
         times = state.time + np.array([0.0, h])
         course = course_of(self.path, self.constants.law, times, np.array([h]))

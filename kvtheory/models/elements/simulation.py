@@ -88,8 +88,7 @@ Rows = dict[str, Any]
 COLUMNS = (*SERIES_UNITS, "doubt")
 
 Timetable = tuple[Array, Array, Array, Array]
-"""Times before and after the steps, their lengths, after which of them something is reported, and what: see
-`kernels.Course`."""
+"""Times around the steps, their lengths, after which something is reported, and what: see `Course`."""
 
 
 def simulate(
@@ -97,15 +96,7 @@ def simulate(
     at: Sequence[float] | None, time_step: float | None, certify: bool,
     progress: Progress | None = None, warn: Callable[[str], None] | None = None,
 ) -> Simulation:  # fmt: skip
-    """Return the time series of a scene, with elements at this spacing (m).
-
-    Raises
-    ------
-    ValueError
-        If the spacing does not suit the contact, or the scheme has no step for this drive.
-    DivergenceError
-        If the run is unstable.
-    """
+    """Return the time series of a scene by elements at this spacing (m), or raise with the reason."""
     model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
@@ -191,10 +182,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
-    """Return the times, after jumps of the drive, from which steps are shorter than h, and these steps.
-
-    The dampers of the contact at rest stop the mass in the time M/(C L).
-    """
+    """Return times after jumps of the drive, from which steps are shorter, as dampers stop M in M/(C L)."""
     c = model.constants
     resistance = c.law.damping * model.contact.extent
     if not resistance or math.isinf(c.mass):
@@ -282,10 +270,7 @@ def _run(
 
 
 def _unsure(c: Constants, path: BaseMotion, h: float) -> tuple[float, float]:
-    """Return the uncertainty of an edge in elements: where pressure is left on it, and anywhere.
-
-    A damper leaves pressure on an edge when the drive changes; on a spring, edges stop and turn without.
-    """
+    """Return the uncertainty of an edge in elements: where a damper leaves pressure on it, and anywhere."""
     known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
     jump = known if len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :]) else 0.0
     return jump, known if math.isfinite(c.mass_along) else jump
@@ -295,8 +280,6 @@ def _estimate(
     model: Model, unsure: tuple[float, float], rows: Rows, others: list[Rows]
 ) -> Certificate:
     """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
-
-    An edge that exists in one of two runs only is not compared.
 
     Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
     sum of both differences, |e - 4 c| + |e - c|, is at least 3/4 |e|. For the best scheme it is 3 |e|.

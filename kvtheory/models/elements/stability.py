@@ -26,18 +26,15 @@ RISE = 5.0
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
 GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
-"""Search for the largest stable step: growth per step above rounding, least step times the fastest rate, and
-relative tolerance."""
+"""Search for a stable step: growth above rounding, least step times the fastest rate, tolerance."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
 
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
-    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
+    """Return contact lengths (of a ball areas) that bound the step: in steady sliding, and at static depth.
 
-    Of a ball, they are areas (m^2). Each is the longest over the velocities of the drive, at the slowest
-    motion in each direction; an indenter on a spring may stick, which is a contact at rest. A step that is
-    too long at the static depth only is unstable at first and may recover.
+    A step that is too long at the static depth only is unstable at first and may recover.
     """
     velocities = [0.0, *path.velocities] if model.sprung else path.velocities
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
@@ -52,9 +49,8 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
 def limit_at(scheme: Scheme, c: Constants, length: float) -> float:
     """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1.
 
-    Along x, F_x = -∫ h' p dx holds the indenter as a contact of the length ∫ h'^2 dx would, with k_x and
-    c_x beside it. The rates of both together are at most the sum of those of each (Weyl), and so are the
-    inverse limits.
+    Along x a contact of the length ∫ h'^2 dx holds the indenter, with k_x and c_x. The rates of both together
+    are at most the sum of those of each (Weyl).
     """
     if not scheme.tableau:
         return math.inf

@@ -41,8 +41,7 @@ LARGEST_RATIO = 0.1
 SAFETY = 1.5
 """Safety factor on the first-order estimates; it also covers the second order at the largest ratio."""
 INVERSIONS, CLOSE = 12, 1e-7
-"""Most Newton iterations from times to u (four hundred random starts took at most four), and a step after
-which the next one would be rounding."""
+"""Most Newton iterations from times to u (four were seen), and a step after which the next is rounding."""
 
 
 @dataclass(frozen=True)

@@ -45,14 +45,12 @@ position, over the distance of two samples: the error of the value is of second 
 CORNER, AT_CORNER = (1e-10, 1e-290), 1e-9
 """Distances from the lowest point, over that of x_LE; at a corner the slopes there agree to `AT_CORNER`."""
 HALF, BALANCED = 0.5, 1e-6
-"""Share of the depth below which u_TE is better taken from the slope than from the height, and within
-which both agree unless the pressure jumps."""
+"""Share of the depth below which u_TE is taken from the slope, and within which both agree without a jump."""
 ONE_SIDED = 1e3
 """Upper bound, over the last coefficients, of the difference of series and function at a kink, even for a
 singular slope: if it is larger, the function gives the slope of the other side."""
 DEPTH_STEP, ROOT_RTOL = 2.0**-20, 4.0 * float(np.finfo(float).eps)
-"""Relative step of the depth for derivatives, which are needed to a digit or two; the smallest tolerance that
-`brentq` accepts."""
+"""Relative step of the depth for derivatives; the smallest tolerance that `brentq` accepts."""
 
 
 class Patch(NamedTuple):

@@ -29,8 +29,7 @@ ROUNDING = 32 * 2.0**-52
 UNIT = 4 * 2.0**-52
 """Rounding of s^2 where it is subtracted from 1."""
 LOW_UP_TO, HIGH_FROM = 2.0, 0.5
-"""Drive numbers, the first in units of 1 + kappa, beyond which the asymptotes of one regime have errors of
-the order of one and are not tried."""
+"""Drive numbers, the first over 1 + kappa, beyond which the asymptotes of a regime are not tried."""
 STEEPEST = {"parabola": 3, "sphere": 4}
 """The largest d ln f/d ln s; for high velocity it is one less."""
 DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}

@@ -39,8 +39,7 @@ WEIGHTS = STEP * np.pi * np.cosh(T) * NODES * GAPS
 CLOSE = 1e-6
 """Relative distance from the middle plane's c below which a_0 - a is taken from its derivatives."""
 MOST_STEPS, LAST_STEP = 60, 1e-8
-"""Most iterations, of which about six are needed; after a step as small as this the error, of the order of
-its square, is below rounding."""
+"""Most iterations, of which six are needed; a step whose square, the error left, is below rounding."""
 PART = 256
 """Scenes evaluated together, so that their nodes stay in the cache."""
 

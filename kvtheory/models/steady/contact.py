@@ -48,8 +48,7 @@ LINEAR = 1e-8
 STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
 """Factors by which a half length far too short is increased at first, while it remains too short."""
 COARSE, CLOSER = 7, 3
-"""How many of them are enough where `CLOSER` Newton steps follow, on the load of a parabola as blunt as the
-shape."""
+"""How many are enough where `CLOSER` Newton steps follow, on the load of a parabola as blunt."""
 NEAR_REACH = 0.5
 """The search for the half length starts at no more than this share of the reach."""
 MOST_STEPS = 200
@@ -57,8 +56,7 @@ MOST_STEPS = 200
 VERTEX, FLOOR = 1e-290, 1e-20
 """Shares of the half length below which the trailing edge and the peak count as at the lowest point."""
 PEAK_RTOL, PEAK_STEPS = 1e-8, 8
-"""Tolerance of the position of the peak, whose value has an error of second order, and secant steps towards
-it: one for a power, more for a circle."""
+"""Tolerance of the position of the peak (its value is of second order), and secant steps at most."""
 TINY = 1e-300
 """Added to a divisor that may vanish together with its dividend."""
 

@@ -50,8 +50,7 @@ STRIDE, PEAK_RTOL = 1e-6, 1e-6
 """Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
 between two nodes; the error of its value is of second order."""
 MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
-"""Safety factor on the differences of both rules, relative rounding of a result, and the relative error from
-which it is refused."""
+"""Safety factor on the differences of both rules, rounding, and error from which a result is refused."""
 JUMP = 1e-6
 """Pressure at the trailing edge, over that of the depth, from which it is a jump."""
 

@@ -34,8 +34,7 @@ HELD, CERTIFICATE = (
     )
     for ulps in (9, 33)
 )
-"""At a depth, 2.0e-15, and at a load, 7.3e-15, on any processor whose hypot is within one unit in the last
-place."""
+"""2.0e-15 at a depth and 7.3e-15 at a load, where hypot is within a unit in the last place."""
 OWN_ERRORS = ()
 Array = NDArray[np.float64]
 

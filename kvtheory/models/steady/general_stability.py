@@ -51,8 +51,7 @@ which these increase until the error is small, and the most. Twice as many give 
 ACCURATE = 1e-8
 """Relative error of a critical stiffness below which the number of strips is not increased."""
 POLISHING, MOVED, CONVERGING = 4, 0.1, 1e-7
-"""Newton steps that refine a root for more strips, its largest relative change, and the step whose square is
-the error after it."""
+"""Newton steps that refine a root, its largest change, and the step whose square is the error after it."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 """Most Newton steps, tolerance of the relative step, and relative distance of roots taken as equal."""
 ANGLES, RADII = 9, 5

@@ -37,8 +37,7 @@ from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_quadrature
 from kvtheory.scene.model import Scene
 
 UNBALANCED, MARGIN = 1e-6, 2.0
-"""Relative error of the load above which a result is refused; safety factor on errors propagated by
-derivatives, which hold for small errors."""
+"""Relative error of the load above which a result is refused; safety factor on errors by derivatives."""
 MOST_STEPS = 200
 """Most trial depths; a few suffice unless the reach or the start of another contact is close."""
 LAST_STEP, ULPS = {True: 1e-5, False: 3e-8}, 2.0**-49

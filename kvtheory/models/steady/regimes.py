@@ -70,8 +70,7 @@ LISTED: dict[str, tuple[tuple[str, int | None, int | None], ...]] = {
     "dead-weight": ((MU, 42, 46), ("depth", None, 49)),
     "suspended": ((MU, 42, None), ("depth", None, None), ("load", None, None)),
 }
-"""The quantities listed for each support, with the equations in the paper of their limits at low and at high
-velocity, for a parabola."""
+"""Quantities listed for each support, with the paper's equations of both limits for a parabola."""
 FIXED = {
     "parabola": (
         "C V/(R K)", "alpha sqrt(delta/R)", "2 alpha R^(1/2) K delta^(3/2)", "C V delta",

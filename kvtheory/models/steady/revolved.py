@@ -43,8 +43,7 @@ NARROWEST = 1e-6
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
 
 LEAST, SHARP = 5.0, 4e-12
-"""Smallest relative error of a sum, over that of a strip, and for a profile with a kink, whose strips next to
-the middle plane have a sharp tip."""
+"""Least relative error of a sum, over that of a strip, and for a kink, where strips have a sharp tip."""
 RTOL, LIMIT = {True: 1e-12, False: 1e-9}, 1e-6
 """Estimates above which the next rule is taken, and above which the last one is refused."""
 MARGIN = 4.0

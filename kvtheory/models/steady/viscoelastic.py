@@ -30,8 +30,7 @@ Array = NDArray[np.float64]
 MOST_STEPS, LAST_STEP = 12, 1e-6
 """Most iterations, of which three to six are needed; a step as small as this leaves an error of its cube."""
 PEAK_STEP, PEAK_STEPS = 1e-8, 80
-"""Tolerance and steps for the position of the peak, whose value has an error of second order; bisection alone
-would need as many steps."""
+"""Tolerance and steps for the position of the peak, whose value has an error of second order."""
 CERTIFICATE = Certificate(
     kind="estimated",
     statement="moments of the relaxation function without cancellation and a well-conditioned root in "
