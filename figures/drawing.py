@@ -39,7 +39,8 @@ def produce(
     with mpl.rc_context({**STYLE}):
         data = compute()
         drawn = draw(data)
-        drawn.draw_without_rendering()
+        if layout := drawn.get_layout_engine():
+            layout.execute(drawn)
         drawn.set_layout_engine(None)  # laid out once, or each format would draw everything twice
         directory.mkdir(parents=True, exist_ok=True)
         paths = [directory / f"{name}.{suffix}" for suffix in FORMATS]

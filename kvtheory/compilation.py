@@ -37,10 +37,13 @@ def register(
     """
     from numba.extending import overload
 
+    from kvtheory.linking import PartCompiler
+
     for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
             body = compiled.get(name, function)
             own: Any = {**OPTIONS, **options, "forceinline": name in inlined}
+            own["pipeline_class"] = PartCompiler
             if name in compiled:
                 own["fastmath"] = {"reassoc", "nsz"}
             overload(function, jit_options=own, strict=False)(lambda *_, body=body, **__: body)
@@ -56,7 +59,10 @@ def cached(entry: Callable[..., Any], **options: Any) -> Any:
     """Return an entry that is compiled when called, and cached on disk if there is a writable place."""
     from numba import njit
 
+    from kvtheory.linking import EntryCompiler
+
     options |= {**OPTIONS, "nogil": True, "no_cfunc_wrapper": True}
+    options["pipeline_class"] = EntryCompiler
     try:
         compiled = njit(entry, cache=True, **options)
     except RuntimeError:  # package and home are read-only

@@ -20,7 +20,7 @@ sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 
 FIRST = (
     *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_compare"),
-    *("test_prony_continuum", "test_cli", "test_planted_fresh", "test_fit", "test_explorer"),
+    *("test_prony_continuum", "test_cli", "test_planted", "test_fit", "test_explorer"),
     *("test_energy", "test_sweep_executors", "test_charts_stability", "test_sweep_lasting"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""

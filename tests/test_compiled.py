@@ -101,6 +101,31 @@ def doubled(x):
     return 2.0 * x
 
 
+def third(x):
+    return x / 3.0
+
+
+def sixth(x):
+    return 0.5 * third(x)
+
+
+def twelfth(x):
+    return 0.5 * sixth(x)
+
+
+def test_what_others_call_is_optimised_with_the_entry_only(tmp_path, monkeypatch):
+    codegen = pytest.importorskip("numba.core.codegen")
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    finalize, done = codegen.CPUCodeLibrary.finalize, []
+    monkeypatch.setattr(
+        codegen.CPUCodeLibrary, "finalize", lambda self: (done.append(self.name), finalize(self))
+    )
+    compilation.register(types.SimpleNamespace(__name__=__name__, third=third, sixth=sixth))
+    for _ in range(2):
+        assert compilation.cached(twelfth)(24.0) == 2.0
+    assert done == ["entry"]
+
+
 def test_compiling_is_reported_and_loading_what_is_compiled_is_not(tmp_path, monkeypatch):
     monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
     told = []

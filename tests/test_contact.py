@@ -12,28 +12,9 @@ from kvtheory.models.continuum.memory_chains import margin
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height, integrals
 from kvtheory.scene.base_motion import BaseMotion
-from tests.test_energy import END, of
+from tests.test_energy import END, drive_of, of
 
 FIXED = math.inf
-
-HISTORIES = {
-    "start": [(0, 4)],
-    "stop": [(0, 4), (0.5, 4), (0.5, 0)],
-    "slow-down": [(0, 4), (0.5, 4), (0.5, 1)],
-    "ramps": [(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)],
-    "reversal": [(0, 4), (0.5, 4), (0.5, -4)],
-    "stop-and-go": [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0.5)],
-}
-SINES = {
-    "oscillation": lambda s: 2 * math.sin(5 * s),
-    "two frequencies": lambda s: 2 * math.sin(5 * s) + 1.5 * math.sin(13.7 * s),
-}
-
-
-def drive(name):
-    if name in HISTORIES:
-        return BaseMotion.from_points(HISTORIES[name], END)
-    return BaseMotion.from_function(SINES[name], END)
 
 
 def ends_of_intervals(motion, given, s, sigma):
@@ -66,10 +47,15 @@ def edges_by_search(motion, given, s):
     return left, right
 
 
-@pytest.mark.parametrize("name", [*HISTORIES, *SINES])
+PAST = (
+    "start", "stop", "slow-down", "there and back", "reversal", "stop-and-go", "oscillation, kappa 0.0"
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PAST)
 @pytest.mark.parametrize(("eps", "kappa"), [(1.0, FIXED), (0.04, 0.0), (1.0, 0.5)])
 def test_edges_are_the_intersection_of_all_past_instants(name, eps, kappa):
-    given = drive(name)
+    given = drive_of(name)
     motion = solve(given, eps, kappa, END)
     for s in np.random.default_rng(9).uniform(0.01, END, 4):
         now = motion.at(s)
@@ -78,6 +64,20 @@ def test_edges_are_the_intersection_of_all_past_instants(name, eps, kappa):
         assert (now.left, now.right) == pytest.approx(
             edges_by_search(motion, given, s), abs=2e-9
         ), s
+
+
+@pytest.mark.parametrize(
+    ("w", "mean"), [(3.6, -0.999), (3.6, 1.2819), (1.5, 1.1578), (1.5, 1.16378)]
+)
+def test_a_momentary_reversal_is_not_missed(w, mean):
+    """V reverses for a moment, or slows down so that a peeling edge touches for a moment."""
+    end = 8.0 / w
+    given = BaseMotion.from_function(lambda s: 3.0 * (math.sin(w * s) + mean), end)
+    motion = solve(given, 1.0, FIXED, end)
+    for s in np.linspace(0.05, 0.99, 60) * end:
+        now = motion.at(s)
+        edges = edges_by_search(motion, given, s)
+        assert (now.left, now.right) == pytest.approx(edges, abs=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -50,12 +50,15 @@ for kappa in (0.0, 0.5, math.inf):
     )  # fmt: skip
 
 
+def drive_of(name):
+    drive = HISTORIES[name][0]
+    return (BaseMotion.from_function if callable(drive) else BaseMotion.from_points)(drive, END)
+
+
 def of(name, rtol=1e-10):
     """Return the drive and the motion of a history."""
-    drive, eps, kappa = HISTORIES[name]
-    made = BaseMotion.from_function if callable(drive) else BaseMotion.from_points
-    given = made(drive, END)
-    return given, solve(given, eps, kappa, END, rtol)
+    given = drive_of(name)
+    return given, solve(given, *HISTORIES[name][1:], END, rtol)
 
 
 def impulse(motion):

@@ -1,21 +1,19 @@
 """Quantities of a scene from measured friction: values, errors, what the data cannot tell, models,
 messages."""
 
-import json
 import os
 import re
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from scipy.stats import t as student
 
 import kvtheory as kv
 from kvtheory.api._fit import _followed
-from kvtheory.cli import main
 from kvtheory.fitting import friction, records
 from kvtheory.fitting.least_squares import descend
 from kvtheory.models.steady.methods import METHODS
+from tests.commands import printed, refused, run
 
 V = np.geomspace(1e-3, 1.0, 25)
 VOIGT = "foundation.stiffness", "foundation.retardation_time"
@@ -431,29 +429,20 @@ def test_mistakes_are_messages(tmp_path, name):
 
 
 def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):
-    data, out = tmp_path / "mu.csv", tmp_path / "fitted.toml"
-    np.savetxt(
-        data,
-        np.column_stack([V, measured(BALL, 0.01)]),
-        header="V [m/s]\tmu",
-        delimiter="\t",
-        comments="",
+    data, scene, out, picture = (
+        tmp_path / n for n in ("mu.csv", "ball.toml", "out.toml", "fit.svg")
     )
-    (tmp_path / "ball.toml").write_text(kv.to_toml(BALL))
-    command = ["fit", str(tmp_path / "ball.toml"), "--data", str(data), "--free", ",".join(VOIGT)]
-    done = CliRunner().invoke(
-        main, [*command, "--json", "-o", str(out), "--plot", str(tmp_path / "fit.svg")]
-    )
-    assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
+    rows = np.column_stack([V, measured(BALL, 0.01)])
+    np.savetxt(data, rows, header="V [m/s]\tmu", delimiter="\t", comments="")
+    scene.write_text(kv.to_toml(BALL))
+    command = ["fit", scene, "--data", data, "--free"]
+    found = printed(*command, ",".join(VOIGT), "-o", out, "--plot", picture)
     assert found["parameters"][VOIGT[0]]["value"] == pytest.approx(1e9, rel=0.05)
     assert found["parameters"][VOIGT[0]]["standard_error"] == pytest.approx(1.5e7, rel=0.5)
     assert found["not_identifiable"] == []
     assert kv.load_scene(out).foundation.stiffness == found["parameters"][VOIGT[0]]["value"]
-    assert (tmp_path / "fit.svg").stat().st_size > 10_000
-    shown = CliRunner().invoke(main, command)
-    assert "standard error" in shown.stdout
-    assert "25 rows, misfit 0.0" in shown.stdout
-    wrong = CliRunner().invoke(main, [*command[:-1], "foundation.tau"])
-    assert wrong.exit_code == 2
-    assert "--free foundation.tau" in wrong.stderr
+    assert picture.stat().st_size > 10_000
+    shown = run(*command, ",".join(VOIGT)).stdout
+    assert "standard error" in shown
+    assert "25 rows, misfit 0.0" in shown
+    refused([*command, "foundation.tau"], ["--free foundation.tau"])

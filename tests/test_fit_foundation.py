@@ -1,21 +1,18 @@
 """Prony series from measured moduli: reading, fitting, shifting, and the scene that is written."""
 
-import json
 import re
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.cli import main
 from kvtheory.fitting import moduli, shifting, spectrum
 from kvtheory.fitting.spectrum import Moduli, Series
+from tests.commands import printed, refused, run
 
-ROOT = Path(__file__).parents[1]
-DMA = ROOT / "docs" / "data" / "dma"
+DMA = Path(__file__).parents[1] / "docs" / "data" / "dma"
 TRUE = Series(1e6, np.array([5e6, 3e6, 1e6]), np.array([1e-4, 1e-2, 0.5]))
 OMEGA = np.geomspace(0.05, 1e5, 60)
 
@@ -310,31 +307,12 @@ def test_the_sample_data_are_fitted_to_their_scatter(name):
 
 
 def test_the_command_writes_a_scene_that_loads_and_slides(tmp_path):
-    path, picture = tmp_path / "rubber.toml", tmp_path / "fit.png"
-    data = str(DMA / "time_user_raw.csv")
+    path, picture, bare = (tmp_path / name for name in ("rubber.toml", "fit.png", "bare.toml"))
     layer = ["--thickness", "2 mm", "--poisson-ratio", "0.3"]
-    how = [
-        *layer,
-        "--temperature",
-        "30 degC",
-        "--arms",
-        "12",
-        "-o",
-        str(path),
-        "--plot",
-        str(picture),
-    ]
-    done = CliRunner().invoke(main, ["foundation", data, *how, "--json"])
-    assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
-    assert {
-        "arms",
-        "modulus",
-        "stiffness",
-        "misfit",
-        "largest_misfit",
-        "shift_factors",
-    } <= found.keys()
+    command = ["foundation", DMA / "time_user_raw.csv", *layer, "--temperature", "30 degC"]
+    found = printed(*command, "--arms", 12, "-o", path, "--plot", picture)
+    told = ["arms", "modulus", "stiffness", "misfit", "largest_misfit", "shift_factors"]
+    assert set(told) <= found.keys()
     scene = kv.load_scene(path)
     assert [arm.modulus for arm in scene.foundation.arms] == [E for E, _ in found["arms"]]
     assert scene.foundation.stiffness == pytest.approx(found["stiffness"])
@@ -343,20 +321,18 @@ def test_the_command_writes_a_scene_that_loads_and_slides(tmp_path):
     rate = V / (state.trailing_edge - state.leading_edge)  # at the temperature of the scene
     assert rate * scene.foundation.shift_factor == pytest.approx(found["frequencies"], rel=1e-3)
     assert picture.stat().st_size > 10_000
-    text = path.read_text()
-    assert "misfit" in text
-    small = ["foundation", str(written(tmp_path, HEAD + ROWS)), *layer, "-o", str(path)]
-    bare = tmp_path / "bare.toml"
+    assert "misfit" in path.read_text()
+    small = ["foundation", written(tmp_path, HEAD + ROWS), *layer, "-o", path]
     bare.write_text(re.sub(r"(?s)\[foundation\].*?(?=\n\[)", "", kv.to_toml(kv.Scene())))
-    assert CliRunner().invoke(main, [*small, "--scene", str(bare)]).exit_code == 0
+    run(*small, "--scene", bare)
     assert kv.load_scene(path).support == kv.Scene().support
     path.write_text("mine")
-    assert CliRunner().invoke(main, small).exit_code == 2
+    run(*small, status=2)
     assert path.read_text() == "mine"
 
 
 def test_mistakes_in_the_options_are_messages(tmp_path):
-    data = str(written(tmp_path, HEAD + ROWS))
+    data = written(tmp_path, HEAD + ROWS)
     for options, told in (
         (["-o", str(tmp_path / "x.toml")], "--thickness"),
         (["--thickness", "2", "--poisson-ratio", "0.3"], "--thickness"),
@@ -366,9 +342,7 @@ def test_mistakes_in_the_options_are_messages(tmp_path):
         (["--modulus", "K"], "expected one of: E, G"),
         (["--modulus", "G"], "is E"),
     ):
-        done = CliRunner().invoke(main, ["foundation", data, "--arms", "1", *options])
-        assert done.exit_code == 2, options
-        assert told in done.stderr, (options, done.stderr)
+        refused(["foundation", data, "--arms", 1, *options], [told])
         assert len(list(tmp_path.iterdir())) == 1
 
 
@@ -390,10 +364,10 @@ def test_sliding_outside_the_measured_frequencies_is_noted(tmp_path):
             assert f"V a_T/c = {f[k]:.3g} Hz is outside" in note
         assert not kv.steady(scene, over={"drive.velocity": 0.0}).notes
     within = scene.replace({"foundation.highest_frequency": "1 THz"})
-    for run in (partial(kv.transient, rtol=1e-4), partial(kv.elements, per_length="20 /mm")):
-        found = run(scene, at=["10 ms", "20 ms"], certify=False)
+    for over_time in (partial(kv.transient, rtol=1e-4), partial(kv.elements, per_length="20 /mm")):
+        found = over_time(scene, at=["10 ms", "20 ms"], certify=False)
         assert "outside the frequencies" in str(found)
-        assert not run(within, at=["10 ms", "20 ms"], certify=False).notes
+        assert not over_time(within, at=["10 ms", "20 ms"], certify=False).notes
     assert kv.solve(scene, quantity="friction_force").notes
     swept = kv.sweep(scene, over={"drive.velocity": V}, quantities="friction_force")
     assert "outside the frequencies" in swept.certificate.statement

@@ -9,7 +9,7 @@ from kvtheory.derivations.engine.points import signs
 from kvtheory.derivations.engine.series import leading_of_series
 from kvtheory.derivations.engine.step import Proof
 
-from tests.planted_fresh import _proof
+from tests.planted import _proof
 
 x = sp.Symbol("x", real=True)
 y, z, h = sp.symbols("y z h", positive=True)

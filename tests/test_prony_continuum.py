@@ -26,7 +26,7 @@ SERIES = (
 
 @pytest.fixture(autouse=True)
 def _interpreted(monkeypatch):
-    """Compile only where that is tested, for it takes a minute."""
+    """Compile only where that is tested, for it takes 20 s."""
     for limit in ("WORTHWHILE", "LOADABLE"):
         monkeypatch.setattr(trajectory, limit, 10**9)
 

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import xml.etree.ElementTree as ET
+from contextlib import closing
 from pathlib import Path
 
 import generators
@@ -28,6 +29,7 @@ from kvtheory.derivations.render import (
 from kvtheory.derivations.render.edition import symbols_of
 from kvtheory.derivations.render.text import Given, Line, blocks, sentence
 
+from tests.browser import Browser
 from tests.conftest import required
 
 SAMPLE = (
@@ -252,27 +254,12 @@ def test_html_escapes_text_and_links_references():
 
 
 def test_html_fits_a_phone(page, tmp_path):
-    chromium = required("chromium")
     (tmp_path / "page.html").write_text(page, encoding="utf-8")
-    (tmp_path / "phone.html").write_text(
-        '<iframe src="page.html" style="width:360px;height:800px;border:0"></iframe><p></p><script>'
-        "onload = () => { const inner = document.querySelector('iframe').contentDocument;"
-        "document.querySelector('p').textContent = inner.documentElement.clientWidth + ' ' +"
-        "inner.documentElement.scrollWidth + ' ' + inner.querySelectorAll('math').length }</script>"
-    )
-    done = subprocess.run(
-        [
-            chromium,
-            *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
-            *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-            *("--allow-file-access-from-files", f"--user-data-dir={tmp_path / 'profile'}"),
-            *("--dump-dom", (tmp_path / "phone.html").as_uri()),
-        ],
-        capture_output=True, text=True, timeout=120, check=True,
-    )  # fmt: skip
-    measured = re.search(r"<p>(\d+) (\d+) (\d+)</p>", done.stdout)
-    assert measured, done.stdout[-500:]
-    client, scroll, formulas = map(int, measured.groups())
+    with closing(Browser(tmp_path / "profile")) as browser:
+        browser.screen(360, 800, phone=True)
+        browser.open(tmp_path / "page.html")
+        sizes = "[scroll.clientWidth, scroll.scrollWidth, document.querySelectorAll('math').length]"
+        client, scroll, formulas = browser.run(f"(scroll => {sizes})(document.documentElement)")
     assert formulas > 100
     assert scroll <= client <= 360
 

@@ -124,8 +124,8 @@ def in_shown_unit(value: Any, unit: str) -> tuple[str, str]:
 def with_unit(value: Any, unit: str) -> str:
     """Return an SI value, or the range of several, with the unit of the tables.
 
-    >>> with_unit(0.05, "m/s"), with_unit([0.05, 2.0], "m/s"), with_unit(float("nan"), "m/s")
-    ('50 mm/s', '50 … 2000 mm/s', '-')
+    >>> with_unit([0.05, 2.0], "m/s"), with_unit(-0.0, "m/s"), with_unit(float("nan"), "m/s")
+    ('50 … 2000 mm/s', '0 mm/s', '-')
     """
     text, name = in_shown_unit(value, unit)
     return text if text == "-" else f"{text} {name}".rstrip()
@@ -133,7 +133,7 @@ def with_unit(value: Any, unit: str) -> str:
 
 def value_range(value: Any, style: str = "", factor: float = 1.0) -> str:
     """Return a number as text, or the least and the largest of several; a dash if there is none."""
-    array = np.asarray(value, dtype=float) * factor
+    array = np.asarray(value, dtype=float) * factor + 0.0  # never minus zero
     known = array[~np.isnan(array)]
     if not known.size:
         return "-"

@@ -36,7 +36,7 @@ MODULES = (
 """Modules that contain kernels."""
 
 OPTIONS: Any = {"_nrt": False}
-"""Kernels allocate nothing, so that numba need not count references; this takes half the time."""
+"""Kernels allocate nothing, so that numba need not count references; runs take less than half the time."""
 INLINED = base_motion, contact, radau_iia
 """Modules of short kernels that are called most often."""
 SHORT = ("sliding_now", "_slack", "_probe")
@@ -44,7 +44,7 @@ SHORT = ("sliding_now", "_slack", "_probe")
 
 WORTHWHILE = 4000
 """Number of interpreted steps after which compiling pays: about a second. Loading the compiled kernels takes
-half a second; compiling them, once per installation, takes half a minute."""
+half a second; compiling them, once per installation, takes a quarter of a minute."""
 
 
 class Tally:

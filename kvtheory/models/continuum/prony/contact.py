@@ -128,20 +128,25 @@ def pressed(
 ) -> tuple[float, float]:
     """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
 
-    It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest.
+    It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. What the
+    polynomials are off between the stages, it was met too late: the indenter compressed it at once.
     """
-    theta = xi_e = 0.0
+    theta = xi_e = deeper = 0.0
+    here = run.here
     if index != NEVER:
-        _, _, Y_e, _, theta = motion(run, index, sigma)
+        d_e, _, Y_e, _, theta = motion(run, index, sigma)
         xi_e = value(run.rows[index, EDGES + edge], theta)
-        xi = xi_e - Y_e + Y
-    p, here = d - xi * xi, run.here
+        xi, deeper = xi_e - Y_e + Y, d_e - xi_e * xi_e
+        for i in over(len(run.arms)):
+            here[i, FORCES] = past(run, index, i, STRESSES + edge, theta)
+            deeper += total(here[i, FORCES])
+    p = d - xi * xi
     for i in over(len(run.arms)):
         k = run.arms[i, STIFFNESS]
         here[i, STRESSES] = k * (here[i, DEPTHS] - xi * here[i, SLIDES])
         if index != NEVER:
             then = past(run, index, i, DEPTHS, theta) - xi_e * past(run, index, i, SLIDES, theta)
-            left = past(run, index, i, STRESSES + edge, theta) - k * then
+            left = here[i, FORCES] + k * (deeper - then)
             here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
         p += total(here[i, STRESSES])
     return p, xi
@@ -150,13 +155,21 @@ def pressed(
 def free(
     run: Run, s: float, d: float, Y: float, edge: int, index: int, sigma: float
 ) -> tuple[float, float]:
-    """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi; write its s_i."""
-    _, _, Y_e, _, theta = motion(run, index, sigma)
+    """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi; write its s_i.
+
+    If the polynomials left it with a pressure, it rises at once.
+    """
+    d_e, _, Y_e, _, theta = motion(run, index, sigma)
     xi_e = value(run.rows[index, EDGES + edge], theta)
-    xi, arms, here, u_e, u = xi_e - Y_e + Y, run.arms, run.here, 0.0, 0.0
+    xi, arms, here, u = xi_e - Y_e + Y, run.arms, run.here, 0.0
+    p_e = u_e = d_e - xi_e * xi_e
     for i in over(len(arms)):
         here[i, FORCES] = past(run, index, i, STRESSES + edge, theta)
-        u_e -= total(here[i, FORCES])
+        p_e += total(here[i, FORCES])
+    higher = p_e / (1.0 + run.given.glass)
+    u_e -= higher
+    for i in over(len(arms)):
+        here[i, FORCES] -= arms[i, STIFFNESS] * higher
     for m in range(len(arms)):
         mode = 0.0
         for i in over(len(arms)):
@@ -195,12 +208,13 @@ def edge_at(
         index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
+    stiff = 1.0 + run.given.glass if state == PEELING else 1.0
     for _ in range(ITERATIONS):
         x = min(x, end, latest) if inward > 0.0 else max(min(x, latest), end)
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        exact = abs(f) <= EDGE_ERROR * (1.0 + run.given.glass)
+        exact = abs(f) <= EDGE_ERROR * stiff
         if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
             return xi, index, x
         if x == end and f < 0.0 and math.isnan(inner):
@@ -215,9 +229,7 @@ def edge_at(
         else:
             move *= toward
         before, at, last = f, x, xi
-        stands = move == 0.0 and abs(f) > STALLED * (
-            1.0 + run.given.glass
-        )  # X does, where sliding began
+        stands = move == 0.0 and abs(f) > STALLED * stiff  # X does, where sliding began
         if not bracketed and (stands or toward * move < 0.0 or abs(move) >= reach):
             move, reach, secant = toward * reach, FASTER * reach, False
         elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):

@@ -13,6 +13,7 @@ from kvtheory.models.continuum.prony.contact import (
     NEVER,
     PEELING,
     SLIDES,
+    TIME,
     free,
     integral,
     motion,
@@ -34,9 +35,10 @@ SIZE = 14
 """Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
 both edges, both forces, the largest pressure, Y, and the states of both edges."""
 
-REFINED, BISECTIONS, SAMPLES = 8, 60, 3
+REFINED, BISECTIONS, SAMPLES, LAYER = 8, 60, 3, 0.25
 """Golden sections in the search for the peak between two samples, before a parabola; bisections for the
-instant at which an edge passed a place; samples in each step of the history."""
+instant at which an edge passed a place; samples in each step of the history, but in the layer where arms are
+loaded, at half of the age, down to this share of the shortest relaxation time."""
 GOLDEN = 0.6180339887498949
 ROUNDING = 1e-12
 
@@ -90,7 +92,9 @@ def pressure_of(run: Run, s: float, state: Any, number: int, place: float) -> fl
 
 def peak(run: Run, index: int, s: float, state: Any) -> float:
     """Return the largest pressure: of samples in each segment, refined by golden sections about the best."""
-    largest, step = 0.0, run.steps[index]
+    largest, step, fastest = 0.0, run.steps[index], math.inf
+    for i in range(len(run.arms)):
+        fastest = min(fastest, LAYER * run.arms[i, TIME])
     for i in range(step.first, step.first + step.count):
         number = run.chain[i]
         segment = run.segments[number]
@@ -117,6 +121,7 @@ def peak(run: Run, index: int, s: float, state: Any) -> float:
                 while j < index and run.steps[j + 1].start <= at:
                     j += 1
                 width = min(run.steps[j].span, high - low) / SAMPLES
+                width = min(width, max(0.5 * (s - at), fastest))
             at = at + width if at + 1.5 * width < high else high  # not twice, but for rounding
         largest = max(largest, best)
         if best > 0.0:

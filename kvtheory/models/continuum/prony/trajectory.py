@@ -24,7 +24,7 @@ STEP_LIMIT = 5_000
 ATTEMPTS = 100
 """Attempted steps between two reports of progress."""
 WORTHWHILE, LOADABLE = 5_000, 300
-"""Interpreted steps after which compiling pays, half a minute once per installation, and after which loading
+"""Interpreted steps after which compiling pays, 20 s once per installation, and after which loading
 kernels that are compiled does, a second."""
 SUBDIVISIONS = 4
 """Points shown for each step."""

@@ -55,8 +55,9 @@ from kvtheory.scene import base_motion as b_
 
 SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
 """Margin and least factor of a step size, that after a step which did not converge, and the least error."""
-SHORTEST = 1e-13
-"""Least step relative to the run: a shorter one would be lost in rounding."""
+SHORTEST, SHARP = 1e-13, 8.0
+"""Least step relative to the run: a shorter one would be lost in rounding. A step of at most
+`SHARP` of these is accepted with any error: behind a layer on a fast arm an edge sets off at once."""
 SMOOTH = 1e-9
 """Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
 OVERRUN, PASSED, NEAR = 1e-6, 1e-12, 1e-13
@@ -274,18 +275,21 @@ def _advance(run: Run, until: float, longest: float) -> int:
     size, limited = _attempt(run, span), now.limit < math.inf
     now.limit = math.inf
     theta, violated = _event(run) if size < math.inf else (math.inf, NOTHING)
-    if size > 1.0 and not theta < LATE:
+    resolved = span > SHARP * shortest or size == math.inf
+    if resolved and size > 1.0 and not theta < LATE:
         return _reject(run, span, size)
     if theta * span <= shortest:
         now.rejected += 1
         return _change(run, violated)
     overrun = PASSED if min(violated[2], violated[4]) < 0.0 else OVERRUN
     if theta < 1.0 - overrun and (1.0 - theta) * span > NEAR * run.given.end:
-        now.rejected += 1
         now.limit = theta * (1.0 + 0.5 * overrun) * span
+        if size > 1.0:  # what lies beyond the event is no better
+            return _reject(run, span, size)
+        now.rejected += 1
         return DONE
-    longer = _longer(run, span, size)
-    now.span = max(now.span, longer) if limited else longer
+    longer = max(_longer(run, span, size), SHARP * shortest)
+    now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
 

@@ -1,0 +1,35 @@
+"""The engine refuses, with its reason, each false step of `tests/planted.py`, and accepts each true one."""
+
+import pytest
+
+from tests import planted
+
+SHOWN = {
+    "true for integers only": "left - right = ",
+    "almost the same by a factor": "left - right = ",
+    "wrong primitive": "left - right = ",
+    "wrong value": "left - right = ",
+    "root of the wrong sign": "left - right = ",
+    "across a pole": "continuous",
+    "one of two roots without an interval": "other roots",
+    "two roots": "2 roots",
+    "no root where one is claimed": "0 roots",
+    "exact, so without a next term": "identically zero",
+    "what is not small": "small positive",
+}
+"""What a refusal says is wrong."""
+ROWS = [
+    pytest.param(step, expected, why, SHOWN.get(name, ""), id=f"{kind}: {name}")
+    for kind, name, expected, step, why in planted.rows()
+]
+
+
+def test_the_tables_are_long():
+    assert sum(len(group) for group in planted.FALSE.values()) >= 350
+    assert sum(len(group) for group in planted.TRUE.values()) >= 130
+
+
+@pytest.mark.parametrize(("step", "expected", "why", "shown"), ROWS)
+def test_planted(step, expected, why, shown):
+    result, words = planted.verdict(step)
+    assert (result, shown in words) == (expected, True), f"{why}; {words}"
