@@ -181,7 +181,7 @@ def make_chart(
 def _attempt(
     problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
 ) -> float:
-    """Run each setting once, costlier ones only after one in time; return the time of a first call."""
+    """Run each setting once, until one times out; return the time of a first call, which compiles."""
     rated = method.kind == "numerical" and method.knob == "rtol"
     clock = Clock(effort.longest)
     # Overflow is reported below, by its error or its reason.

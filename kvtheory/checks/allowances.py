@@ -87,7 +87,7 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
 
 
 class Band(NamedTuple):
-    """Range of theory within a few steps; the smooth error outside, of which `rounding`, and sigma."""
+    """Range of theory within a few steps; outside it the smooth error, its rounding part, and sigma."""
 
     low: Array
     high: Array

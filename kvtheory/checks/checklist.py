@@ -207,7 +207,7 @@ def steady_limit(case: Case) -> Measured:
 
 
 def phase(case: Case) -> Measured:
-    """Compare the allowance for the sliding velocity with it: disturbances shift a cycle for good."""
+    """Compare the allowance for the sliding velocity with that velocity: disturbances shift a cycle."""
     theory, curve = case.theory, "sliding_velocity"
     if theory.rates is not None and math.isfinite(theory.rates.settling):
         raise NotMade("steady sliding is stable")

@@ -116,7 +116,7 @@ class Case:
 def make_case(
     theory: Theory, series: Series, per_length: float | None, tolerance: float, coarsest: float
 ) -> Case:
-    """Compare a series with theory; an unknown spacing is estimated, up to a sawtooth of `coarsest` loads."""
+    """Compare a series with theory; an unknown spacing is estimated, up to b = `coarsest` times the load."""
     names = tuple(name for name in CURVES if name in series.columns)
 
     def of(fine: Resolution) -> Case:

@@ -230,7 +230,7 @@ class Bench(Case):
 
 
 def deviation(*slopes: Array) -> float:
-    """Return the deviation of the first unknown, others free, for an error that all n values share."""
+    """Return the standard deviation of the first unknown, others free; all n values share the error."""
     return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 

@@ -144,7 +144,7 @@ def _friction(state: Any) -> Any:
 def reduced(
     solve: Callable[[Scene], Any], scene: Scene, V: Array, rtol: float, *, proved: bool
 ) -> Fewer:
-    """Return the scene with the fewest arms whose change of mu, or its bound if `proved`, is in `rtol`."""
+    """Return the scene with the fewest arms that keep mu, or its bound if `proved`, within `rtol`."""
     foundation: Any = scene.foundation
     size = np.array([arm.stiffness for arm in foundation.arms])
     time = np.array([arm.relaxation_time for arm in foundation.arms])

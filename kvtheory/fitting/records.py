@@ -30,7 +30,7 @@ VISIBLE = 3.0
 LARGEST = 1e30
 """Largest number that is accepted as a measured one; squares of larger ones overflow."""
 SAME_DRIVE = 0.05
-"""Median difference of velocities from the drive of the scene, over the largest, up to which they are it."""
+"""Median difference of velocities from those of the scene, over the largest, up to which they agree."""
 
 
 class Data(NamedTuple):

@@ -131,7 +131,7 @@ class Model:
 
 
 def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
-    """Return the contact of elements at a depth that slide steadily on undisturbed ground, else `SAMPLES`."""
+    """Return the contact of elements at a depth that slide steadily; without a spacing, of `SAMPLES`."""
     (low, high), law = span(c.surface, depth), c.law
     dx = c.spacing or (high - low) / SAMPLES[c.surface.ball]
     dy = c.across or strip_width(c.surface, depth, dx)

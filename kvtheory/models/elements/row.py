@@ -72,7 +72,7 @@ class ElementRow:
         self.lay(depth, lambda x, y: np.maximum(depth - height(x, y)[0], 0.0))
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
-        """Press the indenter into elements compressed by `surface`(x, y); touching by `contact`(x)."""
+        """Press the indenter into elements compressed by `surface`(x, y), in contact by `contact`(x)."""
         self.state[kernels.DEPTH], self.stored.counts[kernels.BEGUN] = depth, 0
         while kernels.set_window(self.stored, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)

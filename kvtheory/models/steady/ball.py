@@ -115,7 +115,7 @@ def _integrated_tail(l: Any) -> Any:
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
-    """Solve f(s) + kappa (s^2 - 1) = 1 for s in (0, 1], from between s^4 and 8 lambda s^3/(3 pi)."""
+    """Solve f(s) + kappa (s^2 - 1) = 1 for s in (0, 1], by Halley in logarithms from between its limits."""
     lam, kappa = drive_number, support_number
 
     def step(s: Array) -> Array:

@@ -79,7 +79,7 @@ def depth(scene: Scene) -> Any:
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
-    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s in (0, 1], by Halley's method from between its limits."""
+    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s in (0, 1], by Halley's method, starting between its limits."""
     kappa = support_number
     s = np.sqrt((1.0 + kappa) / (kappa + np.hypot(1.0, 0.75 * drive_number)))
     for _ in range(HALLEY_STEPS):
