@@ -73,21 +73,16 @@ BLOCK = 32
 
 
 class Surface(NamedTuple):
-    """The indenter: h = `steep` r (r/`size`)^(n - 1)/n, n the exponent; a circle of radius `size` if n is 0.
-
-    r is |x| or, if `revolved`, sqrt(x^2 + y^2); `inside` is the largest r of the surface. A parabola (n = 2)
-    has besides, if it is a ball, `across` y^2. `stretch` is the ratio of width to length of a contact. Python
-    functions h and h' are a `profile` (n < 0), which is always interpreted.
-    """
+    """The indenter: h = steep r (r/size)^(n - 1)/n, n the exponent; a circle of radius `size` if n is 0."""
 
     size: float
     exponent: float
     steep: float
-    inside: float
-    across: float
-    revolved: bool
-    stretch: float
-    profile: Any
+    inside: float  # the largest r of the surface
+    across: float  # of a ball with n = 2, which has h + across y^2
+    revolved: bool  # whether r is sqrt(x^2 + y^2) and not |x|
+    stretch: float  # ratio of width to length of a contact
+    profile: Any  # Python functions h and h' (n < 0), always interpreted
 
     @property
     def ball(self) -> bool:
@@ -96,30 +91,26 @@ class Surface(NamedTuple):
 
 
 class Constants(NamedTuple):
-    """An indenter (static depth δ_0, mass M) over elements with the spacing dx, all in SI.
-
-    `mass` is infinite for a fixed indenter. Along x it has `mass_along` M_x, infinite on a rigid drive, on a
-    spring k_x and a damper c_x. At t = 0 an element is at x = `shift` dx; `parts` says whether the part of
-    one at each edge counts. `across` is the distance dy of the strips of a ball, zero for a line contact.
-    Slower sliding than `creep` counts as rest on a spring, where the drive tells which edge leads.
-    """
+    """An indenter (static depth δ_0, mass M) over elements with the spacing dx, all in SI."""
 
     surface: Surface
     law: Element
     kinks: Array
-    parts: bool
-    shift: float
+    parts: bool  # whether the part of an element at each edge counts
+    shift: float  # at t = 0 an element is at x = shift dx
     spacing: float
-    across: float
-    mass: float
+    across: float  # distance dy of the strips of a ball, zero for a line contact
+    mass: float  # infinite for a fixed indenter
     weight: float
     spring: float
-    mass_along: float
-    spring_along: float
-    damping_along: float
+    mass_along: float  # M_x, infinite on a rigid drive
+    spring_along: float  # k_x
+    damping_along: float  # c_x
     depth: float
     half_length: float
-    creep: float
+    creep: (
+        float  # slower sliding counts as rest on a spring, where the drive tells which edge leads
+    )
 
 
 class Row(NamedTuple):
@@ -127,27 +118,24 @@ class Row(NamedTuple):
 
     The compression of a free element is the sum over its modes of `law.shares` times `faded` times `modes`:
     nothing changes in it while it is free, only `faded` decays. On arms, an element in contact has their
-    forces there, and its compression is in `rows`. `rows` and `flags` are arrays over kinds, strips and
-    elements; of a strip, those from `low` to before `high` are near the indenter. `numbers` holds i + shift.
-    Runs in contact at the start of a step are `begun`, at its end `ended`. `deepest` is the depth that the
-    row is made for; `tableau` and `fitted` are those of the scheme.
+    forces there, and its compression is in `rows`.
     """
 
     constants: Constants
     tableau: Array
     fitted: bool
-    deepest: float
+    deepest: float  # the depth that the row is made for
     state: Array
     modes: Array
     faded: Array
-    rows: Array
+    rows: Array  # over kinds, strips and elements, as `flags`
     flags: Flags
-    low: Integers
-    high: Integers
+    low: Integers  # the first element of each strip that is near the indenter
+    high: Integers  # and that behind the last
     counts: Integers
-    numbers: Array
-    begun: Integers
-    ended: Integers
+    numbers: Array  # i + shift
+    begun: Integers  # runs in contact at the start of a step
+    ended: Integers  # and at its end
     edges: Array
     weights: Array
     stages: Array
@@ -955,24 +943,17 @@ def find_peak(row: Row, p: Array, k: int, reach: Pair, low: int, high: int) -> A
 
 
 class Course(NamedTuple):
-    """The steps of a run, and what is reported.
+    """The steps of a run, and what is reported."""
 
-    `times` are those before the first step and after each, `Y` and `V` at the start of each, halfway and at
-    its end, V just before that. `law` is that of an element over steps of no length, and over half and all
-    of each length, numbered by `which`. `after` says after which step an instant is reported, `about` is that
-    argument of `report`, as is `unsure`. `limits` are bounds, in a stable run, of the rate of the depth, the
-    speed along x, and the share of the forces by which they fail to balance the motion.
-    """
-
-    times: Array
-    Y: Array
-    V: Array
-    law: ElementStep
-    which: Integers
-    after: Integers
-    about: Array
-    unsure: float
-    limits: tuple[float, float, float]
+    times: Array  # before the first step and after each
+    Y: Array  # at the start of each, halfway and at its end
+    V: Array  # likewise, at the end just before it
+    law: ElementStep  # over steps of no length, and over half and all of each length
+    which: Integers  # number of the length of each step
+    after: Integers  # after which step an instant is reported
+    about: Array  # argument of `report`
+    unsure: float  # likewise
+    limits: tuple[float, float, float]  # of rates and of the imbalance of forces, in a stable run
 
 
 def law_at(of: ElementStep, k: int) -> ElementStep:
