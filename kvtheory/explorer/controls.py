@@ -144,7 +144,7 @@ def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
 
     >>> [each["names"] for each in _alternatives("foundation", "kelvin-voigt", FOUNDATIONS["kelvin-voigt"])]
     [['stiffness', 'retardation_time'], ['modulus', 'thickness', 'poisson_ratio', 'retardation_time']]
-    >>> [each["told"] for each in _alternatives("drive", "drive", Drive)]
+    >>> [each["told"] for each in _alternatives("drive", "drive", SECTIONS["drive"][1]["drive"])]
     ['rigid', 'with a spring', 'with a spring and its own mass']
     """
     if (section, name) in ADDED:
