@@ -129,7 +129,8 @@ def pressed(
     """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
 
     It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. What the
-    polynomials are off between the stages, it was met too late: the indenter compressed it at once.
+    polynomials are off between the stages, it was met too late: the indenter compressed it at once, as far as
+    an arm keeps this over the step.
     """
     theta = xi_e = deeper = 0.0
     here = run.here
@@ -146,7 +147,8 @@ def pressed(
         here[i, STRESSES] = k * (here[i, DEPTHS] - xi * here[i, SLIDES])
         if index != NEVER:
             then = past(run, index, i, DEPTHS, theta) - xi_e * past(run, index, i, SLIDES, theta)
-            left = here[i, FORCES] + k * (deeper - then)
+            kept = run.arms[i, TIME] / (run.arms[i, TIME] + run.steps[index].span)
+            left = here[i, FORCES] + k * (kept * deeper - then)
             here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
         p += total(here[i, STRESSES])
     return p, xi
