@@ -202,17 +202,21 @@ def edge_at(
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
     segment, span = run.segments[side.segment], s - run.now.s
     edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
-    end, inward, latest = (segment.a, -1.0, side.near) if edge == k else (segment.b, 1.0, s)
+    inward, low, high = (
+        (-1.0, segment.a, side.near) if edge == k else (1.0, side.near, min(segment.b, s))
+    )
+    end = segment.a if edge == k else segment.b
     start, x, move = side.sigma, sigma, FIRST_MOVE * span
     reach = max(abs(x - start), span)
     if segment.step == NEVER:
-        end, inward, latest = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k], math.inf
+        end, inward = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k]
+        low, high = (-math.inf, end) if k == 0 else (end, math.inf)
         index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
     for _ in range(ITERATIONS):
-        x = min(x, end, latest) if inward > 0.0 else max(min(x, latest), end)
+        x = max(min(x, high), low)
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
