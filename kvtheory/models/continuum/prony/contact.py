@@ -129,7 +129,8 @@ def pressed(
     """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
 
     It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. What the
-    polynomials are off between the stages, it was met too late: the indenter compressed it at once.
+    polynomials are off between the stages, it was met too late: the indenter compressed it at once, as far as
+    an arm keeps this over the step.
     """
     theta = xi_e = deeper = 0.0
     here = run.here
@@ -146,7 +147,8 @@ def pressed(
         here[i, STRESSES] = k * (here[i, DEPTHS] - xi * here[i, SLIDES])
         if index != NEVER:
             then = past(run, index, i, DEPTHS, theta) - xi_e * past(run, index, i, SLIDES, theta)
-            left = here[i, FORCES] + k * (deeper - then)
+            kept = run.arms[i, TIME] / (run.arms[i, TIME] + run.steps[index].span)
+            left = here[i, FORCES] + k * (kept * deeper - then)
             here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
         p += total(here[i, STRESSES])
     return p, xi
@@ -200,17 +202,21 @@ def edge_at(
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
     segment, span = run.segments[side.segment], s - run.now.s
     edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
-    end, inward, latest = (segment.a, -1.0, side.near) if edge == k else (segment.b, 1.0, s)
+    inward, low, high = (
+        (-1.0, segment.a, side.near) if edge == k else (1.0, side.near, min(segment.b, s))
+    )
+    end = segment.a if edge == k else segment.b
     start, x, move = side.sigma, sigma, FIRST_MOVE * span
     reach = max(abs(x - start), span)
     if segment.step == NEVER:
-        end, inward, latest = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k], math.inf
+        end, inward = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k]
+        low, high = (-math.inf, end) if k == 0 else (end, math.inf)
         index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
     for _ in range(ITERATIONS):
-        x = min(x, end, latest) if inward > 0.0 else max(min(x, latest), end)
+        x = max(min(x, high), low)
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
