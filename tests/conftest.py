@@ -48,11 +48,24 @@ def by_label():
     return {derivation.label: derivation for derivation in catalogue()}
 
 
+def digits(count):
+    """Return a fixture for all tests of a file: mpmath computes with so many digits."""
+
+    @pytest.fixture(autouse=True)
+    def with_digits():
+        with mp.workdps(count):
+            yield
+
+    return with_digits
+
+
 @pytest.fixture
-def fifty_digits():
-    """Let mpmath compute with 50 digits."""
-    with mp.workdps(50):
-        yield
+def interpreted(monkeypatch):
+    """Let no motion on a Prony series wait a minute for its kernels."""
+    from kvtheory.models.continuum.prony import trajectory
+
+    for limit in ("WORTHWHILE", "LOADABLE"):
+        monkeypatch.setattr(trajectory, limit, 10**9)
 
 
 @pytest.fixture(scope="session")

@@ -41,6 +41,7 @@ def test_help_needs_click_alone():
 
 def test_one_version_everywhere():
     assert kvtheory.__version__ == version("kvtheory")
+    assert f'"version": "{kvtheory.__version__}"' in (ROOT / "codemeta.json").read_text()
     assert f"version: {kvtheory.__version__}" in (ROOT / "CITATION.cff").read_text()
     assert f"## {kvtheory.__version__}" in (ROOT / "CHANGELOG.md").read_text()
 

@@ -119,15 +119,3 @@ def test_a_simulation_with_kelvin_voigt_of_a_scene_that_is_not_is_named():
     assert found.explanations[0].name == "Kelvin-Voigt instead of arms"
     assert found.explanations[0].enough
     assert "arms have no stiffness" in found.diagnosis
-
-
-def test_a_wrong_sign_is_named_on_arms_too():
-    scene = kv.Scene(foundation=RUBBER, run=kv.Run(0.05))
-    data = kv.elements(scene, per_length="100 /mm", certify=False)
-    wrong = {"time": data.time, "depth": data.depth, "friction_force": -data.friction_force}
-    assert kv.compare(scene, wrong).explanations[0].name == "sign of friction_force"
-
-
-def test_kelvin_voigt_by_its_own_scene_is_not_blamed():
-    found = kv.compare(kv.Scene(run=kv.Run(0.05)), kv.transient(kv.Scene(run=kv.Run(0.05))))
-    assert found.verdict == "agrees"
