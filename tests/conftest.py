@@ -19,9 +19,9 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 
 FIRST = (
-    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_compare"),
-    *("test_prony_continuum", "test_cli", "test_planted", "test_fit", "test_explorer"),
-    *("test_energy", "test_sweep_executors", "test_charts_stability", "test_sweep_lasting"),
+    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_prony_continuum"),
+    *("test_cli", "test_compare", "test_fit", "test_energy", "test_planted", "test_explorer"),
+    *("test_sweep_executors", "test_prony_reference", "test_charts_stability", "test_asperities"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"
