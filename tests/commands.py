@@ -1,6 +1,9 @@
-"""The command line, run in the process of the tests."""
+"""The command line, run in the process of the tests, and Python in one of its own."""
 
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 from click.testing import CliRunner
 
@@ -18,6 +21,14 @@ def run(*arguments, status=0):
 def printed(*arguments, status=0):
     """Return the JSON object that a command prints."""
     return json.loads(run(*arguments, "--json", status=status).stdout)
+
+
+def python(*arguments, cwd=Path(__file__).parents[1]):
+    """Run Python, which has to end well and without a warning; return what it prints."""
+    call = [sys.executable, "-W", "error", *map(str, arguments)]
+    done = subprocess.run(call, capture_output=True, text=True, check=False, cwd=cwd)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
 
 
 def refused(arguments, words):

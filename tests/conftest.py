@@ -19,9 +19,9 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 
 FIRST = (
-    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_compare"),
-    *("test_prony_continuum", "test_cli", "test_planted", "test_fit", "test_explorer"),
-    *("test_energy", "test_sweep_executors", "test_charts_stability", "test_sweep_lasting"),
+    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_prony_continuum"),
+    *("test_cli", "test_compare", "test_fit", "test_energy", "test_planted", "test_explorer"),
+    *("test_sweep_executors", "test_prony_reference", "test_charts_stability", "test_asperities"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"
@@ -48,11 +48,24 @@ def by_label():
     return {derivation.label: derivation for derivation in catalogue()}
 
 
+def digits(count):
+    """Return a fixture for all tests of a file: mpmath computes with so many digits."""
+
+    @pytest.fixture(autouse=True)
+    def with_digits():
+        with mp.workdps(count):
+            yield
+
+    return with_digits
+
+
 @pytest.fixture
-def fifty_digits():
-    """Let mpmath compute with 50 digits."""
-    with mp.workdps(50):
-        yield
+def interpreted(monkeypatch):
+    """Let no motion on a Prony series wait 20 s for its kernels."""
+    from kvtheory.models.continuum.prony import trajectory
+
+    for limit in ("WORTHWHILE", "LOADABLE"):
+        monkeypatch.setattr(trajectory, limit, 10**9)
 
 
 @pytest.fixture(scope="session")

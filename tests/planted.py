@@ -801,6 +801,7 @@ TRUE = {
         "unique root from an irrational end": unique(x**2 - 4, (x, sp.sqrt(2), sp.oo)),
         "unique root without ends": unique(x**3 + x - 1, (x, -sp.oo, sp.oo)),
         "ends do not count": unique(x * (2 * x - 1) * (x - 1), (x, 0, 1)),
+        "irrational ends do not count": unique((x**2 - 2) * (x - 2), (x, sp.sqrt(2), 3)),
         "triple root changes the sign": unique((x - 1) ** 3, (x, 0, 2)),
     },
     "premises": {

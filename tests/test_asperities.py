@@ -3,8 +3,6 @@
 import json
 import math
 import platform
-import subprocess
-import sys
 from functools import partial
 
 import numpy as np
@@ -14,6 +12,7 @@ from scipy.optimize import brentq
 from kvtheory.models.steady.methods import solve_quadrature
 from kvtheory.scene.indenters import Parabola, Profile
 from tests import flushed, steady
+from tests.commands import python
 
 at_depth, at_load = (
     partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
@@ -246,10 +245,7 @@ def test_a_processor_that_flushes_subnormal_numbers_changes_nothing():
     """Warnings are errors there."""
     if platform.machine() != "x86_64":
         pytest.skip("the processor is set in the machine code of x86-64")
-    run = [sys.executable, "-W", "error", "-m", "tests.flushed", "0.5"]
-    done = subprocess.run(run, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    there = json.loads(done.stdout)
+    there = json.loads(python("-m", "tests.flushed", "0.5"))
     for scene, values in flushed.states().items():
         for name, (value, error) in values.items():
             other, stated = there[scene][name]

@@ -6,10 +6,9 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.steady import asymptotes, regimes
 from kvtheory.results import STEADY_UNITS
-from tests import reference
+from tests import SUPPORTS, reference
 from tests.test_power_law import random_case
 
-SUPPORTS = "fixed", "dead-weight", "suspended"
 SCENES = 10
 V = "drive.velocity"
 ZENER = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]])

@@ -201,8 +201,6 @@ def test_the_footprint_carries_the_forces():
         assert p.max() == pytest.approx(state.peak_pressure, rel=1e-3)
         edges = found.edges(0.0)
         assert edges == pytest.approx((state.leading_edge, state.trailing_edge))
-    with pytest.raises(ValueError, match="for the ball only"):
-        kv.footprint(kv.Scene())
 
 
 def test_a_line_contact_stands_for_the_ball():

@@ -482,7 +482,6 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
      ({"tolerance": 0.0}, "`tolerance`"), ({"tolerance": float("nan")}, "`tolerance`"),
      ({"scheme": "papper"}, 'did you mean "paper"'),
      ({"per_length": "200 mm"}, "`per_length`"), ({"per_length": -1.0}, "`per_length`"),
-     ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola"),
      ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 1 / 0))}, "drive.function")],
 )  # fmt: skip
 def test_bad_arguments_are_named(sound, options, message):

@@ -1,7 +1,5 @@
 """Compiled and interpreted kernels: one source, the same numbers to the last bit."""
 
-import subprocess
-import sys
 import types
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from kvtheory.models.continuum.solver import solve
 from kvtheory.progress import COMPILING, listening
 from kvtheory.scene.base_motion import BaseMotion
 from tests import SCENES, spring_random
+from tests.commands import python
 from tests.test_transient_random import random_case
 
 
@@ -93,8 +92,7 @@ def test_without_numba_the_kernels_are_interpreted():
         "import kvtheory as kv; result = kv.transient(at=['200 ms'])\n"
         "print(result.compiled, round(float(result.depth[0]) * 1e6, 3))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["False", "89.661"]
+    assert python("-c", code).split() == ["False", "89.661"]
 
 
 def doubled(x):

@@ -67,20 +67,6 @@ def test_edges_are_the_intersection_of_all_past_instants(name, eps, kappa):
 
 
 @pytest.mark.parametrize(
-    ("w", "mean"), [(3.6, -0.999), (3.6, 1.2819), (1.5, 1.1578), (1.5, 1.16378)]
-)
-def test_a_momentary_reversal_is_not_missed(w, mean):
-    """V reverses for a moment, or slows down so that a peeling edge touches for a moment."""
-    end = 8.0 / w
-    given = BaseMotion.from_function(lambda s: 3.0 * (math.sin(w * s) + mean), end)
-    motion = solve(given, 1.0, FIXED, end)
-    for s in np.linspace(0.05, 0.99, 60) * end:
-        now = motion.at(s)
-        edges = edges_by_search(motion, given, s)
-        assert (now.left, now.right) == pytest.approx(edges, abs=1e-7)
-
-
-@pytest.mark.parametrize(
     ("points", "eps", "kappa"),
     [
         ([(0, 7.1)], 0.078, 0.12),

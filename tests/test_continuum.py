@@ -1,5 +1,7 @@
 """The equation of motion: against an independent solution, and by the laws that it must obey."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -152,6 +154,40 @@ def test_ground_that_was_left_just_now_is_found():
     after = [start + np.geomspace(1e-9, 1e-4, 40) for start in motion.starts]
     times = np.append(np.concatenate(after), 1.3465473545522675)
     assert np.all(np.isfinite(motion.states(times[times < end])))
+
+
+def edges_by_f8(number, way, s):
+    """Edges of a fixed indenter: each past instant confines the contact (F8), the present one by p >= 0."""
+    past = np.unique(
+        np.concatenate([np.linspace(0, s, 20001), s - s * np.geomspace(1e-4, 1, 2000)])
+    )
+    past = past[past < s * (1 - 1e-5)]
+    m = -np.expm1(past - s)
+    shift = way(s) - way(past)
+    b, c = (1 - m) / m * shift, 1 + (1 - m) / m * shift**2
+    b, c = np.append(b, number(s)), np.append(c, 1.0)
+    root = np.sqrt(b * b + c)
+    return max(-1.0, (-b - root).max()), min(1.0, (root - b).min())
+
+
+@pytest.mark.parametrize(
+    ("w", "mean"), [(3.6, -0.999), (3.6, 1.2819), (1.5, 1.1578), (1.5, 1.16378)]
+)
+def test_a_momentary_reversal_is_not_missed(w, mean):
+    """V reverses for a moment, or slows down so that a peeling edge touches for a moment."""
+    size = 3.0
+
+    def number(s):
+        return size * (np.sin(w * s) + mean)
+
+    def way(s):
+        return size * (2 * np.sin(0.5 * w * s) ** 2 / w + mean * s)
+
+    end = 8.0 / w
+    motion = solve(BaseMotion.from_function(number, end), 1.0, math.inf, end)
+    for s in np.linspace(0.05, 0.99, 60) * end:
+        now = motion.at(s)
+        assert (now.left, now.right) == pytest.approx(edges_by_f8(number, way, s), abs=1e-7)
 
 
 def test_it_lands_where_the_gap_is_zero():

@@ -8,7 +8,9 @@ from kvtheory.derivations.catalogue import SECTIONS, catalogue
 from kvtheory.derivations.chapters import asymptotics, groups, steady, tables
 from kvtheory.derivations.engine.record import STATUSES
 
-pytestmark = pytest.mark.usefixtures("fifty_digits")
+from tests.conftest import digits
+
+_digits = digits(50)
 
 DIGITS = 50
 SCENE = {s.R: "0.013", s.K: "2.1e9", s.C: "3.7e8", s.delta: "1.9e-4"}

@@ -11,7 +11,7 @@ from kvtheory.derivations.labels import find
 
 import kvtheory as kv
 from kvtheory.cli import main
-from tests import commands
+from tests import SUPPORTS, commands
 
 run = partial(commands.run, "derive")
 
@@ -135,7 +135,6 @@ def test_numbers_are_those_of_the_scene(tmp_path):
 
 POWER = {"shape": "power-law", "length": "10 mm"}
 WEDGE = {"shape": "wedge", "inclination": "0.1"}
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 CASES = (
     (SUPPORTS, {"shape": "parabola", "radius": "10 mm"}, "100 mm/s", "coefficient", None),
     (SUPPORTS[1:], {"shape": "sphere", "radius": "10 mm"}, "100 mm/s", "F20", "a/R"),

@@ -8,6 +8,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.static_state import StaticState
+from tests import SUPPORTS
 
 QUANTITIES = (
     "velocity", "depth", "depth_rate", "normal_force", "friction_force",
@@ -28,7 +29,7 @@ def difference(a, b):
     )
 
 
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("support", SUPPORTS)
 def test_a_ramp_is_the_ramp(support):
     points = [("0 s", "0 m/s"), ("50 ms", "0.1 m/s"), ("120 ms", "-20 mm/s")]
     ramp = kv.transient(scene(support, history=points), at=TIMES, rtol=1e-11)

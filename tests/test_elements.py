@@ -17,6 +17,7 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.errors import DivergenceError
+from tests import SUPPORTS
 from tests.commands import printed, refused, run
 from tests.test_elements_certificate import errors
 
@@ -25,7 +26,6 @@ FOUNDATIONS = {
     "Kelvin-Voigt": kv.Foundation(1e10, 0.1),
     "Prony": kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (1e10, 0.1)]),
 }
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 
 
 def sliding(velocity, tau=0.1, support="dead-weight", duration=0.2, **changes):

@@ -14,15 +14,9 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene.static_state import StaticState
 from tests.spring_random import of_unit_scales
+from tests.test_ball import GRIPS, WIDER
 from tests.test_elements_certificate import errors
 from tests.transient_ball import sheet, sheet_on_spring
-
-WIDER = kv.Sphere("10 mm", radius_across="25 mm")
-GRIPS = {
-    "fixed": kv.Fixed(depth=1e-4),
-    "dead-weight": kv.DeadWeight(load="9.8 N"),
-    "suspended": kv.Suspended(mass="1 kg", stiffness="30 kN/m"),
-}
 
 
 def ball(support, velocity=0.1, end=0.3, foundation=None):
@@ -55,8 +49,7 @@ def test_a_ball_that_rises_against_a_sheet_of_points(motion, kappa):
     for end, number in pieces:
         history += [(begun, number), (end, number)]
         begun = end
-    line = of_unit_scales(EPSILON, kappa, kv.Drive(history=history), END)
-    scene = replace(line, indenter=kv.Sphere(0.5), foundation=kv.Foundation(2.0 / math.pi, 1.0))
+    scene = of_unit_scales(EPSILON, kappa, kv.Drive(history=history), END, ball=True)
     s, d, f_z = sheet(pieces, EPSILON, kappa, 80, 2e-3)
     rows = [int(np.argmin(np.abs(s - at))) for at in (0.1, 0.3, 0.59, 0.7, 0.9, 1.19)]
     run = kv.elements(scene, per_length=200.0, at=s[rows].tolist())

@@ -14,10 +14,9 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import amplification, lengths, limit_at
 from kvtheory.results.table import scales
 from kvtheory.theory.laws import Element
-from tests import prony_elements
+from tests import SUPPORTS, prony_elements
 from tests.spring_random import of_unit_scales
 
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 ARMS = [(3e10, 0.01), (1e10, 0.1)]
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
 WAYS = {

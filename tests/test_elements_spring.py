@@ -13,7 +13,7 @@ from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.results import SERIES_UNITS
-from tests import spring_reference
+from tests import SUPPORTS, spring_reference
 from tests.spring_random import in_si
 from tests.test_elements_certificate import errors
 
@@ -99,7 +99,7 @@ def energies(row, state, h, count):
 
 
 @pytest.mark.parametrize("h", [1e-4, 1e-2, 0.2])
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("support", SUPPORTS)
 def test_no_step_gains_energy_however_long(support, h):
     """The mean forces do the work by which elements are compressed: swings, hops and all."""
     drive = kv.Drive(velocity=0.0, stiffness="0.1 MN/m^2", mass="0.2 kg/mm")
@@ -162,9 +162,10 @@ def test_fast_arms_are_the_damper_of_the_continuum_in_first_order(scene, name, t
     assert far[0] / far[1] == pytest.approx(2.0, abs=0.4 if name == "spring_force" else 0.2)
 
 
-def test_the_stable_step_of_a_light_mass_along_x():
+@pytest.mark.parametrize("damping", ["0 N*s/m^2", "1 MN*s/m^2"])
+def test_the_stable_step_of_a_light_mass_along_x(damping):
     """The damping of the contact along x, C ∫ h'^2 dx/M_x, bounds the step as C L/M does (F15)."""
-    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", mass="1 g/mm")
+    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", mass="1 g/mm", damping=damping)
     scene = kv.Scene(drive=drive, run=kv.Run(0.02))
     model = Model.of(scene, 1e-5)
     limit = limit_at(SCHEMES["paper"], model.constants, max(lengths(model, model.path(scene))))

@@ -17,6 +17,7 @@ from kvtheory.derivations.symbols import kappa, l, lam, q, s
 
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.theory import closed_forms
+from tests.conftest import digits
 from tests.test_theorems import exact
 
 FUNCTIONS = [form for form in emit.FORMS if form.arguments]
@@ -58,10 +59,7 @@ def _proved():
     catalogue()
 
 
-@pytest.fixture(autouse=True)
-def _digits():
-    with mp.workdps(80):
-        yield
+_digits = digits(80)
 
 
 def tail(x):

@@ -10,7 +10,7 @@ import kvtheory as kv
 from kvtheory.models.steady import ball, exact, methods
 from kvtheory.models.steady.methods import ODD
 from kvtheory.results import STEADY_UNITS
-from tests import SCENES, reference, steady
+from tests import SCENES, SUPPORTS, reference, steady
 from tests.steady import at_depth, at_load
 
 UNIT = 2.0**-53
@@ -62,7 +62,6 @@ class Rounded(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 EPS = np.finfo(float).eps
-SUPPORTS = "fixed", "dead-weight", "suspended"
 SHAPES = {"parabola": (reference.parabola, exact), "ball": (reference.ball, ball)}
 
 

@@ -17,7 +17,7 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import THIN, layer_number
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms
-from tests import SCENES
+from tests import SCENES, SUPPORTS
 from tests.browser import Browser
 
 TABLE1 = kv.Scene()
@@ -159,7 +159,7 @@ def test_every_closed_form_that_python_has_gives_the_same(browser):
         assert browser.run(name) == getattr(closed_forms, name)
 
 
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("support", SUPPORTS)
 @pytest.mark.parametrize(
     "indenter",
     [kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.2), kv.Sphere(0.01, radius_across=0.03)],

@@ -126,12 +126,6 @@ def test_text_stands_out_from_the_card(dark):
         assert (high + 0.05) / (low + 0.05) > 4.5
 
 
-def test_a_scene_that_the_page_does_not_know_is_refused():
-    told = "the explorer holds for the parabola, the power law, the wedge, the ball"
-    with pytest.raises(ValueError, match=told):
-        explorer_page(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
-
-
 def test_the_command_writes_the_page(tmp_path):
     path = tmp_path / "explorer.html"
     run("explore", "-o", path)

@@ -3,9 +3,7 @@
 import csv
 import importlib
 import math
-import subprocess
 import sys
-from pathlib import Path
 
 import generators
 import matplotlib as mpl
@@ -21,9 +19,7 @@ from kvtheory.charts import collection, stability
 from kvtheory.charts.work_precision import Effort
 from kvtheory.plots import STYLE, plot_asymptote_errors, plot_steady
 from kvtheory.scene.static_state import StaticState
-
-ROOT = Path(__file__).parent.parent
-
+from tests.commands import python
 
 BRIEF = (
     (onset_maps, "NUMBERS", onset_maps.NUMBERS[::4]),
@@ -252,11 +248,7 @@ def test_plot_functions_return_their_artists(made):
 
 
 def test_a_script_runs_alone(tmp_path):
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-m", "figures.table2", "-o", str(tmp_path)],
-        check=True, capture_output=True, text=True, cwd=ROOT,
-    )  # fmt: skip
-    assert str(tmp_path / "table2.png") in done.stdout
+    assert str(tmp_path / "table2.png") in python("-m", "figures.table2", "-o", tmp_path)
 
 
 @pytest.mark.parametrize("missing", [True, False])

@@ -153,7 +153,6 @@ CALLS = [
     (kv.transient, {"at": ["300 ms"]}, ["after the end"]),
     (kv.transient, {"at": []}, ["empty"]),
     (kv.transient, {"at": [math.nan]}, ["out of range"]),
-    (kv.transient, {"scene": kv.Scene(indenter=kv.Wedge(0.1))}, ["parabola only"]),
     *((kv.transient, {"rtol": each}, ["rtol"]) for each in (0.0, 1.0, math.nan, 1e-20)),
     (kv.solve, {"quantity": "frictoin_force"}, ["friction_force"]),
     (kv.solve, {"quantity": "depth_rate"}, ["a time series; give the times"]),

@@ -5,11 +5,10 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import maxima
-from tests import SCENES, reference_viscoelastic
+from tests import SCENES, SUPPORTS, reference_viscoelastic
 
 V = "drive.velocity"
 TWO_ARMS = kv.GeneralizedMaxwell(1e10, arms=[["10 GN/m^3", "1 ms"], ["10 GN/m^3", "1 s"]])
-KINDS = "fixed", "dead-weight", "suspended"
 MANY = max(1, SCENES // 200)
 F3 = 3 * (np.sqrt(3) - 1) / 4 * (3 - np.sqrt(3)) ** (-1 / 3)
 """mu (K R^2/W)^(1/3) at the maximum."""
@@ -66,7 +65,7 @@ def random_scene(rng, shape, kind):
 def test_random_prony_series_have_the_maxima_of_a_scan_ten_times_denser(shape, count, noise):
     rng = np.random.default_rng(7)
     for number in range(count):
-        scene = random_scene(rng, shape, KINDS[number % 3])
+        scene = random_scene(rng, shape, SUPPORTS[number % 3])
         found = maxima.report(scene, "exact")
         errors = found["maxima_certificate"].relative_error["maxima"]
         agree(found["maxima"], errors, *scanned(scene, 3.5, noise=noise))
@@ -105,7 +104,7 @@ def test_the_search_finds_what_the_closed_forms_say(indenter):
     assert maxima._search(held.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SUPPORTS)
 def test_a_plateau_and_a_limit_are_no_maxima(kind):
     wedge = kv.Scene(kv.Wedge(0.1), support=kv.Scene.table1(kind).support)
     assert maxima._search(wedge.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
@@ -128,7 +127,7 @@ def test_a_fixed_indenter_has_a_maximum_for_each_of_two_distant_arms():
         assert tuple(errors[name] for name in names) == errors["maxima"][0]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SUPPORTS)
 def test_ball_arithmetic_proves_a_maximum_within_the_errors(kind):
     support = kv.Scene.table1(kind).support
     report = kv.asymptotes(kv.Scene(foundation=TWO_ARMS, support=support))

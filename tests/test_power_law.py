@@ -8,9 +8,8 @@ import kvtheory as kv
 from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
 from kvtheory.models.steady.roots import cube_root, root
-from tests import reference, steady
+from tests import SUPPORTS, reference, steady
 
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 EXPONENTS = (1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 1.5, 2.0, 2.7, 3.0, 4.0, 6.0, 11.5, 20.0, 24.0)
 OWN = "trailing_edge"
 EPS = float(np.finfo(float).eps)
@@ -73,7 +72,7 @@ def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():
     assert state.certificate.relative_error["load"] == STATED["load"]
 
 
-@pytest.mark.usefixtures("fifty_digits")
+@mp.workdps(50)
 def test_roots_are_rounded_without_a_bias():
     """On average to a tenth of a unit in the last place, and never off by more than one and a half."""
     base, degree = 10.0 ** np.random.default_rng(1).uniform((-30, 0), (30, 1.4), (4000, 2)).T

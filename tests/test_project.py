@@ -4,7 +4,6 @@ import ast
 import graphlib
 import re
 import subprocess
-import sys
 import tarfile
 import zipfile
 from importlib.metadata import version
@@ -14,33 +13,25 @@ import grimp
 import pytest
 
 import kvtheory
+from tests.commands import python
 
 ROOT = Path(__file__).parent.parent
 
 
-def python(code):
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=ROOT,
-    )
-    return done.stdout.strip()
-
-
 def test_help_needs_click_alone():
     heavy = python(
+        "-c",
         "import sys\nfrom click.testing import CliRunner\nfrom kvtheory.cli import main\n"
         "assert CliRunner().invoke(main, ['--help']).exit_code == 0\n"
         "print([name for name in sys.modules if name.split('.')[0] in "
-        "('sympy', 'matplotlib', 'scipy', 'pint', 'derivations')])"
+        "('sympy', 'matplotlib', 'scipy', 'pint', 'derivations')])",
     )
     assert heavy == "[]"
 
 
 def test_one_version_everywhere():
     assert kvtheory.__version__ == version("kvtheory")
+    assert f'"version": "{kvtheory.__version__}"' in (ROOT / "codemeta.json").read_text()
     assert f"version: {kvtheory.__version__}" in (ROOT / "CITATION.cff").read_text()
     assert f"## {kvtheory.__version__}" in (ROOT / "CHANGELOG.md").read_text()
 
@@ -95,10 +86,11 @@ def test_a_command_on_a_scene_in_usual_units_imports_what_it_computes_with(
     path = tmp_path / "scene.toml"
     path.write_text(kvtheory.scene.template())
     imported = python(
+        "-c",
         f"import sys\nsys.argv = ['kvtheory', {command!r}, {str(path)!r}, '--json']\n"
         "from kvtheory.cli import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
-        "print(*(name.split('.')[0] for name in sys.modules), file=sys.stdout)"
+        "print(*(name.split('.')[0] for name in sys.modules), file=sys.stdout)",
     )
     assert set(imported.splitlines()[-1].split()) & HEAVY <= allowed
 
@@ -134,7 +126,7 @@ def built(tmp_path_factory):
         "from setuptools import build_meta as b\n"
         f"print(b.build_sdist({str(out)!r}))\nprint(b.build_wheel({str(out)!r}))\n"
     )
-    subprocess.run([sys.executable, "-c", script], cwd=source, capture_output=True, check=True)
+    python("-c", script, cwd=source)
     return {path.suffix: path for path in out.iterdir()}
 
 

@@ -22,13 +22,7 @@ SERIES = (
     "trailing_edge",
     "peak_pressure",
 )
-
-
-@pytest.fixture(autouse=True)
-def _interpreted(monkeypatch):
-    """Compile only where that is tested, for it takes 20 s."""
-    for limit in ("WORTHWHILE", "LOADABLE"):
-        monkeypatch.setattr(trajectory, limit, 10**9)
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def sliding(arms, velocity=0.05, duration=0.06, **parts):

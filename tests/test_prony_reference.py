@@ -10,7 +10,6 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum.prony import evaluation as e_
-from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.prony.energy import volume
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
@@ -24,12 +23,7 @@ FINE = "start, fixed", "start, suspended", "stop, fixed", "reversal, fixed"
 ROUGH = "start, ten arms", "ramp", "to and fro", "spring and damper", "stick-slip, fixed", "hop"
 FINE_CASES = [(name, 1e-9) for name in (CASES if ALL else (*FINE, "ramp"))]
 ROUGH_CASES = [(name, 1e-6) for name in (CASES if ALL else ROUGH)]
-
-
-@pytest.fixture(autouse=True)
-def _interpreted(monkeypatch):
-    for limit in ("WORTHWHILE", "LOADABLE"):
-        monkeypatch.setattr(trajectory, limit, 10**9)
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def scene_of(case):

@@ -9,7 +9,7 @@ from kvtheory.models.steady.methods import ODD, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
-from tests import reference, steady
+from tests import SUPPORTS, reference, steady
 
 at_depth, at_load = (
     partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
@@ -24,7 +24,7 @@ def close(state, truth, rtol=1e-12):
         assert float(abs(getattr(state, name) - value)) <= allowed, name
 
 
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("support", SUPPORTS)
 def test_parabola_agrees_with_the_rigorous_reference(support):
     """Rest, both ends, then 24 decades of drive number, 18 of all else."""
     rng, method = np.random.default_rng(len(support)), "at_depth"

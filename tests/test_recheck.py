@@ -2,7 +2,6 @@
 
 import copy
 import json
-import subprocess
 import sys
 from collections import Counter
 from importlib.util import find_spec
@@ -16,6 +15,7 @@ from kvtheory.derivations.render import edition
 from kvtheory.derivations.render import json as written
 
 from kvtheory.cli import main
+from tests.commands import python
 from tests.planted_claims import OPERATORS, planted
 
 
@@ -117,8 +117,7 @@ def test_neither_sympy_nor_the_engine_is_imported():
         "print([m for m in sys.modules if m.split('.')[0] in ('sympy', 'mpmath') or "
         "m.startswith('kvtheory.derivations.') and '.recheck' not in m])"
     )
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert told.stdout.strip() == "[]"
+    assert python("-c", code) == "[]"
 
 
 # $ kvtheory derive --recheck

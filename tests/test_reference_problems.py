@@ -2,7 +2,6 @@
 
 import json
 import runpy
-import subprocess
 import sys
 from dataclasses import replace
 
@@ -155,7 +154,7 @@ def test_a_folder_judges_the_right_series_right_and_a_wrong_one_wrong(folders, n
 
 def test_a_point_contact_is_found_to_disagree(folders):
     folder = folders / "point-contact"
-    subprocess.run([sys.executable, "-W", "error", folder / "simulate.py"], check=True)
+    commands.python(folder / "simulate.py")
     data = np.loadtxt(folder / "point-contact.csv", delimiter=",", skiprows=1)[::20]
     names = ("time", "depth", "normal_force", "friction_force")
     series = dict(zip(names, (data * [1, -1, 1, 1]).T, strict=True))

@@ -11,13 +11,10 @@ from kvtheory.derivations.engine.book import established
 from kvtheory.derivations.shape import derive_shape, q_root
 from kvtheory.derivations.shape_text import distance, read_shape
 
+from tests.conftest import digits
+
 DIGITS = 30
-
-
-@pytest.fixture(autouse=True)
-def _digits():
-    with mp.workdps(DIGITS):
-        yield
+_digits = digits(DIGITS)
 
 
 @cache

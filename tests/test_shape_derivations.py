@@ -6,7 +6,9 @@ import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.chapters import friction_identity, power_law, power_law_weight, wedge
 
-pytestmark = pytest.mark.usefixtures("fifty_digits")
+from tests.conftest import digits
+
+_digits = digits(50)
 
 
 class Contact:

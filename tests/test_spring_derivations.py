@@ -15,6 +15,7 @@ from kvtheory.derivations.chapters import (
 
 import kvtheory as kv
 from tests import reference_stability as reference
+from tests.conftest import digits
 from tests.test_rubber_stability import TWO, forces, rubber
 
 SCENES = (  # drive, inertia and support number, then inertia, damper and spring number along x
@@ -22,12 +23,7 @@ SCENES = (  # drive, inertia and support number, then inertia, damper and spring
     ("1.7", "0.4", "0", "3", "0.2", "0.7"),
     ("6", "20", "2.5", "0.5", "0", "40"),
 )
-
-
-@pytest.fixture(autouse=True)
-def _digits():
-    with mp.workdps(reference.DIGITS):
-        yield
+_digits = digits(reference.DIGITS)
 
 
 def contact(scene):

@@ -11,6 +11,7 @@ import pytest
 import kvtheory as kv
 from tests import reference_stability as reference
 from tests.commands import printed, run
+from tests.conftest import digits
 
 TABLE1 = {0.02: None, 0.039: 0.1722e6, 0.091: 6.879e6, 0.214: 101.95e6}
 """Critical stiffness in N/m^2 by velocity in m/s, to four digits (fact F22)."""
@@ -19,12 +20,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
 STEP = 1e-3
 SAME = 1e-3
 """Distance from a critical stiffness, relative to it, from which on both sides are told apart."""
-
-
-@pytest.fixture(autouse=True)
-def _digits():
-    with mp.workdps(reference.DIGITS):
-        yield
+_digits = digits(reference.DIGITS)
 
 
 def scene_of(values):

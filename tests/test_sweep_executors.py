@@ -116,13 +116,17 @@ def test_the_callers_pool_that_breaks_is_reported_and_the_file_resumes(here, tmp
 
 def test_a_block_that_fails_each_time_ends_the_sweep_with_its_reason():
     class Faulty(Executor):
+        tries = 0
+
         def submit(self, function, /, *arguments):
-            future = Future()
+            future, self.tries = Future(), self.tries + 1
             future.set_exception(MemoryError("no room"))
             return future
 
+    faulty = Faulty()
     with pytest.raises(RuntimeError, match="points 0 to 0 were lost 3 times: MemoryError: no room"):
-        kv.sweep(over=OVER, executor=Faulty(), block=1, in_flight=1)
+        kv.sweep(over=OVER, executor=faulty, block=1, in_flight=1)
+    assert faulty.tries == 3
 
 
 def test_dask_on_a_cluster_of_processes(here, tmp_path):

@@ -16,9 +16,10 @@ from kvtheory.derivations.chapters import asymptote_errors, circle, energy, mast
 from kvtheory.derivations.engine.book import StepError, established
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
+from tests.conftest import digits
 from tests.planted import derive
 
-pytestmark = pytest.mark.usefixtures("fifty_digits")
+_digits = digits(50)
 
 ERRORS = {
     "error-load-low": sym.e_load_low, "error-friction-low": sym.e_friction_low, "error-L1": sym.e_l1,

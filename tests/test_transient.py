@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from tests import SUPPORTS
 
 HALF = 0.5
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 
 
 @pytest.fixture(scope="module")

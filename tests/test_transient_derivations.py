@@ -16,9 +16,10 @@ from kvtheory.derivations.engine.book import established
 from kvtheory.derivations.engine.step import Proof, StepError
 
 import kvtheory as kv
+from tests.conftest import digits
 from tests.planted import derive
 
-pytestmark = pytest.mark.usefixtures("fifty_digits")
+_digits = digits(50)
 
 DIGITS = 50
 CLOSE = mp.mpf("1e-40")

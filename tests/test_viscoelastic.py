@@ -14,10 +14,9 @@ from kvtheory.models.steady.methods import ODD, solve_exact, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.theory import laws
 from kvtheory.theory.laws import Fractional
-from tests import SCENES, reference_viscoelastic
+from tests import SCENES, SUPPORTS, reference_viscoelastic
 from tests.steady import agree
 
-SUPPORTS = ("fixed", "dead-weight", "suspended")
 STATED = viscoelastic.RELATIVE_ERROR
 ARMS = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]
 ZENER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
