@@ -19,7 +19,16 @@ from .conditions import (
     proves_nonzero,
     proves_positive,
 )
-from .forms import derivative, expanded, factors, reduced, sign_of_terms
+from .forms import (
+    coefficients,
+    derivative,
+    expanded,
+    factors,
+    is_whole,
+    put,
+    reduced,
+    sign_of_terms,
+)
 from .identity import is_rational, vanishes
 from .series import leading_of_series
 
@@ -350,6 +359,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
         raise UndecidedError("the expression is identically zero, it has no leading term")
+    local = local.replace(sp.atan, lambda u: _arc(u, h))
     found = _lowest_powers(local, h) or leading_of_series(local, h)
     if found:
         return found
@@ -360,17 +370,31 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     return sp.radsimp(coefficient), exponent
 
 
+def _arc(tangent: sp.Expr, h: sp.Symbol) -> sp.Expr:
+    """Write the arc of a positive tangent by that of its inverse, if it grows as h -> 0."""
+    found = _lowest_powers(tangent, h) if sign_of_terms(tangent) == 1 else None
+    if found and found[1].is_negative:
+        return sp.pi / 2 - sp.atan(1 / tangent)
+    return sp.atan(tangent)
+
+
 def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
     """Read the leading term of a rational function off; None for any other expression."""
     if not is_rational(local):
         return None
-    (top, one), (bottom, other) = (
-        (polynomial.coeff_monomial(h**power), power)
-        for part in sp.fraction(local)
-        for polynomial in [sp.Poly(part, h)]
-        for (power,) in [min(polynomial.monoms())]
-    )
-    return sp.cancel(top / bottom), sp.Integer(one - other)
+    (top, one), (bottom, other) = (_lowest(part, h) for part in sp.fraction(local))
+    return reduced(top / bottom), one - other
+
+
+def _lowest(part: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return the coefficient of the lowest power, and the power."""
+    if not is_whole(part):  # coefficients that are fractions may vanish without being literally 0
+        polynomial = sp.Poly(part, h)
+        (power,) = min(polynomial.monoms())
+        return polynomial.coeff_monomial(h**power), sp.Integer(power)
+    found = coefficients(part, h)
+    least = min(found)
+    return found[least], least
 
 
 def near(
@@ -380,7 +404,7 @@ def near(
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = 1 / h if point == sp.oo else point + side * h
-    local = _reduced(expr.subs(variable, place))
+    local = _reduced(put(expr, {variable: place}))
     if not local.has(sp.exp):
         return local
     power, shown = _without_faded(local, h)
@@ -530,7 +554,7 @@ def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
     """Return the value at the end of an interval, which may be infinite."""
     if end.is_finite:
-        return expr.subs(variable, end)
+        return put(expr, {variable: end})
     try:
         return sp.limit(expr, variable, end)
     except NotImplementedError as error:

@@ -20,6 +20,7 @@ from .conditions import (
     Conditions,
     Interval,
     demands,
+    known_sign,
     open_factors,
     proves_nonnegative,
     proves_nonzero,
@@ -703,7 +704,7 @@ class Book:
         )
         signed = new.is_nonnegative or new.is_nonpositive
         value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
-        if fresh and not new.is_integer and (not signed or value.is_positive):
+        if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
         return has_witness(pairs, self._conditions.positive)
