@@ -1,8 +1,7 @@
 """All derivations, in the order in which the document prints them."""
 
 import gc
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection
 from functools import cache
 from importlib import import_module
 from types import ModuleType
@@ -59,22 +58,15 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     if known is not None:
         restore(known)
         return tuple(each.derivation for each in known.values())
-    with _without_collector():
+    collects = gc.isenabled()
+    gc.disable()  # to look for cycles among so many objects would take a sixth of the time
+    try:
         derived: tuple[Derivation, ...] = chapter.result.derive()
         keep(name, _digests()[name], finished(each.label for each in derived))
-    return derived
-
-
-@contextmanager
-def _without_collector() -> Iterator[None]:
-    """Do not look for cycles among objects: it takes a sixth of the time, and few of them are garbage."""
-    on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
     finally:
-        if on:
+        if collects:
             gc.enable()
+    return derived
 
 
 def catalogue(

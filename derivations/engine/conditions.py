@@ -542,7 +542,8 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
 @lru_cache(maxsize=16384)
 def demands(expr: sp.Expr) -> tuple[frozenset[sp.Expr], frozenset[sp.Expr]]:
     """Collect what must not vanish, and what must not be negative, where the expression is real."""
-    nonzero, nonnegative = map(set, _OWN_DEMANDS.get(expr.func, _no_demands)(*expr.args))
+    own = _OWN_DEMANDS.get(expr.func)
+    nonzero, nonnegative = map(set, own(*expr.args) if own else ((), ()))
     for part in expr.args:
         inner = demands(part)
         nonzero |= inner[0]
@@ -551,10 +552,6 @@ def demands(expr: sp.Expr) -> tuple[frozenset[sp.Expr], frozenset[sp.Expr]]:
 
 
 _Demands = tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]
-
-
-def _no_demands(*_: sp.Basic) -> _Demands:
-    return (), ()
 
 
 def _demands_of_power(base: sp.Expr, exponent: sp.Expr) -> _Demands:

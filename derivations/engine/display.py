@@ -27,16 +27,7 @@ class UnreadableError(ValueError):
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\S")
 _SPACING = {r"\,", r"\!", r"\;", r"\:", r"\ ", r"\left", r"\right", r"\limits", r"\displaystyle"}
-_ARGUMENTS = {
-    r"\frac": 2,
-    r"\sqrt": 1,
-    r"\dot": 1,
-    r"\ddot": 1,
-    r"\hat": 1,
-    r"\bar": 1,
-    r"\breve": 1,
-    r"\check": 1,
-}
+_ARGUMENTS = {r"\frac", r"\sqrt", r"\dot", r"\ddot", r"\hat", r"\bar", r"\breve", r"\check"}
 _FUNCTIONS = {
     r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\log": sp.log,
     r"\max": sp.Max, r"\min": sp.Min,

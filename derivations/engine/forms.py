@@ -15,19 +15,9 @@ from sympy.polys.rings import PolyElement
 
 from .identity import LARGEST, Polynomials, letters_of
 
-_ELEMENTARY = (
-    sp.log,
-    sp.sin,
-    sp.cos,
-    sp.tan,
-    sp.atan,
-    sp.asin,
-    sp.acos,
-    sp.sinh,
-    sp.cosh,
-    sp.tanh,
-    sp.asinh,
-)
+SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that have all derivatives wherever their argument is real."""
+_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin, sp.acos)
 
 
 @lru_cache(maxsize=16384)
@@ -127,12 +117,6 @@ def coefficients(expr: sp.Expr, letter: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
         rest = sp.Mul(*(base**exponent for base, exponent in parts if base != letter))
         found.setdefault(power, []).append(rest)
     return {power: sp.Add(*terms) for power, terms in found.items()}
-
-
-def is_whole(expr: sp.Expr) -> bool:
-    """Tell whether an expression is made of sums, products and whole positive powers of symbols alone."""
-    letters: dict[sp.Expr, None] = {}
-    return _is_polynomial(expr, letters) and all(letter.is_Symbol for letter in letters)
 
 
 def _is_polynomial(expr: sp.Expr, letters: dict[sp.Expr, None]) -> bool:
