@@ -1,5 +1,6 @@
 """All derivations, in the order in which the document prints them."""
 
+import gc
 from collections.abc import Callable, Collection
 from functools import cache
 from importlib import import_module
@@ -57,8 +58,14 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     if known is not None:
         restore(known)
         return tuple(each.derivation for each in known.values())
-    derived: tuple[Derivation, ...] = chapter.result.derive()
-    keep(name, _digests()[name], finished(each.label for each in derived))
+    collects = gc.isenabled()
+    gc.disable()  # to look for cycles among so many objects would take a sixth of the time
+    try:
+        derived: tuple[Derivation, ...] = chapter.result.derive()
+        keep(name, _digests()[name], finished(each.label for each in derived))
+    finally:
+        if collects:
+            gc.enable()
     return derived
 
 

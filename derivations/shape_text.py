@@ -24,26 +24,7 @@ distance = symbol("x_abs", latex=r"\bar x")
 
 LONGEST, MOST_TERMS, HIGHEST = 200, 6, 12
 """Characters of a shape, terms of its sum, and its highest power."""
-TAKEN = [
-    "a",
-    "delta",
-    "F",
-    "h",
-    "K",
-    "C",
-    "V",
-    "W",
-    "mu",
-    "p",
-    "q",
-    "tau",
-    "l_r",
-    "x_LE",
-    "x_TE",
-    "d",
-    "e",
-    "i",
-]
+TAKEN = {*"adeihpqCFKVW", "delta", "mu", "tau", "l_r", "x_LE", "x_TE"}
 """Letters that already have a meaning in the derivation."""
 
 _OPERATORS: dict[type[ast.operator], Callable[[sp.Expr, sp.Expr], sp.Expr]] = {

@@ -25,9 +25,6 @@ from .viscoelastic import (
     contact_length,
     excess_share,
     from_trailing,
-    moment_ahead,
-    moment_bulge,
-    moment_twist,
     spring_share,
 )
 
@@ -149,7 +146,7 @@ def _moments(proof: Proof) -> None:
     """
     name_integrals(proof, 4)
     parts = (G_1(y), G_2(y), G_3(y), G_4(y))
-    for name in (moment_ahead, moment_bulge, moment_twist):
+    for name in (P, D, E):
         weight = sp.expand(MOMENTS[name][0].subs(w, y / c)) / c
         primitive = sum((-1) ** n * sp.diff(weight, y, n) * part for n, part in enumerate(parts))
         ends = [sp.diff(weight, y, n).subs(y, c) * part.subs(y, c) for n, part in enumerate(parts)]
@@ -160,8 +157,8 @@ def _moments(proof: Proof) -> None:
     proof.define(a, G_2(c) / G_1(c), "F17-concave: no pressure at the trailing edge")
     proof.define(excess_share, a / c - sp.Rational(1, 2), "the excess over half of the contact")
     e, load, work = excess_share, LOAD, WORK
-    proof.equal(load, c**3 / R * (moment_bulge + e * moment_ahead), "the load of F17-load")
-    form = c**4 / R**2 * (moment_twist + e**2 * moment_ahead)
+    proof.equal(load, c**3 / R * (D + e * P), "the load of F17-load")
+    form = c**4 / R**2 * (E + e**2 * P)
     proof.equal(work, form, "the friction force of F17")
 
 

@@ -3,7 +3,7 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbol, symbols
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .spring_drive import COUPLING, LONGITUDINAL, SECTION, damper, eps_x, kappa_x
 from .steady import l, q
@@ -16,7 +16,7 @@ from .transient_scaling import eps
 (
     B_z, B_x, damper_share, T_z, T_x, S_z, S_x, support_rate, S_c, coupling, uncoupled, rise,
     own_rise, hurwitz, Omega, Omega_plus, Omega_minus, bias, onset_square, spread, onset_sum,
-    lag_plus,
+    lag_plus, c_1, c_2, b_1, b_2,
 ) = symbols(r"""
     B_z      -                 1  damping of the contact across the foundation, scaled
     B_x      -                 1  damping of the contact along the foundation, scaled
@@ -40,14 +40,11 @@ from .transient_scaling import eps
     s_c      \check w          1  root of the discriminant of the quadratic in $\Omega$  nonnegative
     n_c      \check n          1  $\check m - 2 \vartheta_z \check e$  real
     p_p      \check p_{+}      1  $\varrho_z - \vartheta_z \Omega_{+}$
+    c_h1     \check c_1        1  coefficient of a quadratic factor  real
+    c_h2     \check c_2        1  coefficient of a quadratic factor  real
+    b_h1     \check b_1        1  coefficient of a quadratic factor
+    b_h2     \check b_2        1  coefficient of a quadratic factor
 """)  # fmt: skip
-constant = tuple(
-    symbol(f"c_h{n}", "coefficient of a quadratic factor", latex=rf"\check c_{n}", real=True)
-    for n in (1, 2)
-)
-linear = tuple(
-    symbol(f"b_h{n}", "coefficient of a quadratic factor", latex=rf"\check b_{n}") for n in (1, 2)
-)
 
 PEELED = (1 - q) ** 2 + q
 """1 - q + q**2, without a difference of nearly equal numbers."""
@@ -86,7 +83,6 @@ def _quadratics(proof: Proof) -> None:
     Argued: Every real quartic has two real quadratic factors, whose roots have negative real parts if and
     only if their coefficients are positive. The converse is plain: products and sums of positive numbers.
     """
-    (b_1, b_2), (c_1, c_2) = linear, constant
     product = (sigma**2 + b_1 * sigma + c_1) * (sigma**2 + b_2 * sigma + c_2)
     a_3, a_2, a_1, a_0 = b_1 + b_2, c_1 + c_2 + b_1 * b_2, b_1 * c_2 + b_2 * c_1, c_1 * c_2
     proof.equal(product, sigma**4 + a_3 * sigma**3 + a_2 * sigma**2 + a_1 * sigma + a_0,

@@ -41,30 +41,15 @@ from .steady import W, a, l, q
 relaxation = function(
     "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
 )(contact_length)
-primitive_1 = function(
-    "G_v1",
-    r"integral of $\breve G$ over the contact",
-    "N/m²",
-    printed=r"\breve G_1",
-    source="F17-growth",
-    positive=True,
-)(contact_length)
-primitive_2 = function(
-    "G_v2",
-    r"integral of $\breve G_1$ over the contact",
-    "N/m",
-    printed=r"\breve G_2",
-    source="F17-growth",
-    positive=True,
-)(contact_length)
-primitive_3 = function(
-    "G_v3",
-    r"integral of $\breve G_2$ over the contact",
-    "N",
-    printed=r"\breve G_3",
-    source="F17-growth",
-    positive=True,
-)(contact_length)
+G_1, G_2, G_3 = primitives = tuple(
+    function(
+        f"G_v{n}", rf"integral of ${inner}$ over the contact", unit,
+        printed=rf"\breve G_{n}", source="F17-growth", positive=True,
+    )(contact_length)
+    for n, inner, unit in (
+        (1, r"\breve G", "N/m²"), (2, r"\breve G_1", "N/m"), (3, r"\breve G_2", "N"),
+    )
+)  # fmt: skip
 ratio_first, ratio_second, spring_share, springpot = symbols(r"""
     t_v0    \breve t_0    1  ratio of two modified spherical Bessel functions
     t_v1    \breve t_1    1  ratio of the next two modified spherical Bessel functions
@@ -80,14 +65,8 @@ z, y, s, w, b, e, c, nu = (
     spring_share,
 )  # fmt: skip
 FALL = sp.exp(-z)
-P, Q, A, B, D, E = (
-    moment_ahead,
-    moment_behind,
-    moment_mean,
-    moment_slant,
-    moment_bulge,
-    moment_twist,
-)
+P, Q, A, B = moment_ahead, moment_behind, moment_mean, moment_slant
+D, E = moment_bulge, moment_twist
 MOMENTS = {
     P: (1 - w, (z - 1 + FALL) / z**2),
     Q: (w, (1 - (1 + z) * FALL) / z**2),
@@ -225,14 +204,6 @@ def _energy(proof: Proof) -> None:
     proof.done(arm_lost, LOST)
 
 
-def _primitives(proof: Proof) -> None:
-    """Name the repeated integrals of the relaxation function over the contact."""
-    G, (first, second, third) = relaxation, (primitive_1, primitive_2, primitive_3)
-    for whole, part in ((first, G), (second, first), (third, second)):
-        proof.define(sp.Derivative(whole, c), part, "a repeated integral")
-    proof.define(a, second / first, "F17-edge")
-
-
 @result("F17-growth", uses=("F17-edge",))
 def _growth(proof: Proof) -> None:
     r"""Any relaxation function: growth of the contact.
@@ -240,15 +211,17 @@ def _growth(proof: Proof) -> None:
     With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each
     load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact.
     """
-    _primitives(proof)
-    slope = 1 - primitive_2 * relaxation / primitive_1**2
+    for whole, part in zip(primitives, (relaxation, *primitives), strict=False):
+        proof.define(sp.Derivative(whole, c), part, "a repeated integral")
+    proof.define(a, G_2 / G_1, "F17-edge")
+    slope = 1 - G_2 * relaxation / G_1**2
     proof.equal(sp.Derivative(a, c), slope, "by the quotient rule: less than 1")
-    gap, fall = primitive_1**2 - 2 * primitive_2 * relaxation, sp.Derivative(relaxation, c)
-    proof.equal(slope - sp.Rational(1, 2), gap / (2 * primitive_1**2), "more than one half, if")
-    proof.equal(sp.Derivative(gap, c), -2 * primitive_2 * fall,
+    gap, fall = G_1**2 - 2 * G_2 * relaxation, sp.Derivative(relaxation, c)
+    proof.equal(slope - sp.Rational(1, 2), gap / (2 * G_1**2), "more than one half, if")
+    proof.equal(sp.Derivative(gap, c), -2 * G_2 * fall,
                 r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
-    proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ inserted")
-    rise = primitive_2 * slope / R
+    proof.define(W, (G_2**2 / G_1 - G_3) / R, "F17-load, with $a$ inserted")
+    rise = G_2 * slope / R
     proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
 
 

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, symbol, symbols
+from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
 from .model import K
 from .relaxation import fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
@@ -36,14 +36,12 @@ spare_3, delay = symbols(r"""
     omega_v3   \breve \omega_3   1  remainder of a third bound  nonnegative
     epsilon_v  \breve \varepsilon  1  mean relaxation length over the length of the contact
 """)
-rates = [
-    symbol("r_1", "rate of an arm", "1/s", source=""),
-    symbol("r_2", "rate of another arm", "1/s", source=""),
-]
 (
-    spring_number, lack_mean, lack_ahead, lack_twist, steepness, haste, load_number,
+    *rates, spring_number, lack_mean, lack_ahead, lack_twist, steepness, haste, load_number,
     friction_number,
 ) = symbols(r"""
+    r_1       -                1/s  rate of an arm  from scene
+    r_2       -                1/s  rate of another arm  from scene
     -         \bar t           s  mean relaxation time, $\int t (G - K)\,dt/C$
     -         \mu_0            1  friction coefficient on the Kelvin-Voigt foundation with the same $C$
     kappa_v   \breve \kappa    1  $K \breve c/(C V)$

@@ -19,7 +19,16 @@ from .conditions import (
     proves_nonzero,
     proves_positive,
 )
-from .forms import derivative, expanded, factors, reduced, sign_of_terms
+from .forms import (
+    SMOOTH,
+    coefficients,
+    derivative,
+    expanded,
+    factors,
+    put,
+    reduced,
+    sign_of_terms,
+)
 from .identity import is_rational, vanishes
 from .series import leading_of_series
 
@@ -30,8 +39,6 @@ class UndecidedError(ArithmeticError):
 
 DISTANCE = sp.Dummy("h", positive=True)
 """The distance from the point of a limit: no other letter, whatever its name, is this one."""
-_SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
-"""Functions that have all derivatives wherever their argument is real."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
 _WRITTEN = {
@@ -350,6 +357,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
         raise UndecidedError("the expression is identically zero, it has no leading term")
+    local = local.replace(sp.atan, lambda u: _arc(u, h))
     found = _lowest_powers(local, h) or leading_of_series(local, h)
     if found:
         return found
@@ -360,17 +368,33 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     return sp.radsimp(coefficient), exponent
 
 
+def _arc(tangent: sp.Expr, h: sp.Symbol) -> sp.Expr:
+    """Write the arc of a positive tangent by that of its inverse, if it grows as h -> 0."""
+    found = _lowest_powers(tangent, h) if sign_of_terms(tangent) == 1 else None
+    if found and found[1].is_negative:
+        return sp.pi / 2 - sp.atan(1 / tangent)
+    return sp.atan(tangent)
+
+
 def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
     """Read the leading term of a rational function off; None for any other expression."""
     if not is_rational(local):
         return None
-    (top, one), (bottom, other) = (
-        (polynomial.coeff_monomial(h**power), power)
-        for part in sp.fraction(local)
-        for polynomial in [sp.Poly(part, h)]
-        for (power,) in [min(polynomial.monoms())]
-    )
-    return sp.cancel(top / bottom), sp.Integer(one - other)
+    (top, one), (bottom, other) = (_lowest(part, h) for part in sp.fraction(local))
+    return reduced(top / bottom), one - other
+
+
+def _lowest(part: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return the coefficient of the lowest power, and the power."""
+    if not (
+        is_rational(part) and part.is_polynomial()
+    ):  # coefficients that are fractions may vanish without being literally 0
+        polynomial = sp.Poly(part, h)
+        (power,) = min(polynomial.monoms())
+        return polynomial.coeff_monomial(h**power), sp.Integer(power)
+    found = coefficients(part, h)
+    least = min(found)
+    return found[least], least
 
 
 def near(
@@ -380,7 +404,7 @@ def near(
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = 1 / h if point == sp.oo else point + side * h
-    local = _reduced(expr.subs(variable, place))
+    local = _reduced(put(expr, {variable: place}))
     if not local.has(sp.exp):
         return local
     power, shown = _without_faded(local, h)
@@ -407,12 +431,8 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     if not all(power.is_Integer for power in powers.values()):
         raise UndecidedError(f"{local} has exponentials that are no powers of one another")
     shown = sp.together(local.xreplace({sp.exp(each): faded ** powers[each] for each in fading}))
-    (top, one), (bottom, other) = (
-        (polynomial.coeff_monomial(faded**power), power)
-        for polynomial in (sp.Poly(part, faded) for part in sp.fraction(shown))
-        for (power,) in [min(polynomial.monoms())]
-    )
-    return one - other, sp.cancel(top / bottom)
+    (top, one), (bottom, other) = (_lowest(part, faded) for part in sp.fraction(shown))
+    return int(one - other), sp.cancel(top / bottom)
 
 
 def _reduced(expr: sp.Expr) -> sp.Expr:
@@ -530,7 +550,7 @@ def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
     """Return the value at the end of an interval, which may be infinite."""
     if end.is_finite:
-        return expr.subs(variable, end)
+        return put(expr, {variable: end})
     try:
         return sp.limit(expr, variable, end)
     except NotImplementedError as error:
@@ -555,20 +575,18 @@ def is_continuous(
     if isinstance(expr, (sp.log, sp.asin, sp.acos)):
         (argument,) = expr.args
         if isinstance(expr, sp.log):
-            real = _nowhere_zero(argument, over, inside, positive=True)
+            real = _throughout(proves_positive, argument, over, inside)
         elif smooth:
-            real = _nowhere_zero(1 - argument**2, over, inside, positive=True)
+            real = _throughout(proves_positive, 1 - argument**2, over, inside)
         else:
-            real = _never_negative(1 - argument**2, over, inside)
+            real = _throughout(proves_nonnegative, 1 - argument**2, over, inside)
         return real and is_continuous(argument, over, known, smooth=smooth)
     if isinstance(expr, sp.Integral):
         return _is_continuous_integral(expr, over, known, smooth)
     if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
         expr = expr.expr
     allowed = expr.is_Add or expr.is_Mul
-    allowed = allowed or isinstance(
-        expr, (*_SMOOTH, *(() if smooth else _CONTINUOUS), AppliedUndef)
-    )
+    allowed = allowed or isinstance(expr, (*SMOOTH, *(() if smooth else _CONTINUOUS), AppliedUndef))
     return bool(
         allowed and all(is_continuous(arg, over, known, smooth=smooth) for arg in expr.args)
     )
@@ -577,16 +595,21 @@ def is_continuous(
 def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions, smooth: bool) -> bool:
     base, exponent = expr.as_base_exp()
     inside = known.with_interval(over)
-    if base == sp.E or (exponent.has(over[0]) and _nowhere_zero(base, over, inside, positive=True)):
+    if base == sp.E or (exponent.has(over[0]) and _throughout(proves_positive, base, over, inside)):
         parts = (exponent,) if base == sp.E else (base, exponent)
         return all(is_continuous(part, over, known, smooth=smooth) for part in parts)
     if exponent.has(over[0]) or not is_continuous(base, over, known, smooth=smooth):
         return False
     if exponent.is_integer:
-        return bool(exponent.is_nonnegative or _nowhere_zero(base, over, inside))
-    real = _nowhere_zero(base, over, inside, positive=True)
+        return bool(exponent.is_nonnegative or _throughout(proves_nonzero, base, over, inside))
+    real = _throughout(proves_positive, base, over, inside)
     return bool(
-        real or (not smooth and exponent.is_positive and _never_negative(base, over, inside))
+        real
+        or (
+            not smooth
+            and exponent.is_positive
+            and _throughout(proves_nonnegative, base, over, inside)
+        )
     )
 
 
@@ -657,17 +680,7 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
         infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
         if infinite or not all(_under_integral(node, variable, known) for variable in variables):
             return False
-    kinks = (
-        sp.Abs,
-        sp.sign,
-        sp.Piecewise,
-        sp.Min,
-        sp.Max,
-        sp.Heaviside,
-        sp.floor,
-        sp.ceiling,
-        sp.Mod,
-    )
+    kinks = (*_CONTINUOUS, sp.sign, sp.Piecewise, sp.Heaviside, sp.floor, sp.ceiling, sp.Mod)
     for variable in variables:
         if any(node.has(variable) for node in inner.atoms(*kinks)):
             everywhere = variable, -sp.oo, sp.oo
@@ -708,17 +721,9 @@ def _distance(expr: sp.Expr) -> sp.Expr:
     return expr
 
 
-def _nowhere_zero(
-    expr: sp.Expr, over: Interval, known: Conditions, *, positive: bool = False
+def _throughout(
+    proves: Callable[..., bool], expr: sp.Expr, over: Interval, known: Conditions
 ) -> bool:
-    """Tell whether an expression has no zero in an interval with its ends."""
-    proves = proves_positive if positive else proves_nonzero
+    """Tell whether something is proved of an expression in an interval with its ends."""
     ends = [end for end in map(sp.sympify, over[1:]) if end.is_finite]
     return proves(expr, known) and all(proves(expr.subs(over[0], end), known) for end in ends)
-
-
-def _never_negative(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
-    """Tell whether an expression is not negative in an interval with its ends."""
-    ends = [end for end in map(sp.sympify, over[1:]) if end.is_finite]
-    inside = proves_nonnegative(expr, known)
-    return inside and all(proves_nonnegative(expr.subs(over[0], end), known) for end in ends)

@@ -20,6 +20,7 @@ from .conditions import (
     Conditions,
     Interval,
     demands,
+    known_sign,
     open_factors,
     proves_nonnegative,
     proves_nonzero,
@@ -515,9 +516,7 @@ class Book:
         premises = merged(fact.premises for fact in facts if fact)
         domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
         key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
-        self._steps.append(step)
-        self._known[key] = Fact(step, premises, self._conditions, domain)
-        self._last = key
+        self._keep(*key, Fact(step, premises, self._conditions, domain), exact=False)
         return self.done(*key)
 
     def _status(self) -> str:
@@ -703,7 +702,7 @@ class Book:
         )
         signed = new.is_nonnegative or new.is_nonpositive
         value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
-        if fresh and not new.is_integer and (not signed or value.is_positive):
+        if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
         return has_witness(pairs, self._conditions.positive)
@@ -929,13 +928,16 @@ class Book:
         interval = "" if bound else ", ".join(own)
         step = Step(left, relation, right, reason, worth, "", interval, note, claim)
         fact = Fact(step, premises, conditions, domain)
-        key = sp.sympify(lhs), sp.sympify(rhs)
-        self._steps.append(step)
+        self._keep(lhs, rhs, fact, exact=exact)
+        return fact
+
+    def _keep(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact, *, exact: bool) -> None:
+        """Keep a fact with its step."""
+        self._last = key = sp.sympify(lhs), sp.sympify(rhs)
+        self._steps.append(fact.step)
         self._known[key] = fact
-        self._last = key
         if exact:
             self._exact[key] = fact
-        return fact
 
     def _write(
         self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, status: str, shown: Shown,
@@ -947,9 +949,5 @@ class Book:
         left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
         claim = self._claim(lhs, rhs)
         step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
-        key = sp.sympify(lhs), sp.sympify(rhs)
-        self._steps.append(step)
-        placed = Fact(step, fact.premises, fact.conditions, fact.domain)
-        self._known[key] = self._exact[key] = placed
-        self._last = key
-        self._origins[lhs] = placed
+        self._origins[lhs] = Fact(step, fact.premises, fact.conditions, fact.domain)
+        self._keep(lhs, rhs, self._origins[lhs], exact=True)

@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from .forms import derivative, expanded, factors, reduced, sign_of_terms
+from .forms import coefficients, derivative, expanded, factors, reduced, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -42,7 +42,8 @@ NONE = Conditions()
 
 def proves_positive(expr: sp.Expr, known: Conditions = NONE) -> bool:
     """Tell whether the expression is positive wherever the conditions hold."""
-    return _sign(sp.sympify(expr), known) == 1
+    expr = sp.sympify(expr)
+    return -1 not in signs(expr, known.intervals, known.positive) and _sign(expr, known) == 1
 
 
 def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -54,7 +55,7 @@ def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
 def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
     if -1 in signs(expr, known.intervals, known.positive):
         return False
-    if _known_sign(expr, strict=False) == 1 or _sign(expr, known) == 1:
+    if known_sign(expr, strict=False) == 1 or _sign(expr, known) == 1:
         return True
     if expr.is_Add or expr.is_Mul:
         if all(proves_nonnegative(part, known) for part in expr.args):
@@ -78,7 +79,7 @@ def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
     """Tell whether the expression has no zero where the conditions hold."""
     expr = sp.sympify(expr)
-    return expr.is_nonzero is True or _sign(expr, known) != 0
+    return sign_of_terms(expr) != 0 or expr.is_nonzero is True or _sign(expr, known) != 0
 
 
 def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -103,7 +104,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
     seen = signs(expr, known.intervals, known.positive)
     if len(seen) == 2:
         return 0
-    if sign := _known_sign(expr):
+    if sign := known_sign(expr):
         return sign
     if isinstance(expr, (sp.sin, sp.cos)):
         sign = _sign_of_wave(expr, known)
@@ -250,15 +251,15 @@ def _by_scale(expr: sp.Expr) -> int:
     one, other = letters
     scaled = sp.Mul(*factors(expanded(expr.subs(one, one * other))))
     scale, rest = scaled.as_independent(one, as_Add=False)
-    return _known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
+    return known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
 
 
 def _by_coefficients(expr: sp.Expr) -> bool:
     """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
     for letter in sorted(expr.free_symbols, key=str):
         if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
-            found = sp.Poly(expanded(expr), letter).coeffs()
-            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found):
+            found = coefficients(expr, letter)
+            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found.values()):
                 return True
     return False
 
@@ -275,7 +276,7 @@ def _never_below(slope: sp.Expr, left: int) -> bool:
     )
 
 
-def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
+def known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
     """Return the sign that follows directly from the assumptions on the symbols."""
     sign = sign_of_terms(expr, strict=strict)
     made_of_parts = expr.is_Add or expr.is_Mul or (expr.is_Pow and expr.exp.is_Rational)
@@ -409,7 +410,7 @@ def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
 @lru_cache(maxsize=8192)
 def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
     whole = expanded(factor)
-    sign = _known_sign(factor, strict=strict) or _known_sign(whole, strict=strict)
+    sign = known_sign(factor, strict=strict) or known_sign(whole, strict=strict)
     if sign or not whole.is_Add:
         return sign
     seen = signs(whole)
@@ -429,18 +430,18 @@ def _outweighs(total: sp.Expr, known: Conditions) -> bool:
     Roots are compared by their squares, exponentials by their exponents; a root with all other terms too.
     """
     terms = sp.Add.make_args(expanded(total))
-    for root in (term for term in terms if term.is_Pow and _known_sign(term) == 1):
+    for root in (term for term in terms if term.is_Pow and known_sign(term) == 1):
         rest = expanded(sum(terms) - root)
-        if rest.is_real and _known_sign(expanded(root**2 - rest**2)) == 1:
+        if rest.is_real and known_sign(expanded(root**2 - rest**2)) == 1:
             return True
-    plus = [term for term in terms if _known_sign(term) == 1]
-    minus = [-term for term in terms if _known_sign(term) == -1]
+    plus = [term for term in terms if known_sign(term) == 1]
+    minus = [-term for term in terms if known_sign(term) == -1]
     if len(plus) + len(minus) < len(terms) or not minus:
         return False
     for small in minus:
         for large in plus:
             if (
-                _known_sign(expanded(large**2 - small**2)) == 1
+                known_sign(expanded(large**2 - small**2)) == 1
                 or _is_smaller_power(small, large)
                 or _is_share(small / large, known)
             ):
@@ -448,12 +449,14 @@ def _outweighs(total: sp.Expr, known: Conditions) -> bool:
                 break
         else:
             rest = expanded(sum(plus) ** 2 - sum(minus) ** 2)
-            return len(minus) == 1 and _known_sign(rest) == 1
+            return len(minus) == 1 and known_sign(rest) == 1
     return True
 
 
 def _is_smaller_power(small: sp.Expr, large: sp.Expr) -> bool:
-    """Tell whether the logarithm of a product says that it is smaller."""
+    """Tell whether the logarithm of a product says that it is smaller; that of a letter has no known sign."""
+    if any(factor.as_base_exp()[0].is_Symbol for factor in sp.Mul.make_args(small / large)):
+        return False
     gap = expanded(sp.expand_log(sp.log(large) - sp.log(small)))
     return bool(gap.is_positive)
 
@@ -486,7 +489,7 @@ def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
     sign = {"+": 1, "-": -1}.get(found, 0)
     # The interval is open, but a variable that may be zero reaches its end.
     closed = not given and 0 in (low, high) and not variable.is_nonzero
-    return 0 if closed and _known_sign(sign * expr.subs(variable, 0)) != 1 else sign
+    return 0 if closed and known_sign(sign * expr.subs(variable, 0)) != 1 else sign
 
 
 def fails_inside(expr: sp.Expr, over: Interval) -> bool:
@@ -514,7 +517,7 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
     >>> open_factors((1 - q**2) / (2 * q), NONE)
     [1 - q]
     """
-    if expr.is_positive:
+    if known_sign(expr) == 1:
         return []
     if expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer:
         return open_factors(expr.base, known)
@@ -536,33 +539,36 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
     return [1 - base if base.is_positive and exponent.is_positive and base.is_Symbol else gap]
 
 
-def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
+@lru_cache(maxsize=16384)
+def demands(expr: sp.Expr) -> tuple[frozenset[sp.Expr], frozenset[sp.Expr]]:
     """Collect what must not vanish, and what must not be negative, where the expression is real."""
-    nonzero, nonnegative = set(), set()
-    for node in sp.preorder_traversal(expr):
-        if isinstance(node, sp.Pow):
-            base, exponent = node.args
-            if not exponent.is_nonnegative:
-                nonzero.add(base)
-            if not exponent.is_integer:
-                nonnegative.add(base)
-        elif isinstance(node, sp.log):
-            nonzero.add(node.args[0])
-            nonnegative.add(node.args[0])
-        elif isinstance(node, (sp.asin, sp.acos)):
-            nonnegative.add(1 - node.args[0] ** 2)
-        elif isinstance(node, sp.acosh):
-            nonnegative.add(node.args[0] - 1)
-        elif isinstance(node, sp.atanh):
-            nonzero.add(1 - node.args[0] ** 2)
-            nonnegative.add(1 - node.args[0] ** 2)
-        elif isinstance(node, sp.gamma):  # more than it needs: the poles are at 0, -1, -2 and so on
-            nonzero.add(node.args[0])
-            nonnegative.add(node.args[0])
-        elif isinstance(node, (sp.coth, sp.csch)):
-            nonzero.add(node.args[0])
-        elif isinstance(node, (sp.tan, sp.sec)):
-            nonzero.add(sp.cos(node.args[0]))
-        elif isinstance(node, (sp.cot, sp.csc)):
-            nonzero.add(sp.sin(node.args[0]))
-    return nonzero, nonnegative
+    own = _OWN_DEMANDS.get(expr.func)
+    nonzero, nonnegative = map(set, own(*expr.args) if own else ((), ()))
+    for part in expr.args:
+        inner = demands(part)
+        nonzero |= inner[0]
+        nonnegative |= inner[1]
+    return frozenset(nonzero), frozenset(nonnegative)
+
+
+_Demands = tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]
+
+
+def _demands_of_power(base: sp.Expr, exponent: sp.Expr) -> _Demands:
+    nonzero = () if exponent.is_nonnegative else (base,)
+    return nonzero, () if exponent.is_integer else (base,)
+
+
+_OWN_DEMANDS: dict[type, Callable[..., _Demands]] = {
+    sp.Pow: _demands_of_power,
+    sp.log: lambda u: ((u,), (u,)),
+    sp.gamma: lambda u: ((u,), (u,)),  # more than it needs: the poles are at 0, -1, -2 and so on
+    sp.asin: lambda u: ((), (1 - u**2,)),
+    sp.acos: lambda u: ((), (1 - u**2,)),
+    sp.acosh: lambda u: ((), (u - 1,)),
+    sp.atanh: lambda u: ((1 - u**2,), (1 - u**2,)),
+    **dict.fromkeys((sp.coth, sp.csch), lambda u: ((u,), ())),
+    **dict.fromkeys((sp.tan, sp.sec), lambda u: ((sp.cos(u),), ())),
+    **dict.fromkeys((sp.cot, sp.csc), lambda u: ((sp.sin(u),), ())),
+}
+"""What a node demands of its arguments."""

@@ -10,6 +10,7 @@ powers, roots, functions, derivatives, integrals and values at a point. Anything
 
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -26,16 +27,7 @@ class UnreadableError(ValueError):
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\S")
 _SPACING = {r"\,", r"\!", r"\;", r"\:", r"\ ", r"\left", r"\right", r"\limits", r"\displaystyle"}
-_ARGUMENTS = {
-    r"\frac": 2,
-    r"\sqrt": 1,
-    r"\dot": 1,
-    r"\ddot": 1,
-    r"\hat": 1,
-    r"\bar": 1,
-    r"\breve": 1,
-    r"\check": 1,
-}
+_ARGUMENTS = {r"\frac", r"\sqrt", r"\dot", r"\ddot", r"\hat", r"\bar", r"\breve", r"\check"}
 _FUNCTIONS = {
     r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\log": sp.log,
     r"\max": sp.Max, r"\min": sp.Min,
@@ -65,16 +57,22 @@ def names_in(*expressions: sp.Expr, tex_of: Mapping[sp.Expr, str]) -> dict[str, 
     """Return how the symbols and functions of expressions are displayed."""
     found: dict[str, Meaning] = {}
     for expr in expressions:
-        for symbol in expr.free_symbols | {
-            variable for node in expr.atoms(sp.Integral, sp.Subs) for variable in node.variables
-        }:
+        symbols, calls = _named_in(expr)
+        for symbol in symbols:
             found[tex_of.get(symbol) or sp.latex(symbol)] = symbol
-        for call in expr.atoms(AppliedUndef):
-            name = sp.latex(sp.Symbol(call.func.__name__))
-            shown = found.get(name)
-            if shown is None or _is_current(call):
+        for name, call in calls:
+            if name not in found or _is_current(call):
                 found[name] = call
     return found
+
+
+@lru_cache(maxsize=8192)
+def _named_in(expr: sp.Expr) -> tuple[frozenset[sp.Expr], tuple[tuple[str, sp.Expr], ...]]:
+    """Return the symbols, and the calls of functions with their names."""
+    bound = {name for node in expr.atoms(sp.Integral, sp.Subs) for name in node.variables}
+    calls = expr.atoms(AppliedUndef)
+    names = tuple((sp.latex(sp.Symbol(call.func.__name__)), call) for call in calls)
+    return frozenset(expr.free_symbols | bound), names
 
 
 def _is_current(call: AppliedUndef) -> bool:

@@ -6,6 +6,7 @@ those of the letters alone. Only what these rules do not cover goes to SymPy.
 
 import math
 from collections import Counter
+from collections.abc import Mapping
 from functools import lru_cache, reduce
 from operator import add, mul
 
@@ -14,19 +15,9 @@ from sympy.polys.rings import PolyElement
 
 from .identity import LARGEST, Polynomials, letters_of
 
-_ELEMENTARY = (
-    sp.log,
-    sp.sin,
-    sp.cos,
-    sp.tan,
-    sp.atan,
-    sp.asin,
-    sp.acos,
-    sp.sinh,
-    sp.cosh,
-    sp.tanh,
-    sp.asinh,
-)
+SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+"""Functions that have all derivatives wherever their argument is real."""
+_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin, sp.acos)
 
 
 @lru_cache(maxsize=16384)
@@ -79,8 +70,18 @@ def carried_out(expr: sp.Expr) -> sp.Expr:
     if isinstance(expr, sp.Subs):
         inner = carried_out(expr.expr)
         if not inner.has(sp.Derivative, sp.Integral, sp.Sum, sp.Subs):
-            return inner.subs(list(zip(expr.variables, expr.point, strict=True)), simultaneous=True)
+            return put(inner, dict(zip(expr.variables, expr.point, strict=True)))
     return expr.doit(integrals=False, sums=False)
+
+
+_BINDING = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs, sp.Limit, sp.Lambda)
+
+
+def put(expr: sp.Expr, values: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """Put in values of letters, all at once."""
+    if expr.has(*_BINDING) or not all(letter.is_Symbol for letter in values):
+        return expr.subs(values, simultaneous=True)
+    return expr.xreplace({letter: sp.sympify(value) for letter, value in values.items()})
 
 
 class Computed(sp.Expr):
@@ -102,6 +103,22 @@ def expanded(expr: sp.Expr) -> sp.Expr:
     return names.expression(_polynomial(expr, names))
 
 
+def coefficients(expr: sp.Expr, letter: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
+    """Return the coefficients of a polynomial in a letter by its powers.
+
+    >>> x, y = sp.symbols("x y")
+    >>> coefficients((x + y) ** 2 - y**2, x)
+    {2: 1, 1: 2*y}
+    """
+    found: dict[sp.Expr, list[sp.Expr]] = {}
+    for term in sp.Add.make_args(expanded(expr)):
+        parts = [factor.as_base_exp() for factor in sp.Mul.make_args(term)]
+        power = next((exponent for base, exponent in parts if base == letter), sp.S.Zero)
+        rest = sp.Mul(*(base**exponent for base, exponent in parts if base != letter))
+        found.setdefault(power, []).append(rest)
+    return {power: sp.Add(*terms) for power, terms in found.items()}
+
+
 def _is_polynomial(expr: sp.Expr, letters: dict[sp.Expr, None]) -> bool:
     """Collect the letters, their inverses and their roots; False if there is anything else."""
     if expr.is_Rational:
@@ -109,10 +126,22 @@ def _is_polynomial(expr: sp.Expr, letters: dict[sp.Expr, None]) -> bool:
     if expr.is_Add or expr.is_Mul:
         return all(_is_polynomial(arg, letters) for arg in expr.args)
     letter, power = _letter(expr)
-    if letter.is_Symbol or (letter.is_Pow and letter.base.is_Symbol):
+    if letter.is_Symbol or (letter.is_Pow and letter.base.is_Symbol and letter.exp.is_Rational):
         letters[letter] = None
         return True
+    if (
+        letter.is_Function
+        or isinstance(letter, sp.Derivative)
+        or (letter.is_Pow and letter.base.is_Symbol)
+    ):
+        letters[letter] = None
+        return _is_multiplied_out(letter)
     return power > 1 and letter.is_Add and _is_polynomial(letter, letters)
+
+
+@lru_cache(maxsize=8192)
+def _is_multiplied_out(expr: sp.Expr) -> bool:
+    return bool(sp.expand(expr) == expr)
 
 
 def _letter(expr: sp.Expr) -> tuple[sp.Expr, int]:

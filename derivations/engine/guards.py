@@ -1,6 +1,6 @@
 """Guards of a step: no interval for a fixed variable, no value outside its range, no zero divisor."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Unpack
 
 import sympy as sp
@@ -131,22 +131,28 @@ class Guarded(Book):
     def _equally_defined(
         self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: Said | str
     ) -> None:
-        """Refuse an equality of which one side is not defined or not real where the other is."""
+        """Refuse an equality of which one side is not defined or not real where the other is.
+
+        What both sides demand alike needs no proof.
+        """
         for kind, proves, why in (
             (0, proves_nonzero, "may vanish"),
             (1, proves_nonnegative, "may be negative"),
         ):
-            sides: list[list[sp.Expr]] = []
+            demanded: list[dict[sp.Expr, list[sp.Expr]]] = []
             for raw, resolved in (left, right):
-                named = {base: self._resolve(base) for base in demands(sp.sympify(raw))[kind]}
-                settled = {
-                    written for base, written in named.items() if proves(base, self._conditions)
-                }
-                bases = {*named.values(), *demands(resolved)[kind]} - settled
-                open_ones = {
-                    base for base in map(normalise, bases) if not proves(base, self._conditions)
-                }
-                sides.append(sorted(open_ones, key=str))
+                forms: dict[sp.Expr, list[sp.Expr]] = {}
+                for base in demands(sp.sympify(raw))[kind]:
+                    forms.setdefault(normalise(self._resolve(base)), []).append(base)
+                for base in demands(resolved)[kind]:
+                    forms.setdefault(normalise(base), []).append(base)
+                demanded.append(forms)
+            shared = demanded[0].keys() & demanded[1].keys()
+            found = [self._unproved(forms, forms.keys() - shared, proves) for forms in demanded]
+            if not any(found):
+                continue
+            common = self._unproved(demanded[0], shared, proves)
+            sides = [sorted(each | common, key=str) for each in found]
             written = iter(in_one_angle(*sides[0], *sides[1]))
             one, other = ({base for _, base in zip(each, written, strict=False)} for each in sides)
             if kind == 0:
@@ -156,6 +162,18 @@ class Guarded(Book):
                 raise StepError(
                     f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
                 )
+
+    def _unproved(
+        self,
+        forms: dict[sp.Expr, list[sp.Expr]],
+        wanted: Iterable[sp.Expr],
+        proves: Callable[..., bool],
+    ) -> set[sp.Expr]:
+        """Return those that are wanted, and proved neither as they are nor in another of their forms."""
+        known = self._conditions
+        return {
+            base for base in wanted if not any(proves(each, known) for each in (*forms[base], base))
+        }
 
     def _proved_of_names(self, kind: int, proves: Callable[..., bool]) -> set[sp.Expr]:
         """Return what names rest on by their definitions, where it is proved in the letters of these."""

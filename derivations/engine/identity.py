@@ -14,7 +14,7 @@ True
 from functools import lru_cache, reduce
 
 import sympy as sp
-from sympy.polys.rings import PolyElement, ring
+from sympy.polys.rings import PolyElement, PolyRing
 
 LARGEST = 64
 """Higher powers are generators of their own: nothing here has them, and they would not end."""
@@ -114,12 +114,17 @@ def _is_root(key: _Key) -> bool:
     return bool(key[1].is_Rational and key[1] != 1)
 
 
+@lru_cache(maxsize=256)
+def _ring(count: int) -> PolyRing:
+    return PolyRing([f"g{place}" for place in range(count)], sp.QQ)
+
+
 class Polynomials:
     """The ring, and what the expressions are in it: fractions of two polynomials."""
 
     def __init__(self, keys: tuple[_Key, ...]) -> None:
-        self._ring, *places = ring([f"g{place}" for place in range(len(keys))], sp.QQ)
-        self._places = dict(zip(keys, places, strict=True))
+        self._ring = _ring(len(keys))
+        self._places = dict(zip(keys, self._ring.gens, strict=True))
         self._generators = [base**exponent for base, exponent in keys]
         # A root in a root comes after the one that contains it.
         self._roots = sorted(filter(_is_root, keys), key=lambda key: -key[0].count_ops())

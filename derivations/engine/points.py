@@ -107,12 +107,17 @@ def _value(expr: sp.Expr, point: _Point) -> _Value:
         value = point[expr]
         return value, abs(value)
     if expr.is_Number or expr.is_NumberSymbol:
-        value = float(expr)
+        value = _number(expr)
         return value, abs(value)
-    kind = _KINDS.get(expr.func)
+    kind = _KINDS.get(type(expr))
     if kind is None:
         raise _NoValueError
     return kind(*(_value(part, point) for part in expr.args))
+
+
+@lru_cache(maxsize=1024)
+def _number(expr: sp.Expr) -> float:
+    return float(expr)
 
 
 def _sum(*parts: _Value) -> _Value:

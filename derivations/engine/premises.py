@@ -9,6 +9,7 @@ from sympy.core.function import AppliedUndef
 
 from .algebra import difference
 from .conditions import NONE, Conditions
+from .forms import sign_of_terms
 from .points import signs
 from .record import STATUSES, Step
 from .rules import is_name
@@ -123,7 +124,7 @@ def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
     """Tell whether a value is known to lie outside of what a symbol may be."""
     if value.has(sp.nan, sp.zoo):
         return True
-    seen = signs(value)
+    seen = signs(value) or {sign_of_terms(value)} - {0}
     if any(
         getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False
         for kind, sign in _KINDS.items()

@@ -1,5 +1,6 @@
 """Comparison at random points: for steps that algebra does not decide, and to detect its errors."""
 
+import math
 import random
 from collections.abc import Callable, Iterable, Mapping
 
@@ -92,9 +93,9 @@ def value_of(  # noqa: PLR0911 one return for each kind of node
         return value_of(next(cases, sp.nan), point)
     parts = [value_of(part, point) for part in expr.args]
     if expr.is_Add:
-        return mpmath.fsum(parts)
+        return sum(parts, mpmath.mpf(0))
     if expr.is_Mul:
-        return mpmath.fprod(parts)
+        return math.prod(parts, start=mpmath.mpf(1))
     if expr.is_Pow:
         return parts[0] ** parts[1]
     kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))

@@ -40,6 +40,7 @@ from .conditions import (
     proves_positive,
 )
 from .guards import Guarded
+from .identity import is_rational
 from .premises import Premise, violates
 from .roots import domain_of, only_root
 from .sampling import disagreement, refutation
@@ -150,18 +151,20 @@ class Proof(Guarded):
         if not is_continuous(primitive, (variable, low, high), self._conditions):
             raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
         slope = self._resolve(sp.Derivative(antiderivative, variable))
-        self._vanish(slope, inner, f"d/d{variable} of {antiderivative}")
+        self._vanish(slope, inner, Said(sp.Derivative(antiderivative, variable), "=", integrand))
         try:
             found = value_at(primitive, variable, high) - value_at(primitive, variable, low)
         except UndecidedError as error:
             raise StepError(f"{self.label}: {whole}: {error}") from error
         found = self._resolve(found)  # a rule may be about a function at the very end
-        if found.has(sp.oo, sp.zoo, sp.nan, sp.AccumBounds) or found.is_real is False:
+        if found.has(sp.oo, sp.zoo, sp.nan, sp.AccumBounds) or (
+            not is_rational(found) and found.is_real is False
+        ):
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:
             self._same_integral(self._rules.pop(lhs), whole)
         wanted = sp.factor(found) if value is None else value
-        self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
+        self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value

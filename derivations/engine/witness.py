@@ -12,7 +12,7 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .conditions import linear
+from .conditions import known_sign, linear
 from .identity import letters_of
 from .sampling import value_of
 
@@ -84,8 +84,8 @@ def _without_definitions(
     laws, gaps, signed = left
     return (
         [law for law in laws if law != 0],
-        [gap for gap in gaps if not gap.is_positive],
-        [gap for gap in signed if not gap.is_nonnegative],
+        [gap for gap in gaps if known_sign(gap) != 1],
+        [gap for gap in signed if known_sign(gap, strict=False) != 1],
     )
 
 

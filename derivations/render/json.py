@@ -32,16 +32,8 @@ def _plain(derivation: Derivation, names: Names) -> dict[str, Any]:
     record = {field.name: getattr(derivation, field.name) for field in fields(derivation)}
     table = asdict(derivation.table) if derivation.table else None
     numbers = [asdict(each) for each in derivation.numbers]
-    steps = [
-        {
-            "latex": step.latex,
-            "reason": step.reason,
-            "status": step.status,
-            "source": step.source,
-            "domain": step.domain,
-        }
-        for step in derivation.steps
-    ]
+    told = ("latex", "reason", "status", "source", "domain")
+    steps = [{name: getattr(step, name) for name in told} for step in derivation.steps]
     return {
         **record,
         "table": table,

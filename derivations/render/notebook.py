@@ -4,6 +4,7 @@ import json
 import keyword
 import re
 from collections.abc import Iterable
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -123,30 +124,13 @@ def _steps(derivation: Derivation) -> str:
 
 def _call(step: Step, claim: Claim, code: _Code) -> list[str]:
     given = claim.check in _GIVEN
+    check = "given" if given else claim.check
     arguments = {"lhs": claim.lhs, "rhs": claim.rhs} if given else claim.arguments
-    wanted = {name: value for name, value in arguments.items() if name in _PARAMETERS[claim.check]}
+    asked = signature(getattr(recheck.Steps, check)).parameters
+    wanted = {name: value for name, value in arguments.items() if name in asked}
     text = ", ".join(f"{name}={_printed(value, code)}" for name, value in wanted.items())
     comment = [f"# {step.reason}"] if step.reason else []
-    return [*comment, f"steps.{'given' if given else claim.check}({text})"]
-
-
-_PARAMETERS: dict[str, tuple[str, ...]] = {
-    "define": ("lhs", "rhs"),
-    "recall": ("lhs", "rhs"),
-    "equal": ("lhs", "rhs", "cases"),
-    "integral": ("lhs", "integrand", "over", "antiderivative", "value"),
-    "root": ("expr", "variable", "value", "name"),
-    "unique_root": ("expr", "over"),
-    "crossing": ("expr", "over"),
-    "sign": ("expr", "relation", "bound", "over"),
-    "where": ("condition",),
-    "holds": ("lhs", "relation", "rhs", "cases"),
-    "greatest": ("value", "expr", "place", "surplus", "given"),
-    "equivalent": ("nonnegative", "lhs", "rhs"),
-    "leading_order": ("expr", "leading", "variable", "point", "eps"),
-    "sampled": ("lhs", "rhs", "ranges"),
-}
-"""What `recheck.Steps` asks of each check."""
+    return [*comment, f"steps.{check}({text})"]
 
 
 def _printed(value: Any, code: _Code) -> str:
