@@ -12,7 +12,6 @@ from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 
 SCENES = int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
-ON_DEMAND = pytest.mark.skipif(SCENES <= 200, reason="takes a minute: KVTHEORY_TEST_SCENES=201")
 ZENER = [(5e10, 0.1)]
 SERIES = (
     "depth",
@@ -91,9 +90,9 @@ def test_it_ends_in_steady_sliding():
             assert getattr(found, name)[0] == pytest.approx(getattr(steady, name), rel=1e-5)
 
 
-@ON_DEMAND
-def test_small_disturbances_decay_at_the_rates_of_f24():
+def test_small_disturbances_decay_at_the_rates_of_f24(monkeypatch):
     """A while after a small change of the velocity four rates are left, whose recurrence the depth obeys."""
+    monkeypatch.setattr(trajectory, "WORTHWHILE", 0)
     arms, V, held = (
         [(3e10, 0.01), (5e9, 0.2)],
         0.2,
@@ -327,7 +326,6 @@ def test_random_scenes_agree_with_elements_within_both_certificates():
     assert solved >= 0.3 * SCENES // 25
 
 
-@ON_DEMAND
 def test_compiled_kernels_give_the_same_numbers(monkeypatch):
     pytest.importorskip("numba")
     scene = sliding([(5e10, 0.1), (2e10, 3e-3)], kv.Drive(velocity=0.05, stiffness=1e8))
