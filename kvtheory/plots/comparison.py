@@ -114,7 +114,8 @@ def _list_checks(ax: Any, comparison: Comparison) -> None:
     looks = [BLACK, *(LOOKS[row[3]][1] for row in comparison.rows)]
     ax.set(ylim=(len(looks), 0.0))
     for row, (line, colour) in enumerate(zip(aligned(HEADS, comparison.rows), looks, strict=True)):
-        ax.text(0.0, row, line[:LONGEST], fontsize=5.5, family="monospace", color=colour)
+        shown = line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…"
+        ax.text(0.0, row, shown, fontsize=5.5, family="monospace", color=colour)
 
 
 def save_comparison_report(comparison: Comparison, scene: Scene, path: Path) -> None:
