@@ -39,6 +39,7 @@ def test_scenes_and_drives_are_read_in_the_encodings_of_shells_and_spreadsheets(
 @pytest.mark.parametrize(
     ("content", "words"),
     [
+        (b"t [s],mu\n0,1\n", r"scene\.csv is not a TOML file: .*`compare --data`"),
         (b"\xff\xfeA", r"scene\.toml is not a TOML file"),
         (b"\x00\x01\x02", r"scene\.toml is not a TOML file"),
         (b"\x81\x8d\x8f", r"scene\.toml is not a TOML file"),
@@ -47,7 +48,7 @@ def test_scenes_and_drives_are_read_in_the_encodings_of_shells_and_spreadsheets(
     ],
 )
 def test_what_is_no_toml_is_told_with_its_name_or_its_line(tmp_path, content, words):
-    path = tmp_path / "scene.toml"
+    path = tmp_path / ("scene.csv" if "csv" in words else "scene.toml")
     path.write_bytes(content)
     with pytest.raises(kv.SceneError, match=words):
         kv.load_scene(path)

@@ -195,7 +195,10 @@ def _read(path: Path) -> dict[str, Any]:
     except ValueError as error:  # invalid TOML, or too long an integer
         number = re.search(r"at line (\d+)", str(error))
         line = f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
-        told = f'{error}{line}; a quantity is text in quotes, such as radius = "10 mm"'
+        hint = 'a quantity is text in quotes, such as radius = "10 mm"'
+        if path.suffix.lower() == ".csv":
+            hint = "measured or simulated data are read by `fit` and by `compare --data`"
+        told = f"{error}{line}; {hint}"
     raise SceneError([f"{path} is not a TOML file: {told}"])
 
 
