@@ -109,10 +109,10 @@ def begin(
         given=[r_.new(GIVEN, *given)],
         now=r_._blanks(1, NOW),
         pieces=drive.rows,
-        steps=r_._blanks(ROOM, STEP),
+        steps=r_._blanks(1 if arrays else ROOM, STEP),
         rows=np.zeros((ROOM, ROWS, n + 1)),
         memory=np.zeros((ROOM, count, OWN, n + 1)),
-        segments=r_._blanks(2 * ROOM, SEGMENT),
+        segments=r_._blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64),
         method=method,
         arms=np.stack(columns, axis=1),
@@ -128,7 +128,15 @@ def begin(
         here=np.zeros((count, OWN)),
     )
     _rest(run._replace(now=run.now[0]))
-    return as_arrays(run) if arrays else run
+    if not arrays:
+        return run
+    run = as_arrays(run)
+    return run._replace(steps=_longer(run.steps, ROOM), segments=_longer(run.segments, 2 * ROOM))
+
+
+def _longer(rows: Any, count: int) -> Any:
+    """Return an array with so many rows; new ones are zero."""
+    return np.concatenate([rows, np.zeros((count - len(rows), *rows.shape[1:]), rows.dtype)])
 
 
 def as_arrays(run: Run) -> Run:
@@ -167,7 +175,7 @@ def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
     more = {"steps": STEP, "segments": SEGMENT}
     wider: dict[str, Any] = {
-        name: np.concatenate([getattr(run, name), np.zeros_like(getattr(run, name))])
+        name: _longer(rows := getattr(run, name), 2 * len(rows))
         for name in ("rows", "memory", "chain")
     }
     for name, kind in more.items():
@@ -175,5 +183,5 @@ def with_more_room(run: Run) -> Run:
         if isinstance(records, list):
             wider[name] = records + r_._blanks(len(records), kind)
         else:
-            wider[name] = np.concatenate([records, np.zeros_like(records)])
+            wider[name] = _longer(records, 2 * len(records))
     return run._replace(**wider)

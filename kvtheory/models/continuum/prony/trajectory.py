@@ -123,7 +123,8 @@ def solve(
     >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
     0.417162
     """
-    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=bool(fast))
+    arrays = worthwhile() if fast is None else fast
+    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
     while status != walk.DONE:
         if fast is None and isinstance(run.steps, list) and worthwhile():
