@@ -3,6 +3,7 @@
 import math
 import random
 from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 
 import mpmath
 import sympy as sp
@@ -87,21 +88,28 @@ def value_of(  # noqa: PLR0911 one return for each kind of node
     if expr.is_Symbol:
         return point[expr]
     if expr.is_Number or expr.is_NumberSymbol:
-        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+        return _number(expr, mpmath.mp.prec)
+    if expr.is_Pow and expr.exp.is_Integer:
+        return value_of(expr.base, point) ** int(expr.exp)
     if isinstance(expr, sp.Piecewise):
         cases = (value for value, case in expr.args if case.xreplace(dict(point)) == sp.true)
         return value_of(next(cases, sp.nan), point)
     parts = [value_of(part, point) for part in expr.args]
     if expr.is_Add:
-        return sum(parts, mpmath.mpf(0))
+        return sum(parts[1:], parts[0])
     if expr.is_Mul:
-        return math.prod(parts, start=mpmath.mpf(1))
+        return math.prod(parts[1:], start=parts[0])
     if expr.is_Pow:
         return parts[0] ** parts[1]
     kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))
     if kind is None:
         raise NoValueError(f"{type(expr).__name__} is no function that has a value here")
     return mpmath.mpmathify(kind(*parts))
+
+
+@lru_cache(maxsize=4096)
+def _number(expr: sp.Expr, precision: int) -> mpmath.mpf:
+    return mpmath.mpf(expr._to_mpmath(precision))
 
 
 _KINDS: dict[type, Callable[..., mpmath.mpf]] = {
