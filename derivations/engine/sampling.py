@@ -3,7 +3,6 @@
 import math
 import random
 from collections.abc import Callable, Iterable, Mapping
-from functools import lru_cache
 
 import mpmath
 import sympy as sp
@@ -88,7 +87,7 @@ def value_of(  # noqa: PLR0911 one return for each kind of node
     if expr.is_Symbol:
         return point[expr]
     if expr.is_Number or expr.is_NumberSymbol:
-        return _number(expr, mpmath.mp.prec)
+        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
     if expr.is_Pow and expr.exp.is_Integer:
         return value_of(expr.base, point) ** int(expr.exp)
     if isinstance(expr, sp.Piecewise):
@@ -105,11 +104,6 @@ def value_of(  # noqa: PLR0911 one return for each kind of node
     if kind is None:
         raise NoValueError(f"{type(expr).__name__} is no function that has a value here")
     return mpmath.mpmathify(kind(*parts))
-
-
-@lru_cache(maxsize=4096)
-def _number(expr: sp.Expr, precision: int) -> mpmath.mpf:
-    return mpmath.mpf(expr._to_mpmath(precision))
 
 
 _KINDS: dict[type, Callable[..., mpmath.mpf]] = {
