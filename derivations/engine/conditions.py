@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from .forms import coefficients, derivative, expanded, factors, reduced, sign_of_terms
+from .forms import coefficients, derivative, expanded, factors, put, reduced, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -334,7 +334,7 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
             value = (low + high * step) / (1 + step)
         else:
             value = low + step if low.is_finite else high - step
-        expr = expr.subs(variable, value)
+        expr = put(expr, {variable: value})
         yield expr
     for place, positive in enumerate(known.positive, len(known.intervals)):
         if positive.free_symbols <= expr.free_symbols:
@@ -349,9 +349,11 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
 
 def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr]:
     """Yield the expression with a name for something positive that it contains as it stands."""
+    written = {positive: name, expanded(positive): name, expanded(-positive): -name}
     for form in _written(expr):
-        changed = form.subs(positive, name)
-        changed = changed.subs(expanded(positive), name).subs(expanded(-positive), -name)
+        changed = form
+        for gap, value in written.items():
+            changed = changed.subs(gap, value)
         if changed != form:
             yield changed
 
@@ -374,8 +376,8 @@ def _solved(
     for symbol in order:
         slope, rest_of = linear(positive, symbol)
         if slope.is_nonzero:
-            value = (name - rest_of) / slope
-            return expr.subs(symbol, value), tuple(each.subs(symbol, value) for each in rest)
+            value = {symbol: (name - rest_of) / slope}
+            return put(expr, value), tuple(put(each, value) for each in rest)
     return expr, rest
 
 

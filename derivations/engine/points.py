@@ -95,7 +95,8 @@ class _Point(dict[sp.Expr, float]):
 @lru_cache(maxsize=65536)
 def _drawn(letter: sp.Expr, attempt: int) -> float:
     """Draw a value that the assumptions on a letter admit: near 1, or of any order of magnitude."""
-    draw = random.Random(f"{attempt} {letter} {getattr(letter, 'dummy_index', '')}")
+    name = letter.name if letter.is_Symbol else letter  # the same as in print, but at once
+    draw = random.Random(f"{attempt} {name} {getattr(letter, 'dummy_index', '')}")
     spread = 3.0 if attempt % 3 == 0 else 0.5
     size = float(draw.randrange(1, 7)) if letter.is_integer else 10 ** draw.uniform(-spread, spread)
     negative = letter.is_nonpositive or (not letter.is_nonnegative and draw.random() < 0.5)

@@ -88,14 +88,16 @@ def value_of(  # noqa: PLR0911 one return for each kind of node
         return point[expr]
     if expr.is_Number or expr.is_NumberSymbol:
         return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+    if expr.is_Pow and expr.exp.is_Integer:
+        return value_of(expr.base, point) ** int(expr.exp)
     if isinstance(expr, sp.Piecewise):
         cases = (value for value, case in expr.args if case.xreplace(dict(point)) == sp.true)
         return value_of(next(cases, sp.nan), point)
     parts = [value_of(part, point) for part in expr.args]
     if expr.is_Add:
-        return sum(parts, mpmath.mpf(0))
+        return sum(parts[1:], parts[0])
     if expr.is_Mul:
-        return math.prod(parts, start=mpmath.mpf(1))
+        return math.prod(parts[1:], start=parts[0])
     if expr.is_Pow:
         return parts[0] ** parts[1]
     kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))

@@ -41,6 +41,7 @@ from .conditions import (
 )
 from .guards import Guarded
 from .identity import is_rational
+from .points import signs
 from .premises import Premise, violates
 from .roots import domain_of, only_root
 from .sampling import disagreement, refutation
@@ -158,7 +159,7 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {whole}: {error}") from error
         found = self._resolve(found)  # a rule may be about a function at the very end
         if found.has(sp.oo, sp.zoo, sp.nan, sp.AccumBounds) or (
-            not is_rational(found) and found.is_real is False
+            not (is_rational(found) or signs(found)) and found.is_real is False
         ):
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:

@@ -7,6 +7,7 @@ slopes and integrals of unknown functions are letters of their own.
 import random
 from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
+from itertools import chain
 
 import mpmath
 import sympy as sp
@@ -23,17 +24,28 @@ _GRID = [mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)]
 
 Pairs = tuple[tuple[sp.Expr, sp.Expr], ...]
 _Point = dict[sp.Expr, mpmath.mpf]
+_Expressions = tuple[sp.Expr, ...]
 
 
 @lru_cache(maxsize=4096)
-def has_witness(premises: Pairs, positive: tuple[sp.Expr, ...]) -> bool:
+def has_witness(premises: Pairs, positive: _Expressions) -> bool:
     """Tell whether a point was found where all premises hold and the other expressions are positive."""
-    laws, gaps, signed = _without_definitions(premises, positive)
-    if not laws and not gaps and not signed:
-        return True
+    groups = _without_definitions(premises, positive)
+    parts: list[frozenset[sp.Expr]] = []
+    for letters in map(letters_of, chain(*groups)):
+        joined = [part for part in parts if part & letters]
+        parts = [*(part for part in parts if part not in joined), letters.union(*joined)]
+    # What has no letter in common needs no common point.
+    return all(
+        _has_point(*(tuple(each for each in group if letters_of(each) <= part) for group in groups))
+        for part in dict.fromkeys(parts)
+    )
+
+
+@lru_cache(maxsize=4096)
+def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> bool:
     slack = {gap: _slack(place) for place, gap in enumerate(gaps)}
-    letters = set().union(*(each.free_symbols for each in (*laws, *gaps, *signed)))
-    order = sorted(letters, key=str)
+    order = sorted(frozenset().union(*map(letters_of, (*laws, *gaps, *signed))), key=str)
     above = {*gaps, *signed}
     draw = random.Random(2020)
     with mpmath.workdps(_DIGITS):
@@ -60,7 +72,7 @@ def _slack(place: int) -> sp.Dummy:
 
 
 def _without_definitions(
-    premises: Pairs, positive: tuple[sp.Expr, ...]
+    premises: Pairs, positive: _Expressions
 ) -> tuple[list[sp.Expr], list[sp.Expr], list[sp.Expr]]:
     """Put in the values of names; return what must vanish, be positive, and not be negative."""
     values: dict[sp.Expr, sp.Expr] = {}
@@ -91,7 +103,7 @@ def _without_definitions(
 
 def _put(expr: sp.Expr, values: dict[sp.Expr, sp.Expr]) -> sp.Expr:
     """Put in values of letters, but not of the variables of an integral, which are its own."""
-    if values.keys().isdisjoint(expr.free_symbols):
+    if values.keys().isdisjoint(letters_of(expr)):
         return expr
     if isinstance(expr, (sp.Integral, sp.Sum, sp.Derivative, sp.Subs)):
         free = expr.free_symbols
@@ -194,7 +206,7 @@ def _admits(letter: sp.Symbol, value: mpmath.mpf) -> bool:
     return not (letter.is_nonnegative and value < 0) and not (letter.is_nonpositive and value > 0)
 
 
-def _meets(point: _Point, gaps: list[sp.Expr], signed: list[sp.Expr]) -> bool:
+def _meets(point: _Point, gaps: _Expressions, signed: _Expressions) -> bool:
     least = [(gap, _NONE) for gap in gaps] + [(gap, -_NONE) for gap in signed]
     values = ((value_of(gap, point), low) for gap, low in least)
     return all(isinstance(value, mpmath.mpf) and value > low for value, low in values)
