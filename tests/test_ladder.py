@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.ladder import climbing
 from kvtheory.models.slow_manifold.start import half_length
 from kvtheory.models.steady import asymptote_bounds as asymptote
 from kvtheory.models.steady import ball, exact
@@ -126,6 +127,14 @@ def test_a_tolerance_that_nothing_meets_says_how_close_each_model_came(request_,
         kv.solve(CIRCLE, **request_)
     assert all(re.search(each, str(error.value)) for each in words)
     assert str(error.value).count("the parabola only") <= 1  # each reason once
+
+
+@pytest.mark.parametrize(("error", "hint"), [(2.7, False), (0.3, True)])
+def test_no_tolerance_is_suggested_that_would_be_refused(error, hint):
+    rung = climbing.Rung("model", "none", lambda *_: climbing.Offer(error, None))
+    with pytest.raises(ToleranceError, match=r"model: error too large") as failed:
+        climbing.climb(CIRCLE, climbing.Request(("load",), 1e-3), [rung])
+    assert ("try a tolerance" in str(failed.value)) == hint
 
 
 def test_a_drive_that_is_a_function_has_no_steady_sliding():

@@ -140,3 +140,4 @@ def test_a_fast_arm_has_the_ledger_of_kelvin_voigt():
         "dissipated_surface",
     ):
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-3)
+    assert abs(other.balance) <= 1e-9 * other.stored_at_rest

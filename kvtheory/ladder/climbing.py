@@ -13,6 +13,8 @@ from kvtheory.scene.model import Scene
 
 TOO_LARGE, USED = "error too large", "used"
 """Outcomes of a rung; any other is the reason why it does not apply."""
+LOOSEST = 1.0
+"""Largest tolerance of a request."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,7 @@ def _failure(request: Request, steps: Sequence[ClimbStep]) -> str:
         models = reasons.setdefault(reason, [])
         if step.rung not in models:
             models.append(step.rung)
-    hint = f"; try a tolerance from {min(reached):.1e}" if reached else ""
+    best = min(reached, default=math.inf)
+    hint = f"; try a tolerance from {best:.1e}" if best <= LOOSEST else ""
     tried = "; ".join(f"{', '.join(models)}: {reason}" for reason, models in reasons.items())
     return f"no model is known to be within rtol = {request.rtol:g}{hint}; {tried}"

@@ -4,7 +4,9 @@ In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_
 where the surface relaxes behind it. The ledger takes the stresses of each element from the memory, not the
 moments from which the solver computes the forces, so that its balance checks them. Both are integrated by
 Gauss's rule over the ground that the edges passed: between the ends of steps, on panels that double from the
-present backwards, since the stresses of fast arms change there. The powers are integrated over each step.
+present backwards, since the stresses of fast arms change there: from the shortest relaxation time on in the
+contact, from the shortest time in which the free surface relaxes behind it. The powers are integrated over
+each step.
 """
 
 from typing import Any
@@ -56,8 +58,11 @@ class Ground:
         self.pieces, self.arms = np.asarray(run.pieces), np.asarray(run.arms)
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]
-        fastest, longest = 1.0 / float(self.arms[:, FALL].max()), float(motion.counts.s)
-        self.ages = fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
+        longest = float(motion.counts.s)
+        self.ages = [
+            fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
+            for fastest in (1.0 / self.arms[:, FALL].max(), self.arms[:, TIME].min())
+        ]
 
     def step_at(self, s: Array) -> Any:
         """Return the steps at times."""
@@ -138,7 +143,10 @@ class Ground:
             high[here], low[here] = np.where(own, at, high[here]), np.where(own, low[here], at)
         low[rest] = np.maximum(segment["X_a"], (l - Y)[owner])[rest]
         high[rest] = np.minimum(segment["X_b"], (r - Y)[owner])[rest]
-        panels = [self._panels(s[owner[k]], low[k], high[k], rest[k]) for k in range(len(rows))]
+        panels = [
+            self._panels(s[owner[k]], low[k], high[k], rest[k], self.ages[int(inside[k])])
+            for k in range(len(rows))
+        ]
         which = np.repeat(np.arange(len(rows)), [len(p) - 1 for p in panels])
         a = np.concatenate([p[:-1] for p in panels])
         width = np.concatenate([np.diff(p) for p in panels])
@@ -155,14 +163,14 @@ class Ground:
                 found[0 if contact else 1, n] = np.bincount(owner[k], weights[of] * value, s.size)
         return found
 
-    def _panels(self, s: float, low: float, high: float, rest: bool) -> Array:
-        """Return the ends of the panels of one segment."""
+    def _panels(self, s: float, low: float, high: float, rest: bool, given: Array) -> Array:
+        """Return the ends of the panels of one segment, at given ages among others."""
         if not low < high:
             return np.zeros(1)
         if rest:
             return np.array([low, high])
         first, last = np.searchsorted(self.starts, [low, high], side="right")
-        ages = s - self.ages
+        ages = s - given
         inner = np.concatenate([self.starts[first:last], ages[(low < ages) & (ages < high)]])
         return np.unique(np.concatenate([[low], inner, [high]]))
 
