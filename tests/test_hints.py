@@ -39,7 +39,7 @@ def test_scenes_and_drives_are_read_in_the_encodings_of_shells_and_spreadsheets(
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"t [s],mu\n0,1\n", r"scene\.csv is not a TOML file: .*`compare --data`"),
+        (b"t [s],mu\n0,1\n", r"scene\.csv is not a TOML file: .*`compare`"),
         (b"\xff\xfeA", r"scene\.toml is not a TOML file"),
         (b"\x00\x01\x02", r"scene\.toml is not a TOML file"),
         (b"\x81\x8d\x8f", r"scene\.toml is not a TOML file"),

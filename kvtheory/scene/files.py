@@ -197,7 +197,7 @@ def _read(path: Path) -> dict[str, Any]:
         line = f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
         hint = 'a quantity is text in quotes, such as radius = "10 mm"'
         if path.suffix.lower() == ".csv":
-            hint = "measured or simulated data are read by `fit` and by `compare --data`"
+            hint = "measured or simulated data are read by `fit` and `compare`"
         told = f"{error}{line}; {hint}"
     raise SceneError([f"{path} is not a TOML file: {told}"])
 
