@@ -128,9 +128,9 @@ def pressed(
 ) -> tuple[float, float]:
     """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
 
-    It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. What the
-    polynomials are off between the stages, it was met too late: the indenter compressed it at once, as far as
-    an arm keeps this over the step.
+    It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. Between
+    the stages of that step the polynomials leave a gap or an overlap there. The indenter closes it at once,
+    and an arm keeps the share of this stress that it would keep over the step.
     """
     theta = xi_e = deeper = 0.0
     here = run.here

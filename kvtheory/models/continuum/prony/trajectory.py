@@ -127,8 +127,6 @@ def solve(
     run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
     while status != walk.DONE:
-        if fast is None and isinstance(run.steps, list) and worthwhile():
-            run = as_arrays(run)
         interpreted = isinstance(run.steps, list)
         perform = evaluation.perform if interpreted else kernel()
         with np.errstate(all="ignore"):  # an iteration that diverges ends a step, compiled or not
@@ -142,6 +140,8 @@ def solve(
             run = with_more_room(run)
         if left <= 0 and status != walk.DONE:
             raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
+        if fast is None and interpreted and status != walk.DONE and worthwhile():
+            run = as_arrays(run)
         if progress is not None:
             progress(now.s)
     return Trajectory(run)
