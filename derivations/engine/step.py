@@ -40,7 +40,7 @@ from .conditions import (
     proves_positive,
 )
 from .guards import Guarded
-from .identity import is_rational
+from .identity import is_rational, letters_of
 from .points import signs
 from .premises import Premise, violates
 from .roots import domain_of, only_root
@@ -158,8 +158,9 @@ class Proof(Guarded):
         except UndecidedError as error:
             raise StepError(f"{self.label}: {whole}: {error}") from error
         found = self._resolve(found)  # a rule may be about a function at the very end
+        plain = is_rational(found) and all(each.is_real for each in letters_of(found))
         if found.has(sp.oo, sp.zoo, sp.nan, sp.AccumBounds) or (
-            not (is_rational(found) or signs(found)) and found.is_real is False
+            not (plain or signs(found)) and found.is_real is False
         ):
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:
