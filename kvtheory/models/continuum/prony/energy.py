@@ -197,6 +197,7 @@ class Ground:
                 for row in (DEPTHS, SLIDES)
             )
             stress = k * (A - xi * B) + np.where(rest, 0.0, left * fade)
+            self._count_before(stress, s, X, now, np.where(rest, 0, index))
         else:
             run = self.motion.run
             modes = np.einsum("mi,iq->mq", run.to_modes, -stress.sum(axis=0) - stress / k)
@@ -205,6 +206,22 @@ class Ground:
             stress = k * (u - np.einsum("im,mq->iq", run.from_modes, modes))
         squares = stress * stress / k
         return [u * rate, (u * u + squares.sum(axis=0)) * rate, (squares / T).sum(axis=0) * rate]
+
+    def _count_before(self, stress: Array, s: Array, X: Array, now: Any, entered: Any) -> None:
+        """Add to stresses in the steps `now` what earlier counts of the accumulators know of the elements."""
+        since, k, T = self.steps["since"], self.arms[:, STIFFNESS, None], self.arms[:, TIME, None]
+        j, first = since[now], since[entered]
+        while (of := np.nonzero(j > first)[0]).size:
+            start, last = self.starts[j[of]], j[of] - 1
+            theta = (start - self.starts[last]) / self.steps["span"][last]
+            A, B = (
+                polynomial.polyval(theta, self.memory[last, :, row].T, tensor=False)
+                - self.memory[j[of], :, row, 0].T
+                for row in (DEPTHS, SLIDES)
+            )
+            xi = X[of] + self.slid(last, theta, start)[0]
+            stress[:, of] += k * (A - xi * B) * np.exp((start - s[of]) / T)
+            j[of] = since[last]
 
 
 def volume(motion: Trajectory, s: float) -> float:

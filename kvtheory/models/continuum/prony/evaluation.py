@@ -72,6 +72,7 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
 
 def present(run: Run, index: int, theta: float) -> None:
     """Write the accumulators of the arms at one time into `here`."""
+    run.now.since = run.steps[index].since
     for i in over(len(run.arms)):
         for row in (DEPTHS, SLIDES):
             run.here[i, row] = past(run, index, i, row, theta)

@@ -152,6 +152,16 @@ def _end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
     now.smooth = False
 
 
+def distance(run: Run) -> float:
+    """Return how far the ground that was touched is from below the indenter, along it."""
+    least = math.inf
+    for k in range(2):
+        if run.now.sides[k].segment != NEVER:
+            X = run.now.sides[k].near
+            least = min(least, max(SIDES[k] * (X - here(run, k) + run.now.sides[k].xi), 0.0))
+    return least
+
+
 def least_gap(run: Run, s: float, d: float, Y: float) -> Gap:
     """Return the least gap between the indenter and the ground, at a time in flight."""
     found, side, number, at = math.inf, 0, NEVER, 0.0

@@ -14,8 +14,8 @@ from kvtheory.theory.laws import Element
 
 ROOM = 48
 """Initial capacity in steps."""
-PER_STEP = 8
-"""Segments that one event may add."""
+FARTHEST = 2e7
+"""Largest sum of A_i that a step may reach, over the root of the tolerance: for rounding."""
 
 SIDE = r_._record(
     state="i8", segment="i8", own="i8", index="i8", xi="f8", sigma="f8", near="f8", pace="f8"
@@ -29,25 +29,28 @@ SEGMENT = r_._record(
 """Edge and first step of a segment, the next one outward on free ground, the instants and X at its ends."""
 STEP = r_._record(
     start="f8", span="f8", depth="f8", along="f8", piece="i8", kinked=("i8", (2,)), first="i8",
-    count="i8", sides=(SIDE, (2,)),
+    count="i8", since="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
-have a kink there; where the contact's segments are in `chain`, and their number; both sides at its start."""
+have a kink there; where the contact's segments are in `chain`, and their number; the first step of the count
+of the accumulators; both sides at its start."""
 NOW = r_._record(
     s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
-    chain="i8", first="i8", count="i8", toggles="i8", rejected="i8", evaluations="i8",
+    chain="i8", first="i8", count="i8", since="i8", toggles="i8", rejected="i8", evaluations="i8",
     kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Time, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
-steps, segments and entries in `chain`; the contact there; the changes at this instant, numbers of rejected
+steps, segments and entries in `chain`; the contact there; the first step of the count of the accumulators in
+`Run.here`; the changes at this instant, numbers of rejected
 steps and evaluations; whether the histories of the edges have a kink here, and whether the last step
 continues smoothly; both sides."""
 GIVEN = r_._record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
-    first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
+    counted="f8", first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
 )  # fmt: skip
 """Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; sum
-K_i/K; controls of the step size; number of stages; whether the indenter is fixed, and held by a spring."""
+K_i/K; the largest sum of A_i that a step may reach; controls of the step size; number of stages; whether the
+indenter is fixed, and held by a spring."""
 
 
 class Run(NamedTuple):
@@ -97,8 +100,8 @@ def begin(
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
-        float(sum(k for k, _ in arms)), control.first_step, control.longest, control.grow, n, fixed,
-        spring is not None,
+        float(sum(k for k, _ in arms)), max(FARTHEST * math.sqrt(rtol), 100.0), control.first_step,
+        control.longest, control.grow, n, fixed, spring is not None,
     )  # fmt: skip
     element = Element.of(1.0, 0.0, arms)
     columns = *np.array(arms, dtype=float).T, element.rates, element.shares

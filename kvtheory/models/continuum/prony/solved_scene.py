@@ -20,7 +20,7 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTEST,
 )
 from kvtheory.models.continuum.prony import evaluation as e_
-from kvtheory.models.continuum.prony.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.prony.contact import DEPTHS, FREE, PEELING, STIFFNESS, TOUCHING
 from kvtheory.models.continuum.prony.energy import ledger
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
@@ -41,8 +41,8 @@ COLUMNS = {
 }  # fmt: skip
 """Column of each quantity in the states that is there as it is."""
 STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
-ROUNDING = 4e-15
-"""Rounding of the moments, relative to the largest accumulator: it is large on arms that hardly relax."""
+ROUNDING = 4e-16
+"""Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
 LESS_TIGHT = 10.0
 """First over second tolerance where a solution with the one over `TIGHTER` fails."""
 STATEMENT = (
@@ -214,9 +214,9 @@ def certificate(
         errors = dict.fromkeys(here, math.inf)
         return Certificate("estimated", why, {"time": 0.0, **errors}, AT_REST)
     there = fine.scaled_series(other.states(s), s)
-    rounding = ROUNDING * float(
-        np.abs(fine.motion.run.arms[:, :1] * fine.motion.run.state[:, :2]).sum()
-    )
+    run = other.run
+    deepest = np.abs(run.memory[: other.counts.steps, :, DEPTHS, 0]).max(axis=0)
+    rounding = ROUNDING * float(np.sum(run.arms[:, STIFFNESS] * deepest * (1.0 + deepest)))
     errors, widths = {"time": 0.0}, np.zeros_like(s)
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))

@@ -71,7 +71,7 @@ def prepare(run: Run, span: float) -> None:
     """Begin a step of length `span` from the present state, and make the filters of the arms."""
     now, n, step = run.now, run.given.stages, run.steps[run.now.steps]
     step.start, step.span, step.depth, step.along, step.piece = now.s, span, now.d, now.x, now.piece
-    step.first, step.count = now.first, now.count
+    step.first, step.count, step.since = now.first, now.count, now.since
     for k in range(2):
         side, kept = now.sides[k], step.sides[k]
         step.kinked[k] = now.kinked[k]
@@ -409,7 +409,7 @@ def size_of(run: Run) -> float:
     The error is estimated by the last coefficients of the polynomials in Legendre's: of the rates, the edges,
     the compressions that the arms remember, and the moments.
     """
-    now, given, largest, moving = run.now, run.given, 0.0, 0.0
+    now, given, largest, moving, counted = run.now, run.given, 0.0, 0.0, 0.0
     rate = interpolate(run, RATE, now.v) / (1.0 + abs(now.v))
     along = interpolate(run, ALONG, now.w) / (1.0 + abs(now.w))
     width = now.sides[1].xi - now.sides[0].xi
@@ -421,7 +421,9 @@ def size_of(run: Run) -> float:
     for i in over(len(run.arms)):
         compressed = interpolate_arm(run, i, DEPTHS) + moving * interpolate_arm(run, i, SLIDES)
         remembered += total(run.arms[i, STIFF] * compressed)
+        counted += total(abs(run.arm_stages[i, DEPTHS, given.stages - 1]))
         first += total(interpolate_arm(run, i, FORCES))
         second += total(interpolate_arm(run, i, MOMENTS))
     narrow = min(1.0, width)  # what they remember of a narrow contact matters less
-    return max(rate, along, largest, remembered, narrow * first, narrow * second) / given.rtol
+    error = max(rate, along, largest, remembered, narrow * first, narrow * second) / given.rtol
+    return max(error, counted / given.counted)

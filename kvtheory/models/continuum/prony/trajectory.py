@@ -11,7 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory import compilation
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.prony import contact, evaluation, hops, segments, step, walk
+from kvtheory.models.continuum.prony import (
+    contact,
+    counting,
+    evaluation,
+    hops,
+    segments,
+    step,
+    walk,
+)
 from kvtheory.models.continuum.prony.records import STEP, Run, as_arrays, begin, with_more_room
 from kvtheory.models.continuum.run import Spring, StepControl, readable, structured
 from kvtheory.results.errors import TransientError
@@ -44,7 +52,7 @@ class Tally:
 def kernel() -> Any:
     """Return the compiled entry of the kernels; it needs numba."""
     return compiled.kernel(
-        evaluation.perform, (b_, r_, contact, step, segments, hops, walk, evaluation)
+        evaluation.perform, (b_, r_, contact, step, segments, counting, hops, walk, evaluation)
     )
 
 

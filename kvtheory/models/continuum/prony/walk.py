@@ -28,10 +28,12 @@ from kvtheory.models.continuum.prony.contact import (
     value,
 )
 from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
+from kvtheory.models.continuum.prony.counting import count_anew, in_contact
 from kvtheory.models.continuum.prony.hops import (
     close,
     closed,
     closes,
+    distance,
     flies,
     fly,
     land,
@@ -84,7 +86,7 @@ tolerance there, which allows for rounding; segments of free ground that are wat
 APPROACH = 0.85
 """Largest share of the time until the contact closes that a step takes."""
 RELIEF = 0.25
-"""How far the ground may slide in a step of the flight above it, in units of a_0."""
+"""How far the ground may slide in a step of the flight above it, in units of a_0, if it is not far away."""
 
 DONE, PAUSED, FULL, STUCK, PARTS = range(5)
 """How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
@@ -115,6 +117,7 @@ def walk(run: Run, attempts: int) -> int:
             if until < end:
                 _next_piece(run)
             continue
+        count_anew(run)
         status = _next_step(run, until)
         if status != DONE:
             return status
@@ -347,7 +350,8 @@ def _fly(run: Run, until: float) -> int:
     """Try one step in flight; accept it up to the landing."""
     now, shortest = run.now, SHORTEST * run.given.end
     _, drive, slope = b_.evaluate(run.pieces[now.piece], now.s)
-    slides = RELIEF / (abs(drive - now.w) + math.sqrt(RELIEF * abs(slope)) + TINY)
+    relief = max(RELIEF, 0.5 * distance(run))
+    slides = relief / (abs(drive - now.w) + math.sqrt(relief * abs(slope)) + TINY)
     span = _length(run, until, max(slides, -0.5 * now.d / (abs(now.v) + 1e-3)))
     if not span > shortest:
         return STUCK
@@ -408,13 +412,14 @@ def _one_interval(run: Run) -> bool:
             run.here[i, row] = run.state[i, row]
     for i in range(now.first, now.first + now.count):
         segment = run.segments[run.chain[i]]
+        low, high = in_contact(run, run.chain[i])
         for half in range(3):
             share = 0.5 * half
             if segment.step == NEVER:
-                x = segment.X_a + share * (segment.X_b - segment.X_a) + Y
+                x = low + share * (high - low) + Y
                 p, xi = pressed(run, now.s, now.d, Y, x, segment.edge, NEVER, 0.0)
             else:
-                x = segment.a + share * (min(segment.b, now.s) - segment.a)
+                x = low + share * (high - low)
                 index = step_of(run, segment.edge, segment.step, x)
                 p, xi = pressed(run, now.s, now.d, Y, 0.0, segment.edge, index, x)
             if l < xi < r and p < least:

@@ -1,0 +1,98 @@
+"""Accumulators are counted anew where the ground has slid far, and the moments of slow arms with them.
+
+On an arm that is slow beside the motion, A_i grows as the square of the distance slid, and stresses are small
+differences of it. F_i and M_i add up the rounding, the latter twice. So where A_i is large, it and B_i begin
+again from zero, and F_i and M_i from their integrals over the contact, by Radau's rule between the ends of
+steps. An element in contact keeps the stress k_i (A_i - xi B_i) of that instant, see `contact`.
+"""
+
+from typing import Any
+
+from kvtheory.models.continuum.prony.contact import (
+    DEPTHS,
+    EDGES,
+    FORCES,
+    MOMENTS,
+    NEVER,
+    PEELING,
+    SLIDES,
+    STRESSES,
+    motion,
+    pressed,
+)
+from kvtheory.models.continuum.prony.segments import here
+from kvtheory.scene.base_motion import evaluate
+
+LARGE = 0.06
+"""Share of the largest A_i that a step may reach, from which on it is counted anew."""
+A, OTHER = 0, 3
+"""Tables of `Run.method`, see `step`."""
+
+Run = Any
+
+
+def in_contact(run: Run, number: int) -> tuple[float, float]:
+    """Return between which instants those elements of a segment entered that are in contact, or their X."""
+    segment = run.segments[number]
+    low, high = segment.a, min(segment.b, run.now.s)
+    if segment.step == NEVER:
+        low, high = segment.X_a, segment.X_b
+    for k in range(2):
+        side = run.now.sides[k]
+        if side.state == PEELING and side.segment == number:
+            at = here(run, k) if segment.step == NEVER else side.sigma
+            low, high = (low, at) if segment.edge == k else (at, high)
+    return low, high
+
+
+def count_anew(run: Run) -> None:
+    """Count the accumulators of slow arms anew if they are large."""
+    now, many, large = run.now, range(len(run.arms)), LARGE * run.given.counted
+    most = 0.0
+    for i in many:
+        most = max(most, abs(run.state[i, DEPTHS]))
+        if abs(run.state[i, DEPTHS]) > large:
+            run.state[i, FORCES] = run.state[i, MOMENTS] = 0.0
+        for row in (DEPTHS, SLIDES):
+            run.here[i, row] = run.state[i, row]
+    if not most > large:
+        return
+    for n in range(now.first, now.first + now.count):
+        number = run.chain[n]
+        segment = run.segments[number]
+        low, high = in_contact(run, number)
+        if segment.step == NEVER:
+            integrate(run, NEVER, segment.edge, low, high, large)
+            continue
+        index = segment.step
+        while low < high:
+            while index + 1 < now.steps and run.steps[index + 1].start <= low:
+                index += 1
+            end = min(high, run.steps[index + 1].start) if index + 1 < now.steps else high
+            integrate(run, index, segment.edge, low, end, large)
+            low = end
+    for i in many:
+        if abs(run.state[i, DEPTHS]) > large:
+            run.state[i, DEPTHS] = run.state[i, SLIDES] = 0.0
+    now.since = now.steps
+
+
+def integrate(run: Run, index: int, edge: int, low: float, high: float, large: float) -> None:
+    """Add the integrals over elements that entered between two instants of a step to F_i and M_i."""
+    now, n = run.now, run.given.stages
+    Y, _, _ = evaluate(run.pieces[now.piece], now.s)
+    Y -= now.x
+    for j in range(n):
+        x, weight = low + (high - low) * run.method[OTHER, 0, j], high - low
+        if index != NEVER:
+            step, rate = run.steps[index], 0.0
+            _, _, _, number, theta = motion(run, index, x)
+            for m in range(n, 0, -1):
+                rate = rate * theta + m * run.rows[index, EDGES + edge, m]
+            weight *= abs(rate / step.span - number)
+        _, xi = pressed(run, now.s, now.d, Y, x + Y, edge, index, x)
+        for i in range(len(run.arms)):
+            if abs(run.state[i, DEPTHS]) > large:
+                force = weight * run.method[A, n - 1, j] * run.here[i, STRESSES]
+                run.state[i, FORCES] += force
+                run.state[i, MOMENTS] += xi * force
