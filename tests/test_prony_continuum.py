@@ -2,6 +2,7 @@
 
 import os
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -88,6 +89,25 @@ def test_it_ends_in_steady_sliding():
         found, steady = kv.transient(scene, at=[0.5], certify=False), kv.steady(scene)
         for name in ("depth", "friction_force", "trailing_edge", "peak_pressure"):
             assert getattr(found, name)[0] == pytest.approx(getattr(steady, name), rel=1e-5)
+
+
+def test_a_long_slide_on_slow_arms_ends_in_steady_sliding():
+    """Over 360 half lengths and back, with accumulators that are counted anew on the way."""
+    history = [(0.0, 30.0), (0.03, 30.0), (0.03, -30.0), (0.06, -30.0)]
+    arms, at, x = [(3e10, 5e-4), (5e9, 2e-3)], [0.03, 0.06], np.linspace(-2.4e-3, 1e-3, 5)
+    scene = sliding(arms, kv.Drive(history=history), 0.06, support=kv.Fixed(3e-4))
+    found = kv.transient(scene, at=at, certify=False)
+    steady, error = (
+        kv.steady(replace(scene, drive=kv.Drive(30.0))),
+        3e-7 * StaticState.of(scene).load,
+    )
+    assert found.friction_force == pytest.approx(
+        [steady.friction_force, -steady.friction_force], abs=error
+    )
+    assert found.peak_pressure == pytest.approx([steady.peak_pressure] * 2, rel=1e-5)
+    assert found.pressure(x, 0.03) == pytest.approx(found.pressure(-x, 0.06), rel=1e-5)
+    books = found.energy([0.002, *at])
+    assert np.abs(books.balance / (books.stored_at_rest + books.work)).max() < 1e-5
 
 
 def test_small_disturbances_decay_at_the_rates_of_f24(monkeypatch):

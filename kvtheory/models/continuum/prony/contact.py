@@ -151,27 +151,28 @@ def pressed(
             left = here[i, FORCES] + k * (kept * deeper - then)
             here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
         p += total(here[i, STRESSES])
-    j, first = run.now.since, 0 if index == NEVER else run.steps[index].since
-    while j > first:
-        p += counted_before(run, s, xi - Y, j)
-        j = run.steps[j - 1].since
+    if run.now.since > 0:
+        p += counted_before(run, s, xi - Y, 0 if index == NEVER else run.steps[index].since)
     return p, xi
 
 
-def counted_before(run: Run, s: float, X: float, j: int) -> float:
-    """Add to the s_i of the element at `X` what the count that ended where the step `j` begins knows of it.
+def counted_before(run: Run, s: float, X: float, entered: int) -> float:
+    """Add to the s_i of the element at `X` what earlier counts know of it, since that when it entered.
 
     Return the sum.
     """
-    start, added = run.steps[j].start, 0.0
-    _, _, Y, _, theta = motion(run, j - 1, start)
-    for i in over(len(run.arms)):
-        A = past(run, j - 1, i, DEPTHS, theta) - run.memory[j, i, DEPTHS, 0]
-        B = past(run, j - 1, i, SLIDES, theta) - run.memory[j, i, SLIDES, 0]
-        stress = run.arms[i, STIFFNESS] * (A - (X + Y) * B)
-        stress = stress * np.exp((start - s) / run.arms[i, TIME])
-        run.here[i, STRESSES] += stress
-        added += total(stress)
+    j, added = run.now.since, 0.0
+    while j > entered:
+        start = run.steps[j].start
+        _, _, Y, _, theta = motion(run, j - 1, start)
+        for i in over(len(run.arms)):
+            A = past(run, j - 1, i, DEPTHS, theta) - run.memory[j, i, DEPTHS, 0]
+            B = past(run, j - 1, i, SLIDES, theta) - run.memory[j, i, SLIDES, 0]
+            stress = run.arms[i, STIFFNESS] * (A - (X + Y) * B)
+            stress = stress * np.exp((start - s) / run.arms[i, TIME])
+            run.here[i, STRESSES] += stress
+            added += total(stress)
+        j = run.steps[j - 1].since
     return added
 
 

@@ -426,4 +426,4 @@ def size_of(run: Run) -> float:
         second += total(interpolate_arm(run, i, MOMENTS))
     narrow = min(1.0, width)  # what they remember of a narrow contact matters less
     error = max(rate, along, largest, remembered, narrow * first, narrow * second) / given.rtol
-    return max(error, counted / given.counted)
+    return max(error, math.pow(counted / given.counted, 0.5 * given.stages))  # as it is a square

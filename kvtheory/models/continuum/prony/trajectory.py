@@ -28,7 +28,7 @@ from kvtheory.scene.base_motion import BaseMotion
 
 Array = NDArray[np.float64]
 
-STEP_LIMIT = 5_000
+STEP_LIMIT = 30_000
 ATTEMPTS = 100
 """Attempted steps between two reports of progress."""
 WORTHWHILE, LOADABLE = 5_000, 300
