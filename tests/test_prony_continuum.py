@@ -242,6 +242,18 @@ def test_an_iteration_that_overflows_only_ends_a_step():
     assert found.depth == pytest.approx([-0.0275, 0.1534], abs=2e-4)
 
 
+@pytest.mark.parametrize("amplitude", [1.4, 1.5])
+def test_it_takes_off_from_ground_that_was_in_contact_at_rest(amplitude):
+    """The search for an edge may not begin with a move that is longer than the contact is wide."""
+    drive = kv.Drive(waveform=kv.Sine(amplitude=amplitude, frequency=260.0))
+    scene = sliding(
+        [(3e10, 0.01), (1e10, 1e-4)], drive, 0.003, support=kv.DeadWeight(load=9806.65, mass=100.0)
+    )
+    found = kv.transient(scene, at=[0.003], rtol=1e-9)
+    assert "take-off" in [event.kind for event in found.events]
+    assert found.certificate.relative_error["depth"] < 1e-6
+
+
 def test_many_arms_are_interpreted_at_once():
     """A hundred arms need little more Python than a few, each of which an array would not make faster."""
     calls = []

@@ -50,9 +50,10 @@ ground between two places that was never touched."""
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
 
-FIRST_MOVE, AT_REST_MOVE, FASTER = 1e-3, 1e-4, 4.0
-"""First move of the search for an edge, as a share of the time since the step began, or in xi; the factor by
-which the limit of moves grows until the root is bracketed."""
+FIRST_MOVE, AT_REST_MOVE, NARROW, FASTER = 1e-3, 1e-4, 0.1, 4.0
+"""First move of the search for an edge, as a share of the time since the step began, or in xi, but at most a
+share of the width: a longer one passes the other edge; the factor by which the limit of moves grows until the
+root is bracketed."""
 FARTHEST = 0.1
 """How far an edge is continued beyond the end of a segment, and the first limit of moves in xi."""
 GOLDEN = 0.3819660112501051
@@ -233,7 +234,8 @@ def edge_at(
     if segment.step == NEVER:
         end, inward = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k]
         low, high = (-math.inf, end) if k == 0 else (end, math.inf)
-        index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
+        move = min(AT_REST_MOVE, NARROW * (run.now.sides[1].xi - run.now.sides[0].xi))
+        index, start, x, reach = NEVER, side.xi, xi, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
