@@ -14,7 +14,7 @@ from kvtheory.theory.laws import Element
 
 ROOM = 48
 """Initial capacity in steps."""
-FARTHEST = 2e7
+FARTHEST = 5e6
 """Largest sum of A_i that a step may reach, over the root of the tolerance: for rounding."""
 
 SIDE = r_._record(
