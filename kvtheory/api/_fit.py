@@ -23,7 +23,7 @@ from kvtheory.scene.capabilities import (
     lacks_transient,
     require,
 )
-from kvtheory.scene.foundations import MEASURED_RANGE
+from kvtheory.scene.foundations import MEASURED
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
@@ -31,7 +31,7 @@ DIGITS = 6
 """Significant digits of a fitted number."""
 SIMULATED = 1e-3
 """Tolerance of a transient that only elements give."""
-NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED_RANGE)
+NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED)
 """Quantities that no measured friction tells."""
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import lacks_scripts
-from kvtheory.scene.foundations import FOUNDATIONS, MEASURED_RANGE, THERMAL, THIN, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, MEASURED, THERMAL, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import Quantity, given, required
@@ -51,7 +51,7 @@ UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
-    hidden = {*THERMAL, *MEASURED_RANGE, *(["modulus"] if cls is Arm else [])}
+    hidden = {*THERMAL, *MEASURED, *(["modulus"] if cls is Arm else [])}
     return {name: spec for name, spec in declared(cls).items() if name not in hidden}
 
 
