@@ -31,7 +31,9 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
 def times_of(scene: Scene, at: list[float] | None) -> Any:
     """Return the times in s, or None; those after the end of the run raise SceneError."""
     late = f"is after the end of the run, run.duration = {scene.run.duration} s"
-    if found := [problem("`at`", time, late) for time in at or () if time > scene.run.duration]:
+    if found := [
+        problem("`at`", f"{time} s", late) for time in at or () if time > scene.run.duration
+    ]:
         raise SceneError(found)
     return at
 

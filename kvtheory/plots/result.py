@@ -32,6 +32,8 @@ SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
 POINTS = 201
 """Points of the pressure over the contact."""
+CONSTANT = 1e-6
+"""Relative range of a series that is drawn as a constant one."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """Quantity that is drawn together with another one if the drive has a spring."""
 MISMATCH = 1e-6
@@ -85,6 +87,10 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
         words, factor = with_unit(symbol, result.units[name])
         values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * (sign * factor)
         artists += ax.plot(np.concatenate([before, time]), values, **style)
+        low, high = np.nanmin(values), np.nanmax(values)
+        if high - low < CONSTANT * max(abs(low), abs(high)):  # else the axis would show rounding
+            ax.update_datalim([(0.0, 0.95 * low), (0.0, 1.05 * low)])
+            ax.autoscale_view()
         ax.set(ylabel=words)
         if hasattr(result, BESIDE.get(name, "")):
             beside = np.asarray(getattr(result, BESIDE[name])) * (sign * factor)

@@ -120,7 +120,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
                 if key in swept:
                     raise SceneError([f"`over` {key} is swept twice"])
                 if key not in specs:
-                    raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
+                    raise ValueError(scene.not_replaceable(str(key)))
                 swept[key] = arrays[key] = listed(value, specs[key])
         if len({array.size for array in arrays.values()}) > 1:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
