@@ -132,6 +132,9 @@ def test_the_pressure_of_a_ball_is_that_of_its_middle_plane(velocity):
 def test_a_series_is_drawn_as_in_figure_3_and_a_notebook_shows_it_without_pyplot():
     low, high = kv.transient(kv.Scene(drive=kv.Drive(1e-12))).plot().axes[1].get_ylim()
     assert high - low > 0.01  # mm: rounding is not drawn
+    held = kv.Scene(drive=kv.Drive(0.1, stiffness=1e6))
+    alone = kv.solve(held, quantity="spring_force", at=[0.0, 0.01], rtol=0.1).plot()
+    assert [ax.get_ylabel()[1] for ax in alone.axes] == ["V", "F"]
     figure = kv.transient(at="0 ms:20 ms:21").plot()
     assert len(figure.axes) == 4
     assert figure.axes[1].lines[0].get_ydata()[-1] < 0.0  # z_A in mm

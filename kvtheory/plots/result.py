@@ -83,7 +83,7 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
     rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
     rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
     artists = []
-    for ax, (name, symbol, sign) in zip(axes, TRANSIENT_ROWS, strict=True):
+    for ax, (name, symbol, sign) in zip(axes, _rows(result), strict=True):
         words, factor = with_unit(symbol, result.units[name])
         values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * (sign * factor)
         artists += ax.plot(np.concatenate([before, time]), values, **style)
@@ -92,14 +92,28 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
             ax.update_datalim([(0.0, 0.95 * low), (0.0, 1.05 * low)])
             ax.autoscale_view()
         ax.set(ylabel=words)
-        if hasattr(result, BESIDE.get(name, "")):
+        if _there(result, BESIDE.get(name, "")):
             beside = np.asarray(getattr(result, BESIDE[name])) * (sign * factor)
             artists += ax.plot(
                 time, beside, color=RED, linewidth=0.8, label=QUANTITIES[BESIDE[name]].words
             )
-            ax.legend(loc="upper right")
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 0.95))  # above the curves
     axes[-1].set(xlabel=r"time $t$ [ms]")
     return artists
+
+
+def _there(result: TimeSeries, name: str) -> bool:
+    """Whether a result has values of a quantity: `solve` may have been asked for another one."""
+    return bool(np.isfinite(getattr(result, name, np.nan)).any())
+
+
+def _rows(result: TimeSeries) -> list[tuple[str, str, float]]:
+    """Return the rows of Fig. 3 in which there is anything to draw."""
+    return [
+        (name, symbol, sign)
+        for name, symbol, sign in TRANSIENT_ROWS
+        if _there(result, name) or _there(result, BESIDE.get(name, ""))
+    ]
 
 
 def plot_pressure(ax: Any, result: Transient, positions: ArrayLike, times: ArrayLike) -> Any:
@@ -126,7 +140,9 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return plot_sweep(axes, result, **style).figure
     if hasattr(result, "time"):
         if axes is None:
-            axes = Picture(*SERIES).subplots(len(TRANSIENT_ROWS), 1, sharex=True)
+            axes = Picture(*SERIES).subplots(len(_rows(result)), 1, sharex=True, squeeze=False)[
+                :, 0
+            ]
         return plot_transient(axes, result, **{"color": BLUE, **style})[0].figure
     if np.ndim(result.depth):
         return plot_over(axes, result, **style).figure
