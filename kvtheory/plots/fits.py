@@ -63,8 +63,8 @@ def _sweeps(ax: Any, fit: FoundationFit) -> None:
         for row, mark in zip(sweep.moduli.values, MARKS, strict=False):
             y = row * factor * fit.data["factor"]
             ax.loglog(sweep.moduli.x * x_factor, y, mark, color=colour, markersize=2.5)
-    dark, light = (f"{sweeps[i].temperature - ZERO_CELSIUS:.4g} °C" for i in (0, -1))
-    title = f"as measured, {dark} (dark) to {light} (light)"  # a legend would hide data
+    low, high = (sweeps[i].temperature - ZERO_CELSIUS for i in (0, -1))
+    title = f"measured at {low:.3g} to {high:.3g} °C (light)"  # a legend would hide data
     ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title=title)
 
 
@@ -126,7 +126,7 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
             curve,
             law.log_shift(curve + ZERO_CELSIUS, master.reference),
             color=BLACK,
-            label=law.text,
+            label=law.text.replace(", ", ",\n"),
         )
         ax.legend(fontsize="small")
     ax.set(xlabel="temperature [°C]", ylabel=r"$\log_{10} a_T$", title="shift factors")
