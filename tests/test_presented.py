@@ -138,6 +138,11 @@ def test_a_series_is_drawn_as_in_figure_3_and_a_notebook_shows_it_without_pyplot
     figure = kv.transient(at="0 ms:20 ms:21").plot()
     assert len(figure.axes) == 4
     assert figure.axes[1].lines[0].get_ydata()[-1] < 0.0  # z_A in mm
+    turned = kv.Scene(drive=kv.Drive(history=[(0.0, 0.1), (0.01, 0.1), (0.01, -0.1)]))
+    t, V = kv.transient(turned, at="0 ms:20 ms:3").plot().axes[0].lines[0].get_data()
+    assert set(V.round(9)) == {0.0, 100.0, -100.0}
+    assert 0.0 < t[V < 0.0].min() - t[V > 0.0].max() < 1e-9  # ms: a jump is drawn as one
+    assert np.diff(t).max() < 2.0  # between the times that were asked for, too
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 

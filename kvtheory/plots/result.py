@@ -32,6 +32,8 @@ SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
 POINTS = 201
 """Points of the pressure over the contact."""
+SMOOTH, JUST_BEFORE = 401, 1e-12
+"""Times at which a transient is drawn, beside its own, and the share of a time that is just before it."""
 CONSTANT = 1e-6
 """Relative range of a series that is drawn as a constant one."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
@@ -76,16 +78,19 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
     """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
 
     The state of rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
-    With a spring in the drive, the sliding velocity and the spring force are also drawn.
+    With a spring in the drive, the sliding velocity and the spring force are also drawn. Without markers
+    the curves of a transient are those of its solution, between its times too.
     """
-    time = np.asarray(result.time) * 1e3
+    smooth = hasattr(getattr(result, "solution", None), "series") and "marker" not in style
+    series = _between(result) if smooth else {n: getattr(result, n) for n in result.units}
+    time = np.asarray(series["time"]) * 1e3
     before = np.array([-0.05 * time[-1], 0.0])
     rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
     rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
     artists = []
     for ax, (name, symbol, sign) in zip(axes, _rows(result), strict=True):
         words, factor = with_unit(symbol, result.units[name])
-        values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * (sign * factor)
+        values = np.concatenate([[rest[name]] * 2, series[name]]) * (sign * factor)
         artists += ax.plot(np.concatenate([before, time]), values, **style)
         low, high = np.nanmin(values), np.nanmax(values)
         if high - low < CONSTANT * max(abs(low), abs(high)):  # else the axis would show rounding
@@ -93,13 +98,23 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
             ax.autoscale_view()
         ax.set(ylabel=words)
         if _there(result, BESIDE.get(name, "")):
-            beside = np.asarray(getattr(result, BESIDE[name])) * (sign * factor)
+            beside = np.asarray(series[BESIDE[name]]) * (sign * factor)
             artists += ax.plot(
                 time, beside, color=RED, linewidth=0.8, label=QUANTITIES[BESIDE[name]].words
             )
             ax.legend(loc="lower right", bbox_to_anchor=(1.0, 0.95))  # above the curves
     axes[-1].set(xlabel=r"time $t$ [ms]")
     return artists
+
+
+def _between(result: Any) -> Mapping[str, Any]:
+    """Return the series of a transient, also between its times and just before each jump of the drive."""
+    t, solution = result.time, result.solution
+    jumps = np.array(solution.drive.changes) * solution.units.time * (1.0 - JUST_BEFORE)
+    jumps = jumps[(jumps > t[0]) & (jumps < t[-1])]
+    times = np.unique(np.concatenate([t, jumps, np.linspace(t[0], t[-1], SMOOTH)]))
+    found: Mapping[str, Any] = solution.series(times)
+    return found
 
 
 def _there(result: TimeSeries, name: str) -> bool:
