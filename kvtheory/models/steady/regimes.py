@@ -13,7 +13,7 @@ c/(V s) <= 1/5 (theorem F18-glassy). On every support V/c grows with V (theorem 
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -240,7 +240,10 @@ def _regime(scene: Scene, truth: SteadyState, critical: Array) -> Array:
     fast = ~slow
     if times := [arm.relaxation_time for arm in scene.foundation.arms]:
         rate = _passing(scene, {name: np.abs(getattr(truth, name)) for name in EXACT})
-        slow, fast = rate * np.maximum.reduce(times) <= 1.0, rate * np.minimum.reduce(times) >= 1.0
+        slow, fast = (
+            rate * reduce(np.maximum, times) <= 1.0,
+            rate * reduce(np.minimum, times) >= 1.0,
+        )
     return np.select([slow, fast], ["low", "high"], "between")
 
 
