@@ -188,7 +188,7 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
     if off > MISMATCH:
         raise ValueError(
             "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt only; give several "
-            "velocities to `over`"
+            'velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
         )
     ax.plot(x * 1e3, p * 1e-6, **style)
     place = "pressure in the middle plane" if sphere else "pressure"
