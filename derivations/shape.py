@@ -25,6 +25,8 @@ F_behind = symbol("F_behind", latex=r"F_{\mathrm{b}}", real=True)
 q_root = symbol("q_root", latex=r"\hat q")
 
 PREMISES = ("eq22", "eq29")
+UNITS = {1: "1", 2: "1/m", 3: "1/m²", 4: "1/m³"}
+"""Unit of a coefficient by the power of x that it stands before."""
 
 
 def title(text: str) -> str:
@@ -57,7 +59,7 @@ def steady_premises() -> tuple[Derivation, ...]:
 
 
 def symbols(text: str) -> tuple[Symbol, ...]:
-    """Return the rows of the nomenclature for the parameters of a shape and for its two sides."""
+    """Return the rows of the nomenclature for the parameters, the sides and the length of a shape."""
     shape = read_shape(text)
     rows = [
         Symbol(tex(each), "parameter of the shape", _unit(shape, each)) for each in shape.parameters
@@ -65,15 +67,15 @@ def symbols(text: str) -> tuple[Symbol, ...]:
     for force, unit, name in (("W", "N/m", "load"), ("F", "N/m", "friction force")):
         for sign, side in (("a", "ahead of"), ("b", "behind")):
             meaning = f"part of the {name} that is carried {side} the lowest line"
-            rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit))
-    return tuple(rows)
+            rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit, None))
+    return (*rows, Symbol("a", "half length of the contact at rest", "m", None))
 
 
 def _unit(shape: Shape, parameter: sp.Symbol) -> str:
     """Return the unit of a coefficient that stands alone before its power."""
     for power in shape.powers:
         if shape.coefficient(power) == parameter:
-            return "1" if power == 1 else f"m^({1 - power})"
+            return UNITS.get(power, f"m^({1 - power})")
     return "such that h is in m"
 
 

@@ -1,7 +1,9 @@
 """Kernels compiled by numba, which is optional, and cached on disk."""
 
 import inspect
+import warnings
 from collections.abc import Callable, Container, Mapping
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType, ModuleType
@@ -55,6 +57,13 @@ def on_disk(entry: Any) -> bool:
     return files is not None and Path(files._index_path).exists()
 
 
+def warn_not_kept(why: object) -> None:
+    """Warn that kernels are compiled for this process only."""
+    told = f"compiled kernels cannot be kept, and every process compiles them again: {why}"
+    remedy = "set NUMBA_CACHE_DIR to a folder with space in which numba may write"
+    warnings.warn(f"{told}; {remedy}", RuntimeWarning, stacklevel=2)
+
+
 def cached(entry: Callable[..., Any], **options: Any) -> Any:
     """Return an entry that is compiled when called, and cached on disk if there is a writable place."""
     from numba import njit
@@ -65,21 +74,29 @@ def cached(entry: Callable[..., Any], **options: Any) -> Any:
     options["pipeline_class"] = EntryCompiler
     try:
         compiled = njit(entry, cache=True, **options)
-    except RuntimeError:  # package and home are read-only
+    except RuntimeError:
+        warn_not_kept("package and home are read-only")
         compiling()
         return njit(entry, **options)
     disk: Any = compiled._cache  # type: ignore[attr-defined]
-    load = disk.load_overload
+    load, save = disk.load_overload, disk.save_overload
 
     def load_or_forget(*key: Any) -> Any:
         found = None
         try:
             found = load(*key)
         except Exception:  # whatever damaged files raise, or those of another version
-            disk.flush()
+            with suppress(OSError):
+                disk.flush()
         if found is None:
             compiling()
         return found
 
-    disk.load_overload = load_or_forget
+    def save_or_warn(*key: Any) -> None:
+        try:
+            save(*key)
+        except OSError as error:  # the disk is full
+            warn_not_kept(error)
+
+    disk.load_overload, disk.save_overload = load_or_forget, save_or_warn
     return compiled

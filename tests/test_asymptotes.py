@@ -157,6 +157,21 @@ def test_the_regimes_are_told_apart_at_the_critical_velocity(kind):
 
 
 @pytest.mark.parametrize("ball", [False, True])
+def test_the_regimes_of_a_broad_spectrum_are_those_of_all_its_arms(ball):
+    """Low, where V/c is below 1/tau of every arm, and high above; V*, between both, tells nothing."""
+    shape = kv.Sphere(0.01) if ball else kv.Parabola(0.01)
+    arms = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "1 us"], ["2 GN/m^3", "1000 s"]])
+    scene = of(shape, "dead-weight", arms)
+    V_of = np.geomspace(1e-7, 1e5, 60)
+    state = kv.steady(scene, over={V: V_of})
+    rate = V_of / (state.trailing_edge - state.leading_edge)
+    expected = np.where(rate < 1e-3, "low", np.where(rate > 1e6, "high", "between"))
+    assert reported(scene, velocity=-V_of).regime.tolist() == expected.tolist()
+    assert len(set(expected)) == 3
+    assert "between the low- and the high-velocity regime" in str(kv.asymptotes(scene))
+
+
+@pytest.mark.parametrize("ball", [False, True])
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_one_law_is_the_limit_of_another(kind, ball):
     """A springpot of order 1 is Kelvin-Voigt; fast arms fall as 1/V, by 2/5 of a parabola, 1/3 of a ball."""

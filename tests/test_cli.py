@@ -5,6 +5,7 @@ import os
 import shlex
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import click
@@ -419,3 +420,9 @@ def test_output_never_dies_of_the_encoding_of_the_console(tmp_path):
     line = f"kvtheory steady --set 'support.mass=5 µq' '{scene}'"
     status, _, message = shell(line, PYTHONIOENCODING="cp1252", LC_ALL="C.UTF-8")
     assert (status, b"support.mass" in message) == (2, True), message
+
+
+def test_warnings_read_as_messages():
+    run("cite")
+    shown = warnings.formatwarning("compiled anew", RuntimeWarning, "x.py", 1)
+    assert shown == "kvtheory: warning: compiled anew\n"

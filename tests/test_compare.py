@@ -455,6 +455,7 @@ BAD = {
     "decimal comma": (rows(HEADS, '0,"-0,3",9,0'), "write the decimal mark as a point"),
     "two marks": (rows(HEADS.replace(",", ";"), "0;-1.000,3;9;0"), "write the decimal mark as a point"),
     "endless cell": (rows(HEADS, "0," + "9" * 200_000 + ",9,0"), "not a table of numbers: field larger"),
+    "no number": (rows("t [ms],V [mm/s]", *["1,2"] * 9, "ten,2", "1,2"), '"ten" is not a number'),
     "nothing known": (rows("a,b", "1,2"), 'line 1, "a,b": has no column that is known'),
     "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
     "wrong unit": (rows("t [ms],F_z [N]", "0,1"), '"F_z [N]": the unit "N" has the wrong dimension'),

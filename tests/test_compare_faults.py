@@ -342,6 +342,7 @@ def test_a_measured_curve_is_judged_with_its_scatter():
     assert (found.verdict, failed(found)) == ("agrees", [])
     assert "neither the inertia nor the memory" in found.diagnosis
     assert list(found.series) == ["velocity", "friction_coefficient"]
+    assert found.plot().axes[0].get_xscale() == "log"
     for data, name in (
         ({"velocity": V, "friction_coefficient": 1.1 * mu}, "scale of friction_coefficient"),
         ({"velocity": V, "friction_coefficient": noisy + 0.02}, "offset of friction_coefficient"),

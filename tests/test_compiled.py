@@ -1,5 +1,6 @@
 """Compiled and interpreted kernels: one source, the same numbers to the last bit."""
 
+import errno
 import types
 from pathlib import Path
 
@@ -132,6 +133,22 @@ def test_compiling_is_reported_and_loading_what_is_compiled_is_not(tmp_path, mon
         for _ in range(2):
             assert compilation.cached(doubled)(1.5) == 3.0
     assert told == [(0.25, "begun"), (0.25, COMPILING)]
+
+
+def test_kernels_that_cannot_be_kept_are_compiled_with_a_warning(tmp_path, monkeypatch):
+    """No place for the cache, as of a function without a file, or no space at it."""
+    homeless = {}
+    exec("def doubled(x):\n    return 2.0 * x\n", homeless)
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    with pytest.warns(RuntimeWarning, match="every process compiles them again.*NUMBA_CACHE_DIR"):
+        assert compilation.cached(homeless["doubled"])(1.5) == 3.0
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    with pytest.warns(RuntimeWarning, match="No space left.*NUMBA_CACHE_DIR"):
+        assert compilation.cached(doubled)(1.5) == 3.0
 
 
 @pytest.mark.parametrize("left", [b"", b"\x80damaged", None])

@@ -1,5 +1,6 @@
 """The balance laws (fact F14): impulse, and the energy ledger, its entries and shares in steady sliding."""
 
+import dataclasses
 import itertools
 import math
 
@@ -166,6 +167,7 @@ def maxima(scene):
 def test_the_largest_forces_of_a_start_are_at_once():
     for support in ("fixed", "dead-weight", "suspended"):
         assert maxima(kv.Scene.table1(support)) == [0.0, 0.0]
+        assert not maxima(dataclasses.replace(kv.Scene.table1(support), drive=kv.Drive(0.0)))
 
 
 def test_the_largest_friction_before_a_jump():

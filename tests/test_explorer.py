@@ -477,6 +477,15 @@ def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser, chosen, s
     assert f"{right.frequency:.4g} Hz" in rows
 
 
+@pytest.mark.parametrize("velocity", ["1e-6", "1e9"])
+def test_the_exact_curve_reaches_a_scene_far_from_the_others(browser, velocity):
+    browser.run(f"restore('#drive.velocity={velocity}')")
+    browser.settle()
+    path = "document.querySelector('#curve path.exact').getBoundingClientRect()"
+    dot = "document.querySelector('#curve circle.present').getBoundingClientRect()"
+    assert browser.run(f"{path}.left <= {dot}.left + 6 && {path}.right >= {dot}.right - 6")
+
+
 def test_units_follow_the_indenter(browser):
     browser.run("state.choices.indenter = 'sphere', build_controls(), soon()")
     browser.settle()

@@ -130,3 +130,15 @@ def test_the_command_writes_the_page(tmp_path):
     path = tmp_path / "explorer.html"
     run("explore", "-o", path)
     assert path.read_text(encoding="utf-8") == explorer_page(TABLE1)
+
+
+def test_what_follows_from_a_temperature_fits_its_field():
+    own = {"reference_temperature": "23 degC", "wlf": ["17.44", "51.6 K"], "temperature": "60 degC"}
+    arms = [["1.5 MPa", "0.1 ms"], ["0.3 MPa", "0.1 s"]]
+    layer = kv.GeneralizedMaxwell(
+        modulus="0.5 MPa", thickness="2 mm", poisson_ratio=0.3, arms=arms, **own
+    )
+    held = controls(kv.Scene(foundation=layer))["scene"]
+    for arm, shown in zip(layer.arms, held["arms"], strict=True):
+        assert max(map(len, shown)) <= 12
+        assert float(shown[1]) == pytest.approx(1e3 * arm.relaxation_time, rel=1e-5)

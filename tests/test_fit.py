@@ -384,7 +384,7 @@ BAD = {
     "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n", "needs a scene with foundation.wlf"),
     "huge": (MU + "5,1e300\n", "1e+300 is not plausible"),
     "foundation.stifness": (MU, 'did you mean "foundation.stiffness"'),
-    "drive.velocity": (MU, "is not a quantity of this scene"),
+    "drive.velocity": (MU, "is given by the data"),
     "": (MU, "expected the keys of free quantities"),
     "time twice": (RUN + "3,2\n", 'line 6, column "t [ms]": 3 does not follow the time before'),
     "before the start": ("t [ms],F_x [N/m]\n-3,5\n-2,4\n-1,3\n", "is before t = 0"),

@@ -10,6 +10,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.fitting import moduli, shifting, spectrum
 from kvtheory.fitting.spectrum import Moduli, Series
+from kvtheory.sweeps.plan import REMARKS
 from tests.commands import printed, refused, run
 
 DMA = Path(__file__).parents[1] / "docs" / "data" / "dma"
@@ -387,6 +388,35 @@ def test_sliding_outside_the_measured_frequencies_is_noted(tmp_path):
         scene.replace({"foundation.highest_frequency": "1 Hz"})
     with pytest.raises(ValueError, match=r"foundation\.highest_frequency: missing"):
         kv.Foundation("10 GN/m^3", "10 ms", lowest_frequency="1 Hz")
+
+
+def test_a_temperature_at_which_the_shift_is_not_known_is_noted(tmp_path):
+    """Beyond the measured sweeps, or, where these are not known, near the pole of WLF's law."""
+    data, _ = wlf_sweeps(0.01)
+    layer = {"thickness": "0.1 mm", "poisson_ratio": 0.3}
+    fitted = kv.fit_foundation(data, **layer).scene
+    own = fitted.foundation
+    assert (own.lowest_temperature, own.highest_temperature) == pytest.approx(
+        (263.15, 323.15), abs=0.5
+    )
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(fitted))
+    assert kv.load_scene(path) == fitted
+    with pytest.raises(ValueError, match=r"expected above foundation\.lowest_temperature"):
+        fitted.replace({"foundation.highest_temperature": "-40 degC"})
+    assert any("a_T extrapolates (263" in note for note in
+               kv.fit_foundation(data, temperature="60 degC", **layer).notes)  # fmt: skip
+    wlf = {"reference_temperature": "23 degC", "wlf": ["17.44", "51.6 K"]}
+    given = kv.Scene(foundation=kv.Foundation("10 GN/m^3", "1 s", **wlf))
+    key, slowly = "foundation.temperature", {"drive.velocity": "1 um/s"}
+    for scene, within, outside in ((fitted, "45 degC", "60 degC"), (given, "60 degC", "-5 degC")):
+        known, far = (scene.replace({key: T, **slowly}) for T in (within, outside))
+        for answer in (kv.steady, kv.asymptotes, partial(kv.elements, at=[0.0], certify=False)):
+            assert "a_T extrapolates" in str(answer(far).notes)
+            assert "a_T extrapolates" not in str(answer(known).notes)
+        several = kv.steady(scene, over={key: [within, outside]})
+        assert "in 1 of 2 scenes, is outside" in str(several.notes)
+        assert REMARKS[1] in kv.sweep(scene, over={key: [within, outside]}).certificate.statement
 
 
 def test_a_fitted_foundation_remembers_what_the_data_cover():

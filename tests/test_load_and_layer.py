@@ -168,7 +168,9 @@ def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
     over = {"foundation.stiffness": [1e9, 1e10]}
     assert np.array_equal(kv.steady(by_layer, over=over).depth, kv.steady(over=over).depth)
     assert kv.sweep(by_layer, over=over, quantities="depth.end").failed == 0
-    with pytest.raises(kv.SceneError, match=r"foundation\.thickness = .*: unknown key"):
+    with pytest.raises(
+        kv.SceneError, match=r"foundation\.thickness = .*: the scene needs foundation.modulus"
+    ):
         kv.sweep(over={"foundation.thickness": [1e-3]})
 
 
@@ -340,6 +342,13 @@ def test_a_wrong_temperature_is_told_by_its_key(given, words):
     ):
         with pytest.raises(kv.SceneError, match=words):
             cls(**own, **given)
+
+
+def test_a_key_that_needs_another_says_so():
+    told = "the scene needs foundation.reference_temperature beside it"
+    for ask in (kv.steady, kv.sweep):
+        with pytest.raises(kv.SceneError, match=told):
+            ask(over={"foundation.temperature": [300.0]})
 
 
 def test_a_shift_that_leaves_double_precision_later_is_named():

@@ -130,9 +130,19 @@ def test_the_pressure_of_a_ball_is_that_of_its_middle_plane(velocity):
 
 
 def test_a_series_is_drawn_as_in_figure_3_and_a_notebook_shows_it_without_pyplot():
+    low, high = kv.transient(kv.Scene(drive=kv.Drive(1e-12))).plot().axes[1].get_ylim()
+    assert high - low > 0.01  # mm: rounding is not drawn
+    held = kv.Scene(drive=kv.Drive(0.1, stiffness=1e6))
+    alone = kv.solve(held, quantity="spring_force", at=[0.0, 0.01], rtol=0.1).plot()
+    assert [ax.get_ylabel()[1] for ax in alone.axes] == ["V", "F"]
     figure = kv.transient(at="0 ms:20 ms:21").plot()
     assert len(figure.axes) == 4
     assert figure.axes[1].lines[0].get_ydata()[-1] < 0.0  # z_A in mm
+    turned = kv.Scene(drive=kv.Drive(history=[(0.0, 0.1), (0.01, 0.1), (0.01, -0.1)]))
+    t, V = kv.transient(turned, at="0 ms:20 ms:3").plot().axes[0].lines[0].get_data()
+    assert set(V.round(9)) == {0.0, 100.0, -100.0}
+    assert 0.0 < t[V < 0.0].min() - t[V > 0.0].max() < 1e-9  # ms: a jump is drawn as one
+    assert np.diff(t).max() < 2.0  # between the times that were asked for, too
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 

@@ -8,7 +8,7 @@ import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.chapters import steady
 from kvtheory.derivations.engine.book import established
-from kvtheory.derivations.shape import derive_shape, q_root
+from kvtheory.derivations.shape import derive_shape, q_root, symbols
 from kvtheory.derivations.shape_text import distance, read_shape
 
 from tests.conftest import digits
@@ -117,3 +117,9 @@ def test_it_says_where_closed_forms_end():
 def test_what_is_no_shape_is_refused(text):
     with pytest.raises(ValueError, match="shape"):
         derive_shape(text)
+
+
+def test_the_nomenclature_is_that_of_the_shape():
+    """Its half length is not that of a parabola."""
+    rows = {row.latex: row for row in symbols("c*x**4")}
+    assert (rows["a"].meaning, rows["c"].unit) == ("half length of the contact at rest", "1/m³")

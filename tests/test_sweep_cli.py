@@ -83,7 +83,8 @@ def test_failures_are_counted_and_told(place):
 
 
 def test_transients_by_measures_and_series(place):
-    run(*OVER, "-o", "peaks.csv", "--quantity", "peak_to_steady_friction,hops,events")
+    told = run(*OVER, "-o", "peaks.csv", "--quantity", "peak_to_steady_friction,hops,events")
+    assert "In some scenes friction had not settled" in told.output
     rows = [line for line in (place / "peaks.csv").read_text().splitlines() if line[0] != "#"]
     assert rows[0].endswith("peak_to_steady_friction [1],hops [1],events")
     run(*OVER, "-o", "series.csv", "--quantity", "depth", "--at", "0 ms,1 ms,0.2 s")

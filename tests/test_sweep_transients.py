@@ -97,6 +97,14 @@ def test_friction_stays_settled_from_the_settling_time_on(case):
     assert outside.size == 0 or outside[-1] >= begin + found["settling_time"] - grid - 1e-12
 
 
+def test_a_peak_of_a_run_that_has_not_settled_is_told():
+    for indenter in (kv.Parabola(0.01), kv.Circle(0.01)):
+        for end, short in ((0.01, True), (0.2, False)):
+            over = {DURATION: [end]}
+            found = kv.sweep(kv.Scene(indenter), over=over, quantities="peak_to_steady_friction")
+            assert ("had not settled" in found.certificate.statement) == short
+
+
 def test_series_are_those_of_the_transient():
     at = ["0 ms", "3 ms", "100 ms"]
     asked = [*NAMES, "depth.steady", "depth.end", "load"]

@@ -12,7 +12,7 @@ from kvtheory.models.steady.methods import METHODS
 from kvtheory.results import AsymptoteReport
 from kvtheory.results.presented import with_unit
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
-from kvtheory.scene.foundations import EXTRAPOLATED, extrapolates
+from kvtheory.scene.foundations import EXTRAPOLATED, beyond, extrapolates
 from kvtheory.scene.model import Scene
 
 MINIMUM_TOLERANCE = 1e-10
@@ -77,7 +77,7 @@ def asymptotes(
     with double_precision(scene):
         found = maxima.report(scene, method)
         report = regimes.report(scene, tolerance, found, method)
-        notes = [*report.notes, *_extrapolated(scene, report, method)]
+        notes = [*report.notes, *_extrapolated(scene, report, method), beyond(scene.foundation)]
         if scene.foundation.modulus is not None:  # else no state need be solved again
             notes.append(layer_note(scene, METHODS[method](scene).half_length))
         return replace(report, notes=tuple(filter(None, notes)))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
-from kvtheory.scene.foundations import extrapolates, thick_layer
+from kvtheory.scene.foundations import beyond, extrapolates, thick_layer
 from kvtheory.scene.mistakes import SceneError, problem
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -31,7 +31,9 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
 def times_of(scene: Scene, at: list[float] | None) -> Any:
     """Return the times in s, or None; those after the end of the run raise SceneError."""
     late = f"is after the end of the run, run.duration = {scene.run.duration} s"
-    if found := [problem("`at`", time, late) for time in at or () if time > scene.run.duration]:
+    if found := [
+        problem("`at`", f"{time} s", late) for time in at or () if time > scene.run.duration
+    ]:
         raise SceneError(found)
     return at
 
@@ -46,12 +48,12 @@ def layer_note(scene: Scene, half_length: Any) -> str:
 
 
 def noted(scene: Scene, series: Any) -> Any:
-    """Return a time series with notes: V/c leaves the measured frequencies; the layer is thick."""
+    """Return a time series with notes: V/c or T leave the measured range; the layer is thick."""
     length = np.abs(series.trailing_edge - series.leading_edge)
     length = np.where(length > 0.0, length, np.nan)
     if np.isnan(length).all():
         return series
-    notes = [layer_note(scene, 0.5 * np.nanmin(length))]
+    notes = [layer_note(scene, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)
         notes.append(extrapolates(scene.foundation, passing.max(), 1.0))

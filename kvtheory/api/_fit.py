@@ -23,7 +23,7 @@ from kvtheory.scene.capabilities import (
     lacks_transient,
     require,
 )
-from kvtheory.scene.foundations import MEASURED_RANGE
+from kvtheory.scene.foundations import MEASURED
 from kvtheory.scene.mistakes import Problems, nearest
 from kvtheory.scene.model import Scene
 
@@ -31,8 +31,8 @@ DIGITS = 6
 """Significant digits of a fitted number."""
 SIMULATED = 1e-3
 """Tolerance of a transient that only elements give."""
-NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED_RANGE)
-"""Quantities that no measured friction tells."""
+NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED)
+"""Quantities that the data give, and that no friction tells."""
 
 
 @checked(scene=a_scene, free=names, models=flag, progress=callback)
@@ -215,7 +215,8 @@ def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:
         own = [key] if key in known else [each for each in known if each.startswith(f"{key}[")]
         value = scene.values().get(own[0]) if own else None
         if not own:
-            problems.append(f"`free` {key}: is not a quantity of this scene; {nearest(key, known)}")
+            told = "is given by the data" if key in NOT_FREE else "is not a quantity of this scene"
+            problems.append(f"`free` {key}: {told}; {nearest(key, known)}")
         elif not value or value < 0.0:
             problems.append(f"`free` {key}: is not above 0 in the scene, so that it has no scale")
         keys += [each for each in own if each not in keys]

@@ -12,7 +12,7 @@ from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
 from kvtheory.scene.arguments import a_scene, checked, choice, count, flag, measured, number
-from kvtheory.scene.foundations import MEASURED_RANGE, MOST_ARMS, GeneralizedMaxwell
+from kvtheory.scene.foundations import MEASURED_RANGES, MOST_ARMS, GeneralizedMaxwell, beyond
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
 
@@ -128,6 +128,8 @@ def fit_foundation(
         thermal = {"wlf": constants} if law.name == "wlf" else {"activation_energy": constants[0]}
         thermal["reference_temperature"] = _rounded(master.reference)
         thermal |= {} if temperature is None else {"temperature": temperature}
+        range_of_T = map(_rounded, master.temperatures[[0, -1]])
+        thermal |= dict(zip(MEASURED_RANGES[1], range_of_T, strict=True))
     elif temperature is not None:
         told = (
             "no law of the shift factor is known: it needs several temperatures, or `shift_factors`"
@@ -136,7 +138,7 @@ def fit_foundation(
     x, residuals = found.data.x, series.residuals(found.data)
     ends = x[[0, -1]] / math.tau if found.data.dynamic else 1.0 / x[[-1, 0]]
     frequencies = _rounded(ends[0]), _rounded(ends[1])
-    own = {"arms": pairs, **thermal, **dict(zip(MEASURED_RANGE, frequencies, strict=True))}
+    own = {"arms": pairs, **thermal, **dict(zip(MEASURED_RANGES[0], frequencies, strict=True))}
     whole = None
     if per_area or thickness is not None:
         layer = {"modulus": relaxed, "thickness": thickness, "poisson_ratio": poisson_ratio}
@@ -163,7 +165,7 @@ def fit_foundation(
         frequencies=frequencies,
         velocities=None if whole is None else _velocities(whole, frequencies),
         source=source,
-        notes=found.notes,
+        notes=(*found.notes, *filter(None, [beyond(whole.foundation) if whole else ""])),
         scene=whole,
         data={
             "x": x, "measured": found.data.values * factor,

@@ -19,7 +19,7 @@ from kvtheory.scene.capabilities import (
     lacks_quadrature,
     require,
 )
-from kvtheory.scene.foundations import extrapolates
+from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
 
 LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
@@ -58,8 +58,8 @@ def steady(
     SteadyState
         Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
         whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, if a foundation
-        given as a layer is not thin for its contact, and if V/c is outside the frequencies at which the
-        foundation was measured.
+        given as a layer is not thin for its contact, and if V/c is outside the frequencies, or the
+        temperature outside the temperatures, at which the foundation was measured.
 
     Raises
     ------
@@ -98,6 +98,7 @@ def steady(
         notes = [
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
             layer_note(scene, state.half_length),
+            beyond(scene.foundation),
         ]
         return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
 

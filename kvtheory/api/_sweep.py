@@ -59,11 +59,12 @@ def sweep(
         unstable on the spring in the drive (included by default with a spring). Of a transient:
         ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
         ``peak_to_steady_friction``, the largest |F_x| of the run over the steady one; ``settling_time``,
-        after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
-        ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run shows
-        neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the indenter
-        along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with ``.cycle_max``
-        and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the steady value.
+        after which F_x stays within 1 % of the steady one, missing where the run ends before that; ``hops``,
+        how often the indenter takes off; ``events``, as JSON. With a spring in the drive
+        ``stick_slip_settles`` (1, or 0 where the run shows neither steady sliding nor a limit cycle),
+        ``stick_slip_amplitude`` (half the stroke of the indenter along x), ``stick_slip_period``, and
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is
+        the time series; ``NAME.steady`` is always the steady value.
         Elements simulate other shapes, and a parabola that `transient` cannot solve on a Prony series, within
         seconds each: series, ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
     at, method, rtol

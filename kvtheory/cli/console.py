@@ -168,14 +168,22 @@ def print_json(result: Any) -> None:
 
 
 def print_series(result: Any, *, whole: bool, remedy: str) -> None:
-    """Print a time series: every row, or about twenty; above it a large error, with its remedy."""
+    """Print a time series: every row, or about twenty; above it a large error, with its remedy.
+
+    Quantities that `solve` was not asked for are left out.
+    """
+    import numpy as np  # not needed for help texts
+
     errors = result.certificate.relative_error
     if large := {name: error for name, error in errors.items() if not error <= LARGE_ERROR}:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
         scale = result.certificate.relative_to
         click.secho(f"! Large error, relative to {scale}: {named}. {remedy}", bold=True)
-    shown = ((name, unit) for name, unit in result.units.items() if name != "depth_rate")
-    columns = {name: (getattr(result, name), unit) for name, unit in shown}
+    columns = {
+        name: (getattr(result, name), unit)
+        for name, unit in result.units.items()
+        if name != "depth_rate" and (name in errors or not np.isnan(getattr(result, name)).all())
+    }
     _print_columns(columns, result.time.size, whole=whole)
 
 

@@ -4,6 +4,7 @@ import os
 import re
 import sys
 import traceback
+import warnings
 from contextlib import suppress
 from importlib.resources import files
 from typing import Any
@@ -82,6 +83,7 @@ class Group(click.Group):
         if not standalone_mode:
             return run(*args, standalone_mode=False, **kwargs)
         output, status = sys.stdout, 0
+        warnings.formatwarning = lambda message, *_, **__: f"kvtheory: warning: {message}\n"
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")

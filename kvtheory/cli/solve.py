@@ -74,7 +74,7 @@ def transient(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     result = follow(scene, **how, progress=progress)
     yield result
     console.print_series(result, whole=how["at"] is not None, remedy="Take a smaller --rtol.")
-    click.echo("\nevents:")
+    click.echo("\nevents:" if result.events else "\nno events")
     for event in result.events:
         click.echo(f"  {console.text(event.time, 's')}: {event.kind}")
     console.print_error(f"{result.steps} steps", result)

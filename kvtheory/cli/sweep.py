@@ -69,7 +69,7 @@ def sweep(
     from kvtheory.api._sweep import plan_of
     from kvtheory.results import record
     from kvtheory.scene import load_scene
-    from kvtheory.scene.foundations import EXTRAPOLATED
+    from kvtheory.sweeps.plan import REMARKS
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
@@ -109,8 +109,9 @@ def sweep(
         click.echo(
             'The lines above the table describe it: read it by pandas.read_csv(FILE, comment="#").'
         )
-    if EXTRAPOLATED in result.certificate.statement:
-        click.echo(f"In some scenes V/c is {EXTRAPOLATED}.")
+    for remark in REMARKS:
+        if remark in result.certificate.statement:
+            click.echo(f"{remark[0].upper()}{remark[1:]}.")
     for failure in result.failures[:SHOWN_FAILURES]:
         point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
         click.echo(f"  {point}: {failure.reason}")

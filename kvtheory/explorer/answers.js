@@ -99,7 +99,7 @@ function fit(formula) {
 function show_formula(scene, state) {
   const place = document.getElementById("formula");
   if (state.friction_coefficient === 0) {
-    place.innerHTML = "<p>At rest there is no friction.</p>";
+    place.innerHTML = '<p class="note">At rest there is no friction.</p>';
     return;
   }
   const found = formula_here(scene, state), row = MODEL.formulas[found.key], numbers = quantities_of(scene, state);
@@ -143,11 +143,11 @@ function motions(pairs) {
 function show_stability(scene, state) {
   const place = document.getElementById("stability"), { drive } = scene;
   if (scene.depth !== undefined && !drive) {
-    place.innerHTML = "<p>An indenter that is held cannot move: nothing can become unstable.</p>";
+    place.innerHTML = '<p class="note">An indenter that is held cannot move: nothing can become unstable.</p>';
     return;
   }
   if (!has_stability(scene)) {
-    place.innerHTML = "<p>Known for a parabola and for a ball that slide on Kelvin\u2013Voigt elements or on a Prony series.</p>";
+    place.innerHTML = '<p class="note">Known for a parabola and for a ball that slide on Kelvin\u2013Voigt elements or on a Prony series.</p>';
     return;
   }
   const { lower, upper, stable: on } = onset_of(scene, state), pairs = scene.arms ? [] : rates(scene, state);

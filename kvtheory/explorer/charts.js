@@ -95,6 +95,10 @@ function draw_curve(scene, state, data) {
   const { known, centre, decades, tops, exact, unstable, from } = data;
   const ends = [centre * 10 ** -decades, centre * 10 ** decades];
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
+  // A scene far from the curve that was found: up to it a few points are enough, near a limit.
+  const beyond = (from, to) => Array.from({ length: from < to ? 9 : 0 }, (_, k) => from * (to / from) ** (k / 8))
+    .map((V) => [V, slide({ ...scene, rough: true, V }).friction_coefficient]);
+  const whole = [...beyond(low, ends[0]), ...exact, ...beyond(ends[1], high)];
   const values = exact.map(([, mu]) => mu).filter((mu) => mu > 0), most = Math.max(...values);
   const least = Math.min(...values, friction > 0 ? friction : Infinity);
   show("curve", (box, clip) => {
@@ -104,7 +108,7 @@ function draw_curve(scene, state, data) {
     for (const kind of ["low", "high"]) {
       if (known[kind]) drawn += line([low, high].map((V) => at([V, known[kind](V)])), kind);
     }
-    drawn += line(exact.map((point, k) => (unstable[k] ? at(point) : [NaN, NaN])), "unstable") + line(exact.map(at), "exact");
+    drawn += line(exact.map((point, k) => (unstable[k] ? at(point) : [NaN, NaN])), "unstable") + line(whole.map(at), "exact");
     let marks = "";
     if (known.critical) {
       const V = x.at(known.critical * 1e3);

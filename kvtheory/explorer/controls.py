@@ -8,7 +8,7 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import lacks_scripts
-from kvtheory.scene.foundations import FOUNDATIONS, MEASURED_RANGE, THERMAL, THIN, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, MEASURED, THERMAL, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import Quantity, given, required
@@ -46,12 +46,14 @@ ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
 VARIES = "The drive of the scene varies in time; the page takes its final velocity."
 RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
 """Arms shown for a scene without any."""
+DIGITS = 6
+"""Digits of what follows from a temperature or a layer: all of them would not fit into a field."""
 UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
-    hidden = {*THERMAL, *MEASURED_RANGE, *(["modulus"] if cls is Arm else [])}
+    hidden = {*THERMAL, *MEASURED, *(["modulus"] if cls is Arm else [])}
     return {name: spec for name, spec in declared(cls).items() if name not in hidden}
 
 
@@ -65,6 +67,8 @@ def controls(scene: Scene) -> dict[str, Any]:
     foundation = scene.foundation
     if foundation.shift_factor != 1.0 or (foundation.arms and foundation.modulus is not None):
         scene = replace(scene, foundation=foundation.plain())
+        own = (pair for pair in scene.values().items() if pair[0].startswith("foundation."))
+        scene = scene.replace({key: float(f"{value:.{DIGITS}g}") for key, value in own})
     values = {section: _values(scene, section) for section in SECTIONS}
     line = scene.indenter.per_width
     sections = {}
@@ -195,7 +199,7 @@ def _exponent(unit: str) -> int:
 def _text(value: float, unit: str) -> str:
     """Return an SI value in the displayed unit, with the same digits."""
     number = Decimal(repr(float(value))).scaleb(-_exponent(unit)).normalize()
-    return f"{number:f}" if -8 < number.adjusted() < 12 else f"{number:e}"
+    return f"{number:f}" if -5 < number.adjusted() < 8 else f"{number:e}"
 
 
 def _finite(value: float) -> float | None:

@@ -9,7 +9,7 @@ function lacks_start(scene) {
   const { indenter, depth, drive } = scene, further = (command) => ` <code>kvtheory ${command}</code> follows it.`;
   if (scene.V === 0) return "Without a velocity nothing starts.";
   if (!scene.kelvin_voigt) {
-    const told = scene.arms ? further("elements") : " Nothing here follows a springpot in time.";
+    const told = scene.arms ? further(indenter === "parabola" ? "transient" : "elements") : " Nothing here follows a springpot in time.";
     return `The start is in closed form on Kelvin\u2013Voigt elements only.${told}`;
   }
   if (drive && indenter === "sphere") return `The start of a ball is in closed form under a rigid drive only.${further("elements")}`;

@@ -65,7 +65,10 @@ class Law(NamedTuple):
     @property
     def text(self) -> str:
         """The law with its constants in words."""
-        pairs = [f"{c:.4g} ± {e:.2g}" for c, e in zip(self.constants, self.errors, strict=True)]
+        pairs = [
+            f"{c:.4g} ± {float(f'{e:.2g}'):g}"
+            for c, e in zip(self.constants, self.errors, strict=True)
+        ]
         if self.name == "wlf":
             return f"WLF: C_1 = {pairs[0]}, C_2 = {pairs[1]} K"
         c, e = self.constants[0] / 1e3, self.errors[0] / 1e3

@@ -37,6 +37,12 @@ EXPLANATIONS = """<h2>Possible explanations</h2>
 <thead><tr><th>fault</th><th>explains</th><th>enough</th><th>description</th></tr></thead><tbody>
 {}
 </tbody></table></div>"""
+ALLOWANCES = (
+    "A curve may differ as much as its own scatter allows.",
+    "A difference is measured from the band that theory spans within two time steps; the allowance beyond it "
+    "follows from one element at an edge of the contact (F15), the noise and the rounding of the data.",
+)
+"""What a check of a curve over velocity, or of a time series, allows."""
 MARGIN = 1.6
 """Limit of the axis of residuals, relative to the band, which leaves space for the legend above it."""
 WIDTH, LONGEST = 7.2, 154
@@ -83,8 +89,10 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     for row in axes[len(names) :]:
         for ax in row:
             ax.set_axis_off()
+    log = axis != "time" and bool((time > 0.0).all())
     for ax in axes[len(names) - 1]:
         ax.set(xlabel=r"time $t$ [ms]" if axis == "time" else r"velocity $V$ [mm/s]")
+        ax.set(xscale="log" if log else "linear")
     axes[0][0].legend(loc="best")
     axes[0][1].legend(loc="upper right", ncols=2, fontsize=8)
     return artists
@@ -142,6 +150,7 @@ def comparison_report(comparison: Comparison, scene: Scene) -> str:
         explanations=EXPLANATIONS.format("\n".join(explanations)) if explanations else "",
         picture=inline(lambda: draw_comparison(comparison, checks=False)),
         checks="\n".join(checks),
+        allowance=ALLOWANCES["time" in comparison.series],
         scene=escape(to_toml(scene).strip()),
         tolerance="" if tolerance == 1.0 else f", times the tolerance {tolerance:g}",
     )  # fmt: skip

@@ -47,7 +47,7 @@ def plot_failure(ax: Any, found: Finding) -> list[Any]:
     for role, curve in (("wrong", found.outcome.naive), ("package", found.outcome.ours)):
         artists += ax.plot(curve[0] * x_factor, curve[1] * y_factor, **LOOKS[role])
     ax.set(xlabel=x, ylabel=y, xscale=x_scale, yscale=y_scale)
-    ax.legend(loc="best")
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2)  # above the curves
     return artists
 
 

@@ -63,11 +63,9 @@ def _sweeps(ax: Any, fit: FoundationFit) -> None:
         for row, mark in zip(sweep.moduli.values, MARKS, strict=False):
             y = row * factor * fit.data["factor"]
             ax.loglog(sweep.moduli.x * x_factor, y, mark, color=colour, markersize=2.5)
-    ends = [sweeps[i].temperature - ZERO_CELSIUS for i in (0, -1)]
-    for colour, T in zip(colours[[0, -1]], ends, strict=True):
-        ax.plot([], [], MARKS[0], color=colour, markersize=3, label=f"{T:.4g} °C")
-    ax.legend()
-    ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title="as measured")
+    low, high = (sweeps[i].temperature - ZERO_CELSIUS for i in (0, -1))
+    title = f"measured at {low:.3g} to {high:.3g} °C (light)"  # a legend would hide data
+    ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title=title)
 
 
 def _curves(ax: Any, fit: FoundationFit) -> None:
@@ -128,7 +126,7 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
             curve,
             law.log_shift(curve + ZERO_CELSIUS, master.reference),
             color=BLACK,
-            label=law.text,
+            label=law.text.replace(", ", ",\n"),
         )
         ax.legend(fontsize="small")
     ax.set(xlabel="temperature [°C]", ylabel=r"$\log_{10} a_T$", title="shift factors")

@@ -32,6 +32,10 @@ SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
 POINTS = 201
 """Points of the pressure over the contact."""
+SMOOTH, JUST_BEFORE = 401, 1e-12
+"""Times at which a transient is drawn, beside its own, and the share of a time that is just before it."""
+CONSTANT = 1e-6
+"""Relative range of a series that is drawn as a constant one."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """Quantity that is drawn together with another one if the drive has a spring."""
 MISMATCH = 1e-6
@@ -74,26 +78,57 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
     """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
 
     The state of rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
-    With a spring in the drive, the sliding velocity and the spring force are also drawn.
+    With a spring in the drive, the sliding velocity and the spring force are also drawn. Without markers
+    the curves of a transient are those of its solution, between its times too.
     """
-    time = np.asarray(result.time) * 1e3
+    smooth = hasattr(getattr(result, "solution", None), "series") and "marker" not in style
+    series = _between(result) if smooth else {n: getattr(result, n) for n in result.units}
+    time = np.asarray(series["time"]) * 1e3
     before = np.array([-0.05 * time[-1], 0.0])
     rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
     rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
     artists = []
-    for ax, (name, symbol, sign) in zip(axes, TRANSIENT_ROWS, strict=True):
+    for ax, (name, symbol, sign) in zip(axes, _rows(result), strict=True):
         words, factor = with_unit(symbol, result.units[name])
-        values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * (sign * factor)
+        values = np.concatenate([[rest[name]] * 2, series[name]]) * (sign * factor)
         artists += ax.plot(np.concatenate([before, time]), values, **style)
+        low, high = np.nanmin(values), np.nanmax(values)
+        if high - low < CONSTANT * max(abs(low), abs(high)):  # else the axis would show rounding
+            ax.update_datalim([(0.0, 0.95 * low), (0.0, 1.05 * low)])
+            ax.autoscale_view()
         ax.set(ylabel=words)
-        if hasattr(result, BESIDE.get(name, "")):
-            beside = np.asarray(getattr(result, BESIDE[name])) * (sign * factor)
+        if _there(result, BESIDE.get(name, "")):
+            beside = np.asarray(series[BESIDE[name]]) * (sign * factor)
             artists += ax.plot(
                 time, beside, color=RED, linewidth=0.8, label=QUANTITIES[BESIDE[name]].words
             )
-            ax.legend(loc="upper right")
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 0.95))  # above the curves
     axes[-1].set(xlabel=r"time $t$ [ms]")
     return artists
+
+
+def _between(result: Any) -> Mapping[str, Any]:
+    """Return the series of a transient, also between its times and just before each jump of the drive."""
+    t, solution = result.time, result.solution
+    jumps = np.array(solution.drive.changes) * solution.units.time * (1.0 - JUST_BEFORE)
+    jumps = jumps[(jumps > t[0]) & (jumps < t[-1])]
+    times = np.unique(np.concatenate([t, jumps, np.linspace(t[0], t[-1], SMOOTH)]))
+    found: Mapping[str, Any] = solution.series(times)
+    return found
+
+
+def _there(result: TimeSeries, name: str) -> bool:
+    """Whether a result has values of a quantity: `solve` may have been asked for another one."""
+    return bool(np.isfinite(getattr(result, name, np.nan)).any())
+
+
+def _rows(result: TimeSeries) -> list[tuple[str, str, float]]:
+    """Return the rows of Fig. 3 in which there is anything to draw."""
+    return [
+        (name, symbol, sign)
+        for name, symbol, sign in TRANSIENT_ROWS
+        if _there(result, name) or _there(result, BESIDE.get(name, ""))
+    ]
 
 
 def plot_pressure(ax: Any, result: Transient, positions: ArrayLike, times: ArrayLike) -> Any:
@@ -120,7 +155,9 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return plot_sweep(axes, result, **style).figure
     if hasattr(result, "time"):
         if axes is None:
-            axes = Picture(*SERIES).subplots(len(TRANSIENT_ROWS), 1, sharex=True)
+            axes = Picture(*SERIES).subplots(len(_rows(result)), 1, sharex=True, squeeze=False)[
+                :, 0
+            ]
         return plot_transient(axes, result, **{"color": BLUE, **style})[0].figure
     if np.ndim(result.depth):
         return plot_over(axes, result, **style).figure
@@ -151,7 +188,7 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
     if off > MISMATCH:
         raise ValueError(
             "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt only; give several "
-            "velocities to `over`"
+            'velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
         )
     ax.plot(x * 1e3, p * 1e-6, **style)
     place = "pressure in the middle plane" if sphere else "pressure"

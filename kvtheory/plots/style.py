@@ -61,7 +61,7 @@ def with_unit(words: str, unit: str) -> tuple[str, float]:
     >>> with_unit("stiffness $K$", "N/m^3")
     ('stiffness $K$ [N/mm$^3$]', 1e-09)
     """
-    shown, factor = SHOWN_UNITS.get(unit, ("", 1.0))
+    shown, factor = SHOWN_UNITS.get(unit, (unit, 1.0))
     powers = re.sub(r"\^([0-9])", r"$^\1$", shown)
     return words + (f" [{powers}]" if shown else ""), factor
 

@@ -23,6 +23,8 @@ WORDS = {
     "foundation.retardation_time": r"retardation time $\tau$",
     "foundation.stiffness": r"stiffness of the foundation $K$",
     "indenter.radius": r"radius $R$",
+    "foundation.temperature": r"temperature $T$",
+    "drive.frequency": "frequency of the drive",
     "support.mass": r"mass $M$",
     "support.gravity": r"gravity $g$",
     "support.stiffness": r"stiffness of the support $k_s$",
@@ -116,7 +118,7 @@ def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
 
 def _side(name: str, unit: str, values: Any) -> Side:
     base = name.rpartition(".")[2]
-    if base in QUANTITIES:
+    if base in QUANTITIES and name not in WORDS:
         words, factor = label(base, unit)
     else:
         words, factor = with_unit(WORDS.get(name, name.replace(".", ": ").replace("_", " ")), unit)

@@ -86,6 +86,13 @@ class Stability(Recorded):
     certificate: Certificate
 
 
+REGIMES = {
+    "low": "low-velocity regime", "high": "high-velocity regime",
+    "between": "between the low- and the high-velocity regime, as some arms relax within the contact and "
+    "others do not",
+}  # fmt: skip
+
+
 @dataclass(frozen=True)
 class AsymptoteLine:
     """One asymptote of a scene: its value, the exact one, and its range.
@@ -114,10 +121,12 @@ class AsymptoteReport(Recorded):
     """Which asymptote of the friction coefficient holds.
 
     `critical_velocity` is V* of the paper (Eqs. 47, 48), where both asymptotes cross, not the one at which
-    sliding on a spring becomes unstable (`kvtheory.stability`). `regime` is ``"low"`` or ``"high"`` (V below
-    or above V*); `use` names the asymptote that is within the tolerance, ``"L1"`` or ``"L2"``, or else
-    ``"exact"``. `maxima` are all local maxima of the friction coefficient over V > 0 that stand out by more
-    than the error of friction, as pairs of velocity and friction coefficient in the order of velocity;
+    sliding on a spring becomes unstable (`kvtheory.stability`). `regime` is ``"low"`` or ``"high"``: V is
+    below or above V*, or, on a Prony series, elements pass the contact in a time longer or shorter than all
+    relaxation times; else ``"between"``. `use` names the asymptote that is within the tolerance, ``"L1"`` or
+    ``"L2"``, or else ``"exact"``. `maxima` are all local maxima of the friction coefficient over V > 0 that
+    stand out by more than the error of friction, as pairs of velocity and friction coefficient in the order
+    of velocity;
     `peak_velocity` and `peak_friction_coefficient` are the highest, NaN if there is none. For arrays of
     scenes they are arrays, padded with NaN. Their relative errors have the same names and form in
     `maxima_certificate`.
@@ -160,12 +169,12 @@ class AsymptoteReport(Recorded):
         maxima = f"{name}: {'; '.join(places)}" if self.maxima else "no friction maximum"
         if not self.lines:
             return [f"V = {velocity}", maxima, *self.notes]
-        regimes = " or ".join(f"{each}-velocity" for each in np.unique(self.regime))
+        regimes = " or ".join(REGIMES[each] for each in np.unique(self.regime))
         use = " or ".join(np.unique(self.use)).replace("exact", "the exact solution")
         ratio = with_unit(np.abs(self.velocity) / self.critical_velocity, "1")
         return [
             f"V = {velocity}, asymptotes cross at V* = "
-            f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes} regime",
+            f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes}",
             maxima,
             f"for the friction coefficient to within {self.tolerance:g}, use {use}",
             *self.notes,

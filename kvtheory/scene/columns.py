@@ -293,7 +293,11 @@ class Reader:
         """Return that no header precedes a row of numbers, or the end; a row of text may be meant as one."""
         if text >= 0:
             cells = max((_split(lines[text], each) for each in SEPARATORS), key=len)
-            return f'line {text + 1}, "{shown(lines[text])}": {self._lacking(cells)}'
+            words = [cell for cell in cells if number(cell, ",") is None]
+            told = self._lacking(cells)
+            if 0 < len(words) < len(cells):  # a row of numbers with a mistake; no header has any
+                told = f'"{shown(words[0])}" is not a number'
+            return f'line {text + 1}, "{shown(lines[text])}": {told}'
         told = "is empty"
         if numbers is not None:
             told = f"line {numbers + 1} holds numbers, and no row above it names the columns"

@@ -46,9 +46,17 @@ GAS_CONSTANT = 8.31446261815324
 EXTRAPOLATED = (
     "outside the frequencies at which the foundation was measured, so that its series extrapolates"
 )
+BEYOND = "outside the temperatures at which its shift is known, so that a_T extrapolates"
+NEAR, GLASS = 2.0, 30.0
+"""Distance in K by which a temperature may be outside, and the least one of the glass transition, above which
+WLF's law holds, from its pole."""
 BARELY = 1.001
 """Factor by which a frequency may be outside the measured ones."""
-MEASURED_RANGE = "lowest_frequency", "highest_frequency"
+MEASURED_RANGES = (
+    ("lowest_frequency", "highest_frequency"),
+    ("lowest_temperature", "highest_temperature"),
+)
+MEASURED = sum(MEASURED_RANGES, ())
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
 
@@ -109,6 +117,20 @@ def extrapolates(foundation: "AnyFoundation", velocity: Any, contact_length: Any
     return f"V{shifted}/c {value} {EXTRAPOLATED} ({np.min(low):.3g} to {np.max(high):.3g} Hz)."
 
 
+def beyond(foundation: "AnyFoundation") -> str:
+    """Return a note if a temperature is not among those at which its shift is known, or an empty text."""
+    T, wlf = foundation.temperature, foundation.wlf
+    low, high = foundation.lowest_temperature, foundation.highest_temperature
+    if wlf is not None and low is None:
+        low, high = foundation.reference_temperature - wlf.c_2 + GLASS, np.inf
+    if T is None or low is None:
+        return ""
+    known = f"{np.min(low):.5g} to {np.max(high):.5g} K"
+    outside = np.asarray((low > T + NEAR) | (high < T - NEAR))
+    value = f"{T:.5g} K" if outside.ndim == 0 else f"in {outside.sum()} of {outside.size} scenes"
+    return f"foundation.temperature, {value}, is {BEYOND} ({known})." if outside.any() else ""
+
+
 @dataclass(frozen=True, eq=False)
 class WLF(Part):
     """The law of Williams, Landel and Ferry: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref)."""
@@ -166,6 +188,14 @@ class _Relaxed(Part):
         "1/s", "highest frequency at which it was measured; V/c outside is noted, c the contact length",
         default=None, beside=("lowest_frequency",),
     )  # fmt: skip
+    lowest_temperature: Value = quantity(
+        "K", "lowest temperature at which the shift of its times was measured",
+        default=None, beside=("highest_temperature",),
+    )  # fmt: skip
+    highest_temperature: Value = quantity(
+        "K", "highest temperature at which the shift was measured; a temperature outside is noted",
+        default=None, beside=("lowest_temperature",),
+    )  # fmt: skip
     wlf: WLF | None = None
     arms: ClassVar[Any] = ()
 
@@ -197,10 +227,7 @@ class _Relaxed(Part):
             told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
         problems.report()
-        low, high = self.lowest_frequency, self.highest_frequency
-        if low is not None and np.any(low >= high):
-            told = "expected above foundation.lowest_frequency"
-            raise mistake("foundation.highest_frequency", high, told)
+        self._order_ranges()
         for i, part in enumerate(held if self.modulus is not None else ()):
             stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
             section = f"foundation.arms[{i - 1}]" if i else "foundation"
@@ -209,6 +236,13 @@ class _Relaxed(Part):
             self._shift(times)
         if not lawless or len(held) > 1:
             self.mark(part for _, part in self.nested())
+
+    def _order_ranges(self) -> None:
+        """Raise `SceneError` if a measured range is empty."""
+        for least, most in MEASURED_RANGES:
+            low, high = getattr(self, least), getattr(self, most)
+            if low is not None and np.any(low >= high):
+                raise mistake(f"foundation.{most}", high, f"expected above foundation.{least}")
 
     def _read_arms(self, problems: Problems) -> Sequence["Arm"]:
         """Return the arms of a Prony series, converted; other foundations have none."""

@@ -284,6 +284,16 @@ class Scene(Part):
         per_width = self.indenter.per_width
         return {key: spec.fitting(per_width) for key, spec in found.items()}
 
+    def not_replaceable(self, key: str) -> str:
+        """Return why a key cannot be replaced: what it needs, or the nearest one that can be."""
+        section, _, name = key.rpartition(".")
+        part = self.parts().get(section)
+        spec = None if part is None else quantities(part).get(name)
+        if spec and spec.beside:
+            needed = " and ".join(f"{section}.{other}" for other in spec.beside)
+            return f"the scene needs {needed} beside it"
+        return f"unknown key for this scene; {nearest(key, self.replaceable)}"
+
     def replace(self, over: Mapping[str, Any]) -> "Scene":
         """Return the scene with some quantities replaced; derived quantities are computed again.
 
@@ -297,8 +307,7 @@ class Scene(Part):
         values: dict[str, Any] = {}
         for key, value in over.items():
             if key not in specs:
-                told = f"unknown key for this scene; {nearest(str(key), specs)}"
-                problems.add(f"`over` {key}", value, told)
+                problems.add(f"`over` {key}", value, self.not_replaceable(str(key)))
                 continue
             with problems.catching(f"`over` {key}", value):
                 values[key] = converted(value, specs[key])

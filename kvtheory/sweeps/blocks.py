@@ -13,9 +13,9 @@ import numpy as np
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.scene.capabilities import lacks_continuum
-from kvtheory.scene.foundations import EXTRAPOLATED, extrapolates
+from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.plan import FAILS, STABLE, Array, Measured, Plan, Table
+from kvtheory.sweeps.plan import FAILS, REMARKS, STABLE, Array, Measured, Plan, Table
 
 INTERPRETED = 1.5
 """Multiple of the steps from which compiling pays that each worker must have for compiling ahead."""
@@ -106,7 +106,9 @@ def _steady(given: Task) -> Measured:
         found.statements.add(state.certificate.statement)
         length = state.trailing_edge - state.leading_edge
         if extrapolates(scene.foundation, scene.drive.final_velocity, length):
-            found.statements.add(f"in some scenes V/c is {EXTRAPOLATED}")
+            found.statements.add(REMARKS[0])
+        if beyond(scene.foundation):
+            found.statements.add(REMARKS[1])
         for name, wrong in state.certificate.relative_error.items():
             found.errors[name] = max(found.errors.get(name, 0.0), float(np.max(wrong)))
     for name, arrays in zip(names, zip(*parts, strict=True), strict=True):

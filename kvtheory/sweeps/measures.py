@@ -26,7 +26,7 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Array, Column, Measured, Plan
+from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, UNSETTLED, Array, Column, Measured, Plan
 from kvtheory.sweeps.prony_motion import PronyMotion
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
@@ -206,6 +206,8 @@ class _Motions:
         elif measure == "peak_to_steady_friction":  # not defined at rest
             steady = np.where(self.friction == 0.0, np.nan, np.abs(self.friction))
             values = found.largest[:, self.wanted.index(PEAK), 1] / steady
+            if np.isnan(found.settled[np.isfinite(values)]).any():
+                self.measured.statements.add(UNSETTLED)
         elif measure == "settling_time":  # counted from the last change of the drive
             changes = self.each(lambda scene, units: scene.drive.last_change / units.time)
             values, scale = np.maximum(found.settled - changes, 0.0), "time"

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
+from kvtheory.scene.foundations import BEYOND, EXTRAPOLATED
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.mistakes import Problems, SceneError, nearest, problem
 from kvtheory.scene.model import Scene
@@ -46,6 +47,12 @@ EVENTS = "events"
 """The only column of text (JSON)."""
 WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", EVENTS: ""}
 """Single values of a transient, and their units."""
+UNSETTLED = (
+    "in some scenes friction had not settled within 1 % when the run ended: settling_time is missing there, "
+    "and peak_to_steady_friction is that of the run"
+)
+REMARKS = f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND}", UNSETTLED
+"""What a certificate says of some scenes, for those who do not read it."""
 CYCLE = {
     "stick_slip_settles": "1", "stick_slip_amplitude": "m", "stick_slip_period": "s",
     "sliding_velocity.cycle_max": "m/s", "sliding_velocity.cycle_min": "m/s",
@@ -113,7 +120,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
                 if key in swept:
                     raise SceneError([f"`over` {key} is swept twice"])
                 if key not in specs:
-                    raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
+                    raise ValueError(scene.not_replaceable(str(key)))
                 swept[key] = arrays[key] = listed(value, specs[key])
         if len({array.size for array in arrays.values()}) > 1:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())

@@ -14,8 +14,8 @@ from kvtheory.models.elements.schemes import DEFAULT, SCHEMES
 from kvtheory.models.elements.simulation import simulate
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.measures import relative
-from kvtheory.sweeps.plan import FAILS, Array, Measured, Plan
+from kvtheory.sweeps.measures import SETTLED, relative
+from kvtheory.sweeps.plan import FAILS, UNSETTLED, Array, Measured, Plan
 
 PER_HALF_LENGTH = 200
 """Elements in half the contact at rest: about half the paper's, in less than a second per scene."""
@@ -53,7 +53,10 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
             row, between = getattr(run, name), 0.0
             if column.measure in EXTREMES:
                 value, between = _extreme(column.measure, run.time, row, scene.drive.changes)
-                value /= 1.0 if column.base else abs(friction[index]) or np.nan
+                steady = 1.0 if column.base else abs(friction[index]) or np.nan
+                value /= steady
+                if not column.base and abs(row[len(times)] - friction[index]) > SETTLED * steady:
+                    found.statements.add(UNSETTLED)
             else:
                 value = row[len(times)] if column.measure == "end" else row[: len(times)]
             wrong = run.certificate.relative_error[name] + between / scale[name]

@@ -92,8 +92,10 @@ class SolvedScene(ScaledMotion):
     @property
     def events(self) -> tuple[Event, ...]:
         """The events of the contact, and the force maxima, in order of time (s)."""
-        maxima = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
-        found = [*self.motion.events, *((s, f"{force} force maximum") for s, force in maxima)]
+        found: list[tuple[float, str]] = [*self.motion.events]
+        if self.drive.highest_speed > 0.0:  # else nothing moves
+            times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
+            found += [(s, f"{force} force maximum") for s, force in times]
         return tuple(
             Event(s * self.units.time, kind)
             for s, kind in sorted(found, key=lambda event: event[0])

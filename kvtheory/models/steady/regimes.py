@@ -13,7 +13,7 @@ c/(V s) <= 1/5 (theorem F18-glassy). On every support V/c grows with V (theorem 
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -214,7 +214,7 @@ def report(
             **known, critical_velocity=nothing, regime=unknown, use=exact, lines=(), model=method,
             certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
         )  # fmt: skip
-    V, shown = np.abs(signed), lines(scene)
+    shown = lines(scene)
     springpot = isinstance(scene.foundation, FractionalKelvinVoigt)
     monotonic = not scene.foundation.arms and (scene.indenter.per_width or not springpot)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -229,9 +229,22 @@ def report(
     kind, statement = ("proved", MONOTONIC) if monotonic else ("estimated", SCANNED)
     return AsymptoteReport(
         **known, critical_velocity=plain(critical), use=plain(use), lines=tuple(found),
-        regime=plain(np.where(critical >= V, "low", "high")), model="asymptote",
+        regime=plain(_regime(scene, truth, critical)), model="asymptote",
         certificate=Certificate(kind, statement, {}),
     )  # fmt: skip
+
+
+def _regime(scene: Scene, truth: SteadyState, critical: Array) -> Array:
+    """Return "low" or "high", by V* or by the arms, see `AsymptoteReport`."""
+    slow = critical >= np.abs(scene.drive.final_velocity)
+    fast = ~slow
+    if times := [arm.relaxation_time for arm in scene.foundation.arms]:
+        rate = _passing(scene, {name: np.abs(getattr(truth, name)) for name in EXACT})
+        slow, fast = (
+            rate * reduce(np.maximum, times) <= 1.0,
+            rate * reduce(np.minimum, times) >= 1.0,
+        )
+    return np.select([slow, fast], ["low", "high"], "between")
 
 
 def _line(
