@@ -13,7 +13,7 @@ Progress = Callable[[float, str], object]
 """Called repeatedly with the share done, from 0 to 1, and a text such as ``"600 of 1,000 points"``."""
 
 COMPILING = "compiling, once for this installation"
-"""Reported before kernels are compiled, which takes a quarter of a minute to a good minute."""
+"""Reported before kernels are compiled, which takes a quarter to half a minute."""
 _LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
 PATIENCE, UNTIL_RATE = 1.0, 0.5

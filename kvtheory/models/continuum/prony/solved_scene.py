@@ -102,6 +102,8 @@ class SolvedPronyScene(ScaledMotion):
                     kind = "take-off" if new == FREE else "landing"
                 if old != new and (FREE not in (old, new) or k == 0):  # both edges fly
                     found.append(Event(float(start) * self.units.time, kind))
+        if not self.drive.highest_speed > 0.0:  # nothing moves
+            return ()
         whole = self.motion.states(s, peaks=False)
         for name, at in (("normal", e_.NORMAL_FORCE), ("friction", e_.FRICTION_FORCE)):
             k = int(np.argmax(np.abs(whole[at])))
