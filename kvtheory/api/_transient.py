@@ -50,7 +50,7 @@ def transient(
         certificate are infinite.
     max_steps
         Steps after which to give up; by default 300,000 plus 100 for each piece of the drive, on a Prony
-        series 5,000.
+        series 30,000.
     progress
         Called repeatedly with the share of the work done, from 0 to 1, and a text, as by every public
         function: `kvtheory.progress.ProgressLine` shows both on standard error.
