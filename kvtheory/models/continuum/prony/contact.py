@@ -179,9 +179,9 @@ def free(
         here[m, MOMENTS] = mode * math.exp(min((sigma - s) * arms[m, FALL], 1.0))
         u += arms[m, SHARE] * here[m, MOMENTS]
     for i in over(len(arms)):
-        here[i, STRESSES] = u * arms[i, STIFFNESS]
+        here[i, STRESSES] = 0.0
         for m in range(len(arms)):
-            here[i, STRESSES] -= arms[i, STIFFNESS] * run.from_modes[i, m] * here[m, MOMENTS]
+            here[i, STRESSES] += run.from_modes[i, m] * here[m, MOMENTS]
     return u - d + xi * xi, xi
 
 

@@ -269,7 +269,7 @@ def _next_step(run: Run, until: float) -> int:
 def _advance(run: Run, until: float, longest: float) -> int:
     """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
     now, shortest = run.now, SHORTEST * run.given.end
-    span = _length(run, until, min(longest, now.limit))
+    span = min(_length(run, until, longest), now.limit)
     if not span > shortest:
         return STUCK
     size, limited = _attempt(run, span), now.limit < math.inf
@@ -304,7 +304,10 @@ def _after(run: Run, theta: float, violated: Monitors) -> int:
 
 
 def _length(run: Run, until: float, longest: float) -> float:
-    """Return the length of the next step, at most `longest`; one that almost ends at `until` does."""
+    """Return the length of the next step, at most `longest`; one that almost ends at `until` does.
+
+    Not one that an event limits: if this lies just before `until`, the step would pass it again and again.
+    """
     now = run.now
     span, whole = min(now.span, run.given.longest, longest), until - now.s
     return float(whole if span > (1.0 - 0.1 * OVERRUN) * whole else span)
