@@ -191,7 +191,7 @@ def edge_at(
     """Return xi of an edge, the step and the instant of the element there; write its s_i into `here`.
 
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
-    or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
+    or of the gap, by a secant method with limited steps until the root is bracketed. Beyond either end of its
     segment an edge is continued as if all elements there had passed with the last one. NaN if it does not
     converge.
     """
@@ -223,11 +223,12 @@ def edge_at(
         exact = abs(f) <= EDGE_ERROR * stiff
         if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
             return xi, index, x
-        if x == end and f < 0.0 and math.isnan(inner):
-            if state == TOUCHING or SIDES[k] * (xi - middle) > 0.0:
-                return _beyond_end(run, k, xi, f), index, x
+        passes = x == end and f < 0.0 and math.isnan(inner)
+        if passes and state == PEELING and SIDES[k] * (xi - middle) <= 0.0:
             x = 0.5 * (start + x)  # the other edge passed this end
             continue
+        if passes or (x == side.near and f > 0.0 and math.isnan(outer) and index != NEVER):
+            return _beyond_end(run, k, xi, f), index, x
         toward, inner, outer = (inward, inner, x) if f < 0.0 else (-inward, x, outer)
         bracketed, secant = not math.isnan(inner + outer), not math.isnan(last)
         if secant:
@@ -251,7 +252,7 @@ def _beyond_end(run: Run, k: int, xi: float, f: float) -> float:
         outward = -SIDES[k]
         for i in over(len(run.arms)):
             slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
-    return xi + outward * min(abs(f / slope), FARTHEST)
+    return xi - outward * max(min(f / abs(slope), FARTHEST), -FARTHEST)
 
 
 def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) -> float:

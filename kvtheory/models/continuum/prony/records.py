@@ -55,12 +55,12 @@ class Run(NamedTuple):
 
     Outside the kernels `given` and `now` hold one record, inside they are the record itself. `rows` are the
     polynomials of a step, `memory` those of each arm. `method` has A, its inverse, the powers of theta from
-    the stages, and nodes and row sums of the inverse; `arms` are as in `contact`, `state` has their rows at
-    present. `from_modes` gives the stresses of free ground from the rates of the dampers, s_i/(k_i T_i): k_i
-    times the difference to u cancels on a stiff arm. The others are of the step: `stages` and `arm_stages`
-    are as `rows` and `memory`, but values at the stages, and what else belongs to a stage; `filters` and
-    `sources` those of the arms; `squares` and `vectors` those of Broyden's method; `here` is as `state`, of
-    one element.
+    the stages, and nodes, row sums of the inverse and a constant; `arms` are as in `contact`, `state` has
+    their rows at present. `from_modes` gives the stresses of free ground from the rates of the dampers,
+    s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the step: `stages`
+    and `arm_stages` are as `rows` and `memory`, but values at the stages, and what else belongs to a stage;
+    `filters` and `sources` those of the arms; `squares` and `vectors` those of Broyden's method; `here` is as
+    `state`, of one element.
     """
 
     given: Any
@@ -107,7 +107,7 @@ def begin(
     columns = k, T, element.rates, element.shares
     method, tableau = np.zeros((4, n, n)), radau(n)
     method[:3] = tableau.A, tableau.inverse, tableau.powers
-    method[3, :2] = tableau.nodes, method[1].sum(axis=1)
+    method[3, :3] = tableau.nodes, method[1].sum(axis=1), np.full(n, 1.0 / math.comb(2 * n, n))
     run = Run(
         given=[r_.new(GIVEN, *given)],
         now=r_._blanks(1, NOW),
