@@ -51,8 +51,8 @@ ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
 
 FIRST_MOVE, AT_REST_MOVE, FASTER = 1e-3, 1e-4, 4.0
-"""First move of the search for an edge, as a share of the time since the step began, or in xi; the factor by
-which the limit of moves grows until the root is bracketed."""
+"""First move of the search for an edge, as a share of the time since the step began, or of the width; the
+factor by which the limit of moves grows until the root is bracketed."""
 FARTHEST = 0.1
 """How far an edge is continued beyond the end of a segment, and the first limit of moves in xi."""
 GOLDEN = 0.3819660112501051
@@ -191,8 +191,9 @@ def edge_at(
     """Return xi of an edge, the step and the instant of the element there; write its s_i into `here`.
 
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
-    or of the gap, by a secant method with limited steps until the root is bracketed. Beyond either end of its
-    segment an edge is continued as if all elements there had passed with the last one. NaN if it does not
+    or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
+    segment, or its beginning if it peels, an edge is continued as if all elements there had passed with the
+    last one. NaN if it does not
     converge.
     """
     side, state = run.now.sides[k], run.now.sides[k].state
@@ -211,7 +212,8 @@ def edge_at(
     if segment.step == NEVER:
         end, inward = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k]
         low, high = (-math.inf, end) if k == 0 else (end, math.inf)
-        index, start, x, move, reach = NEVER, side.xi, xi, AT_REST_MOVE, FARTHEST
+        move = AT_REST_MOVE * (run.now.sides[1].xi - run.now.sides[0].xi)
+        index, start, x, reach = NEVER, side.xi, xi, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
@@ -220,14 +222,15 @@ def edge_at(
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        exact = abs(f) <= EDGE_ERROR * stiff
-        if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
+        settled = secant or x == at or abs(f) <= EDGE_ERROR * stiff
+        if abs(f) <= EDGE_ERROR or (settled and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y))):
             return xi, index, x
         passes = x == end and f < 0.0 and math.isnan(inner)
         if passes and state == PEELING and SIDES[k] * (xi - middle) <= 0.0:
             x = 0.5 * (start + x)  # the other edge passed this end
             continue
-        if passes or (x == side.near and f > 0.0 and math.isnan(outer) and index != NEVER):
+        returns = state == PEELING and index != NEVER and x == side.near and f > 0.0
+        if passes or (returns and math.isnan(outer)):
             return _beyond_end(run, k, xi, f), index, x
         toward, inner, outer = (inward, inner, x) if f < 0.0 else (-inward, x, outer)
         bracketed, secant = not math.isnan(inner + outer), not math.isnan(last)
