@@ -193,8 +193,7 @@ def edge_at(
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
     or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
     segment, or its beginning if it peels, an edge is continued as if all elements there had passed with the
-    last one. NaN if it does not
-    converge.
+    last one. NaN if it does not converge.
     """
     side, state = run.now.sides[k], run.now.sides[k].state
     if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
