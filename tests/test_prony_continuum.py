@@ -178,6 +178,13 @@ def test_an_edge_peels_over_ground_that_it_wrote_while_the_other_one_turned():
     assert max(found.certificate.relative_error.values()) < 1e-4
 
 
+def test_an_edge_turns_in_time_behind_a_fast_arm():
+    """Slips on a stiff spring: p' of an element is lost in the terms of the arm, edges turned too late."""
+    drive = kv.Drive(velocity=0.1, stiffness=1e9, mass=30.0)
+    scene = sliding([(2e17, 1e-9)], drive, 0.04, support=kv.Fixed(depth=3e-4))
+    assert kv.transient(scene, at=[0.04], rtol=3e-5, certify=False).steps < 250
+
+
 def test_each_end_of_a_segment_is_passed_by_the_edge_next_to_it():
     """Both edges peel before a take-off; where the right one leaves the ground at rest, not the left."""
     support = kv.DeadWeight(load=3000.0, mass=500.0)
