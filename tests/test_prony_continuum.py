@@ -193,9 +193,16 @@ def test_an_edge_peels_over_ground_that_it_wrote_while_the_other_one_turned():
     """Stick-slip: the indenter comes to rest, so that one edge turns on ground that the other still meets."""
     drive = kv.Drive(velocity=0.091, stiffness=2e5, mass=100.0)
     scene = sliding([(1e10, 5e-3), (1e10, 0.05), (1e10, 0.5)], drive, 0.168)
-    found = kv.transient(scene, at=[0.16, 0.168], rtol=1e-5)
+    found = kv.transient(scene, at=[0.16, 0.168], rtol=1e-6)
     assert "left edge peels" in {event.kind for event in found.events}
-    assert max(found.certificate.relative_error.values()) < 1e-3
+    assert max(found.certificate.relative_error.values()) < 1e-4
+
+
+def test_an_edge_turns_in_time_behind_a_fast_arm():
+    """Slips on a stiff spring: p' of an element is lost in the terms of the arm, edges turned too late."""
+    drive = kv.Drive(velocity=0.1, stiffness=1e9, mass=30.0)
+    scene = sliding([(2e17, 1e-9)], drive, 0.04, support=kv.Fixed(depth=3e-4))
+    assert kv.transient(scene, at=[0.04], rtol=3e-5, certify=False).steps < 250
 
 
 def test_each_end_of_a_segment_is_passed_by_the_edge_next_to_it():

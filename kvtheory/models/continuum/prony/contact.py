@@ -50,10 +50,9 @@ ground between two places that was never touched."""
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
 
-FIRST_MOVE, AT_REST_MOVE, NARROW, FASTER = 1e-3, 1e-4, 0.1, 4.0
-"""First move of the search for an edge, as a share of the time since the step began, or in xi, but at most a
-share of the width: a longer one passes the other edge; the factor by which the limit of moves grows until the
-root is bracketed."""
+FIRST_MOVE, AT_REST_MOVE, FASTER = 1e-3, 1e-4, 4.0
+"""First move of the search for an edge, as a share of the time since the step began, or of the width; the
+factor by which the limit of moves grows until the root is bracketed."""
 FARTHEST = 0.1
 """How far an edge is continued beyond the end of a segment, and the first limit of moves in xi."""
 GOLDEN = 0.3819660112501051
@@ -202,9 +201,9 @@ def free(
         here[m, MOMENTS] = mode * math.exp(min((sigma - s) * arms[m, FALL], 1.0))
         u += arms[m, SHARE] * here[m, MOMENTS]
     for i in over(len(arms)):
-        here[i, STRESSES] = u * arms[i, STIFFNESS]
+        here[i, STRESSES] = 0.0
         for m in range(len(arms)):
-            here[i, STRESSES] -= arms[i, STIFFNESS] * run.from_modes[i, m] * here[m, MOMENTS]
+            here[i, STRESSES] += run.from_modes[i, m] * here[m, MOMENTS]
     return u - d + xi * xi, xi
 
 
@@ -215,8 +214,8 @@ def edge_at(
 
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
     or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
-    segment an edge is continued as if all elements there had passed with the last one. NaN if it does not
-    converge.
+    segment, or its beginning if it peels, an edge is continued as if all elements there had passed with the
+    last one. NaN if it does not converge.
     """
     side, state = run.now.sides[k], run.now.sides[k].state
     if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
@@ -234,7 +233,7 @@ def edge_at(
     if segment.step == NEVER:
         end, inward = (segment.X_b if k == 0 else segment.X_a) + Y, -SIDES[k]
         low, high = (-math.inf, end) if k == 0 else (end, math.inf)
-        move = min(AT_REST_MOVE, NARROW * (run.now.sides[1].xi - run.now.sides[0].xi))
+        move = AT_REST_MOVE * (run.now.sides[1].xi - run.now.sides[0].xi)
         index, start, x, reach = NEVER, side.xi, xi, FARTHEST
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
@@ -244,14 +243,16 @@ def edge_at(
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        exact = abs(f) <= EDGE_ERROR * stiff
-        if (secant or exact or x == at) and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y)):
+        settled = secant or x == at or abs(f) <= EDGE_ERROR * stiff
+        if abs(f) <= EDGE_ERROR or (settled and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y))):
             return xi, index, x
-        if x == end and f < 0.0 and math.isnan(inner):
-            if state == TOUCHING or SIDES[k] * (xi - middle) > 0.0:
-                return _beyond_end(run, k, xi, f), index, x
+        passes = x == end and f < 0.0 and math.isnan(inner)
+        if passes and state == PEELING and SIDES[k] * (xi - middle) <= 0.0:
             x = 0.5 * (start + x)  # the other edge passed this end
             continue
+        returns = state == PEELING and index != NEVER and x == side.near and f > 0.0
+        if passes or (returns and math.isnan(outer)):
+            return _beyond_end(run, k, xi, f), index, x
         toward, inner, outer = (inward, inner, x) if f < 0.0 else (-inward, x, outer)
         bracketed, secant = not math.isnan(inner + outer), not math.isnan(last)
         if secant:
@@ -275,7 +276,7 @@ def _beyond_end(run: Run, k: int, xi: float, f: float) -> float:
         outward = -SIDES[k]
         for i in over(len(run.arms)):
             slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
-    return xi + outward * min(abs(f / slope), FARTHEST)
+    return xi - outward * max(min(f / abs(slope), FARTHEST), -FARTHEST)
 
 
 def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) -> float:

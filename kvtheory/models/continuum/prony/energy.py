@@ -203,7 +203,7 @@ class Ground:
             modes = np.einsum("mi,iq->mq", run.to_modes, -stress.sum(axis=0) - stress / k)
             modes = modes * np.exp(np.minimum((nodes - s) * self.arms[:, FALL, None], 0.0))
             u = np.einsum("m,mq->q", self.arms[:, SHARE], modes)
-            stress = k * (u - np.einsum("im,mq->iq", run.from_modes, modes))
+            stress = np.einsum("im,mq->iq", run.from_modes, modes)
         squares = stress * stress / k
         return [u * rate, (u * u + squares.sum(axis=0)) * rate, (squares / T).sum(axis=0) * rate]
 

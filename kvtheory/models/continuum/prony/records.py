@@ -58,10 +58,12 @@ class Run(NamedTuple):
 
     Outside the kernels `given` and `now` hold one record, inside they are the record itself. `rows` are the
     polynomials of a step, `memory` those of each arm. `method` has A, its inverse, the powers of theta from
-    the stages, and nodes and row sums of the inverse; `arms` are as in `contact`, `state` has their rows at
-    present. The others are of the step: `stages` and `arm_stages` are as `rows` and `memory`, but values at
-    the stages, and what else belongs to a stage; `filters` and `sources` those of the arms; `squares` and
-    `vectors` those of Broyden's method; `here` is as `state`, of one element.
+    the stages, and nodes, row sums of the inverse and a constant; `arms` are as in `contact`, `state` has
+    their rows at present. `from_modes` gives the stresses of free ground from the rates of the dampers,
+    s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the step: `stages`
+    and `arm_stages` are as `rows` and `memory`, but values at the stages, and what else belongs to a stage;
+    `filters` and `sources` those of the arms; `squares` and `vectors` those of Broyden's method; `here` is as
+    `state`, of one element.
     """
 
     given: Any
@@ -104,10 +106,11 @@ def begin(
         control.longest, control.grow, n, fixed, spring is not None,
     )  # fmt: skip
     element = Element.of(1.0, 0.0, arms)
-    columns = *np.array(arms, dtype=float).T, element.rates, element.shares
+    k, T = np.array(arms, dtype=float).T
+    columns = k, T, element.rates, element.shares
     method, tableau = np.zeros((4, n, n)), radau(n)
     method[:3] = tableau.A, tableau.inverse, tableau.powers
-    method[3, :2] = tableau.nodes, method[1].sum(axis=1)
+    method[3, :3] = tableau.nodes, method[1].sum(axis=1), np.full(n, 1.0 / math.comb(2 * n, n))
     run = Run(
         given=[r_.new(GIVEN, *given)],
         now=r_._blanks(1, NOW),
@@ -120,7 +123,7 @@ def begin(
         method=method,
         arms=np.stack(columns, axis=1),
         to_modes=np.ascontiguousarray(element.to_modes),
-        from_modes=np.ascontiguousarray(element.from_modes),
+        from_modes=-(k * T)[:, None] * element.from_modes * element.rates,
         state=np.zeros((count, OWN)),
         stages=np.zeros((ROWS + PLACES, n)),
         arm_stages=np.zeros((count, OWN, n)),

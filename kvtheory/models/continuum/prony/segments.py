@@ -6,7 +6,7 @@ from typing import Any
 from kvtheory.models.continuum.prony.contact import NEVER, PEELING, TOUCHING
 from kvtheory.scene.base_motion import evaluate
 
-INSTANT, SHORT = 1e-13, 1e-2
+INSTANT, SHORT = 1e-13, 0.1
 """Length of a segment in time, relative to the run, or in space, as a share of the tolerance, below which it
 counts as none."""
 

@@ -9,6 +9,8 @@ that do not move: the pressure vanishes at both edges, so that they do not matte
 import math
 from typing import Any
 
+import numpy as np
+
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
     DEPTHS,
@@ -42,12 +44,16 @@ may be the last if it does not fall any more."""
 EDGE_SHARE, TINY = 0.03, 1e-12
 """Largest error of an edge as a share of the width. Relative to the tolerance it is weighted by the width,
 for the pressure vanishes at an edge."""
+SHIFT = 4e-14
+"""Rounding of the time, relative to the run, where errors are estimated."""
 
 Run = Any
 
 
 A, INVERSE, POWERS, OTHER = range(4)
-"""Tables of `Run.method`; the rows of the last are the nodes, and the sums of the rows of the inverse."""
+LAST = 2
+"""Tables of `Run.method`; the rows of the last are the nodes, the sums of the rows of the inverse, and, in
+`LAST`, the last coefficient of a polynomial in Legendre's over that of its last power."""
 
 
 def moments(l: float, r: float) -> tuple[float, float, float, float]:
@@ -148,29 +154,36 @@ def relax(run: Run, i: Any, row: int) -> None:
 
 
 def interpolate_arm(run: Run, i: Any, row: int) -> Any:
-    """Write the polynomial of an arm through the stages; return its last coefficient in Legendre's."""
-    n, found, share = run.given.stages, run.memory[run.now.steps], 1.0
+    """Write the polynomial of an arm through the stages; return its error, as `interpolate` does."""
+    n, found, change = run.given.stages, run.memory[run.now.steps], 0.0
     found[i, row, 0] = run.state[i, row]
     for k in range(n):
         found[i, row, k + 1] = 0.0
         for j in range(n):
             change = run.arm_stages[i, row, j] - run.state[i, row]
             found[i, row, k + 1] += run.method[POWERS, k, j] * change
-        share *= (4.0 * k + 2.0) / (k + 1.0)  # binomial (2 n, n)
-    return abs(found[i, row, n]) / share
+    return np.maximum(uncertain(run, found[i, row, n], change), 0.0)
 
 
 def interpolate(run: Run, row: int, begin: float) -> float:
-    """Write the polynomial of a row through the stages; return its last coefficient in Legendre's."""
+    """Write the polynomial of a row through the stages; return its error."""
     values, n = run.stages[row], run.given.stages
-    found, share = run.rows[run.now.steps, row], 1.0
+    found = run.rows[run.now.steps, row]
     found[0] = begin
     for k in range(n):
         found[k + 1] = 0.0
         for j in range(n):
             found[k + 1] += run.method[POWERS, k, j] * (values[j] - begin)
-        share *= (4.0 * k + 2.0) / (k + 1.0)  # binomial (2 n, n)
-    return abs(found[n]) / share
+    return max(uncertain(run, found[n], values[n - 1] - begin), 0.0)
+
+
+def uncertain(run: Run, last: Any, change: Any) -> Any:
+    """Return the last coefficient in Legendre's polynomials, less what a shift of the time changes.
+
+    An edge may run through a layer on a fast arm: it is as uncertain as the time, and no shorter step helps.
+    """
+    shift = SHIFT * run.given.end / run.steps[run.now.steps].span
+    return run.method[OTHER, LAST, 0] * abs(last) - shift * abs(change)
 
 
 def solve(run: Run) -> bool:

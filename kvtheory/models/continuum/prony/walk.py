@@ -15,6 +15,7 @@ from kvtheory.models.continuum.prony.contact import (
     SIDES,
     SLIDES,
     STRESSES,
+    TOUCHING,
     at_far_end,
     edge_at,
     free,
@@ -46,7 +47,9 @@ from kvtheory.models.continuum.prony.segments import cross, split, turn
 from kvtheory.models.continuum.prony.step import (
     DEPTH,
     INDEX,
+    LAST,
     OFFSET,
+    OTHER,
     SIGMA,
     at,
     prepare,
@@ -178,8 +181,12 @@ def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: f
     given = run.given
     rise = (1.0 + given.glass) * (v - 2.0 * xi * number) - relaxing
     terms = (1.0 + given.glass) * (1.0 + abs(v) + 2.0 * abs(xi * number)) + abs(relaxing)
-    allowed = max(ALLOWED * given.rtol, ROUNDING) * math.pow(MORE, run.now.toggles)
-    return float((-rise if state == PEELING else rise) / terms + allowed)
+    return float((-rise if state == PEELING else rise) / terms + _allowed(run))
+
+
+def _allowed(run: Run) -> float:
+    """Return the violation that an event needs."""
+    return max(ALLOWED * run.given.rtol, ROUNDING) * math.pow(MORE, run.now.toggles)
 
 
 def monitors(run: Run, theta: float, exact: bool) -> Monitors:
@@ -211,12 +218,22 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
 
 
 def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
-    """Return a number that is positive as long as an edge may keep its state."""
-    index, relaxing = run.now.steps, 0.0
+    """Return a number that is positive as long as an edge may keep its state.
+
+    One that peels moves inward over the ground, but for the error of its polynomial: its p' has the right
+    sign then, but is lost in the terms of a stiff arm.
+    """
+    now, row, n = run.now, run.rows[run.now.steps, EDGES + k], run.given.stages
+    if now.sides[k].state == PEELING:
+        outward = 0.0
+        for m in range(n, 0, -1):
+            outward = outward * theta + m * row[m]
+        outward = SIDES[k] * (outward - run.steps[now.steps].span * number)
+        return n * (n + 1) * run.method[OTHER, LAST, 0] * abs(row[n]) + _allowed(run) - outward
+    relaxing = 0.0
     for i in over(len(run.arms)):
-        relaxing += total(past(run, index, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
-    xi = value(run.rows[index, EDGES + k], theta)
-    return _slack(run, run.now.sides[k].state, xi, v, number, relaxing)
+        relaxing += total(past(run, now.steps, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
+    return _slack(run, TOUCHING, value(row, theta), v, number, relaxing)
 
 
 def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
@@ -272,7 +289,7 @@ def _next_step(run: Run, until: float) -> int:
 def _advance(run: Run, until: float, longest: float) -> int:
     """Try one step; accept it up to its first event, or reduce the step size for the next attempt."""
     now, shortest = run.now, SHORTEST * run.given.end
-    span = _length(run, until, min(longest, now.limit))
+    span = min(_length(run, until, longest), now.limit)
     if not span > shortest:
         return STUCK
     size, limited = _attempt(run, span), now.limit < math.inf
@@ -307,7 +324,10 @@ def _after(run: Run, theta: float, violated: Monitors) -> int:
 
 
 def _length(run: Run, until: float, longest: float) -> float:
-    """Return the length of the next step, at most `longest`; one that almost ends at `until` does."""
+    """Return the length of the next step, at most `longest`; one that almost ends at `until` does.
+
+    Not one that an event limits: if this lies just before `until`, the step would pass it again and again.
+    """
     now = run.now
     span, whole = min(now.span, run.given.longest, longest), until - now.s
     return float(whole if span > (1.0 - 0.1 * OVERRUN) * whole else span)
