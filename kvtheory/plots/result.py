@@ -155,9 +155,9 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return plot_sweep(axes, result, **style).figure
     if hasattr(result, "time"):
         if axes is None:
-            axes = Picture(*SERIES).subplots(len(_rows(result)), 1, sharex=True, squeeze=False)[
-                :, 0
-            ]
+            picture = Picture(*SERIES)
+            axes = picture.subplots(len(_rows(result)), 1, sharex=True, squeeze=False)[:, 0]
+            picture.align_ylabels(axes)
         return plot_transient(axes, result, **{"color": BLUE, **style})[0].figure
     if np.ndim(result.depth):
         return plot_over(axes, result, **style).figure
