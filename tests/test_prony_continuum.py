@@ -249,6 +249,22 @@ def test_an_iteration_that_overflows_only_ends_a_step():
     assert found.depth == pytest.approx([-0.0275, 0.1534], abs=2e-4)
 
 
+def test_an_edge_is_no_place_where_the_ground_stands_still():
+    """After a dwell much of the history of an edge is one place, where the search for a root may not end."""
+    history = [(0.0, 365.0), (7e-5, 365.0), (7e-5, 0.0), (4e-4, 0.0), (4e-4, 94.0)]
+    scene = sliding(
+        [(4.5e8, 1.5e-6), (4.6e10, 20.0)], kv.Drive(history=history), 4.2e-4, support=kv.Fixed(3e-4)
+    )
+    found = kv.transient(scene, at=[4.2e-4], rtol=1e-6)
+    assert found.certificate.relative_error["trailing_edge"] < 1e-5
+
+
+def test_a_short_run_has_no_large_error():
+    support = kv.DeadWeight(load=9806.65, mass=1000.0)
+    found = kv.transient(sliding(ZENER, 100.0, 1e-9, support=support), at=[1e-9])
+    assert max(found.certificate.relative_error.values()) < 1e-5
+
+
 @pytest.mark.parametrize("amplitude", [1.4, 1.5])
 def test_it_takes_off_from_ground_that_was_in_contact_at_rest(amplitude):
     """The search for an edge may not begin with a move that is longer than the contact is wide."""

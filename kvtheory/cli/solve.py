@@ -64,7 +64,8 @@ def solve(
 )
 @click.option(
     "--max-steps", type=click.IntRange(1),
-    help="Steps after which to give up; default: 300,000 plus 100 for each piece of the drive.",
+    help="Steps after which to give up; default: 300,000 plus 100 for each piece of the drive, 30,000 on a "
+    "Prony series.",
 )  # fmt: skip
 @console.series_options
 def transient(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:

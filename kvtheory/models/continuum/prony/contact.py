@@ -238,12 +238,15 @@ def edge_at(
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
+    flat = (
+        STALLED * stiff * (1.0 + abs(Y))
+    )  # a larger p, where X stands still, is not that of a root
     for _ in range(ITERATIONS):
         x = max(min(x, high), low)
         if index != NEVER:
             index = step_of(run, edge, index, x)
         f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        settled = secant or x == at or abs(f) <= EDGE_ERROR * stiff
+        settled = (secant and abs(f) <= flat) or x == at or abs(f) <= EDGE_ERROR * stiff
         if abs(f) <= EDGE_ERROR or (settled and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y))):
             return xi, index, x
         passes = x == end and f < 0.0 and math.isnan(inner)

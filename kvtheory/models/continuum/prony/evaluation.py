@@ -35,7 +35,7 @@ SIZE = 14
 """Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
 both edges, both forces, the largest pressure, Y, and the states of both edges."""
 
-REFINED, BISECTIONS, SAMPLES, LAYER = 8, 60, 3, 0.25
+REFINED, BISECTIONS, SAMPLES, LAYER = 12, 60, 3, 0.25
 """Golden sections in the search for the peak between two samples, before a parabola; bisections for the
 instant at which an edge passed a place; samples in each step of the history, but in the layer where arms are
 loaded, at half of the age, down to this share of the shortest relaxation time."""

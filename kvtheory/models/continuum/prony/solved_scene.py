@@ -219,6 +219,7 @@ def certificate(
     run = other.run
     deepest = np.abs(run.memory[: other.counts.steps, :, DEPTHS, 0]).max(axis=0)
     rounding = ROUNDING * float(np.sum(run.arms[:, STIFFNESS] * deepest * (1.0 + deepest)))
+    own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
     errors, widths = {"time": 0.0}, np.zeros_like(s)
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
@@ -226,9 +227,11 @@ def certificate(
         flies, other_flies = np.isnan(values), np.isnan(there[name])
         off = np.where(flies == other_flies, np.nan_to_num(np.abs(values - there[name])), widths)
         apart = float(np.max(off, initial=0.0))
-        least = FLOOR * rtol * (1.0 + float(np.max(np.abs(np.nan_to_num(values)), initial=0.0)))
-        errors[name] = max(MARGIN * apart, least) + rounding
-    own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
+        least = min(
+            1.0, measures[name] / own[name]
+        )  # of a very short run the unit of velocity is large
+        least += float(np.max(np.abs(np.nan_to_num(values)), initial=0.0))
+        errors[name] = max(MARGIN * apart, FLOOR * rtol * least) + rounding
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}
     velocity = float(np.max(np.abs(here["velocity"]), initial=0.0)) * own["velocity"]
     errors["velocity"] = scene.drive.tolerance * (1.0 + velocity / measures["velocity"])
