@@ -4,8 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import NullFormatter
 
 from kvtheory.charts.work_precision import REASONS, Chart
 from kvtheory.plots.files import save_chart
@@ -64,6 +66,8 @@ def plot_work_precision(
     if floor > 0.0:
         ax.axvspan(LEAST, max(floor, LEAST), color="#dddddd", zorder=0)
     ax.set(xscale="log", yscale="log")
+    if np.ptp(np.log10(ax.get_xlim())) > 1.0:  # else labels would overlap
+        ax.xaxis.set_minor_formatter(NullFormatter())
     ax.invert_xaxis()
     rail.set(xlim=(-0.6, len(REASONS) - 0.4), xticks=range(len(REASONS)))
     rail.set_xticklabels([SHORT.get(reason, reason) for reason in REASONS], rotation=90)
@@ -98,9 +102,12 @@ def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Pictu
 
 
 def default_errors(charts: Sequence[Chart]) -> list[str]:
-    """Return the error over which each chart is drawn by default."""
-    first, other = "depth, maximum", "friction coefficient"
-    return [first if first in chart.floor else other for chart in charts]
+    """Return the error over which each chart is drawn by default: that of the depth, if it is not given."""
+    names = "depth, maximum", "friction, maximum", "friction coefficient"
+    return [
+        next((name for name in names if chart.floor.get(name)), next(iter(chart.floor)))
+        for chart in charts
+    ]
 
 
 def save_work_precision(charts: Sequence[Chart], path: Path) -> None:
