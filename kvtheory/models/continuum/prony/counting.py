@@ -17,6 +17,7 @@ from kvtheory.models.continuum.prony.contact import (
     PEELING,
     SLIDES,
     STRESSES,
+    at_present,
     motion,
     pressed,
 )
@@ -53,10 +54,9 @@ def count_anew(run: Run) -> None:
         most = max(most, abs(run.state[i, DEPTHS]))
         if abs(run.state[i, DEPTHS]) > large:
             run.state[i, FORCES] = run.state[i, MOMENTS] = 0.0
-        for row in (DEPTHS, SLIDES):
-            run.here[i, row] = run.state[i, row]
     if not most > large:
         return
+    at_present(run)
     for n in range(now.first, now.first + now.count):
         number = run.chain[n]
         segment = run.segments[number]

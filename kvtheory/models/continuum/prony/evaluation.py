@@ -5,15 +5,14 @@ from typing import Any
 
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
-    DEPTHS,
     EDGES,
     FORCES,
     FREE,
     MOMENTS,
     NEVER,
     PEELING,
-    SLIDES,
     TIME,
+    accumulated,
     free,
     integral,
     motion,
@@ -66,16 +65,8 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
             row[LEFT] = row[RIGHT] = math.nan
         row[PEAK_PRESSURE] = 0.0
         if peaks:
-            present(run, index, theta)
+            accumulated(run, index, theta)
             row[PEAK_PRESSURE] = peak(run, index, s, row)
-
-
-def present(run: Run, index: int, theta: float) -> None:
-    """Write the accumulators of the arms at one time into `here`."""
-    run.now.since = run.steps[index].since
-    for i in over(len(run.arms)):
-        for row in (DEPTHS, SLIDES):
-            run.here[i, row] = past(run, index, i, row, theta)
 
 
 def pressure_of(run: Run, s: float, state: Any, number: int, place: float) -> float:
@@ -193,7 +184,7 @@ def pressure(run: Run, s: float, state: Any, xi: float) -> float:
     step = run.steps[index]
     if not state[LEFT] <= xi <= state[RIGHT]:
         return 0.0
-    present(run, index, (s - step.start) / step.span)
+    accumulated(run, index, (s - step.start) / step.span)
     largest = 0.0
     for i in range(step.first, step.first + step.count):
         segment = run.segments[run.chain[i]]

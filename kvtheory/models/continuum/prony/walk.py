@@ -5,7 +5,6 @@ from typing import Any
 
 from kvtheory.models.continuum.prony.contact import (
     ALONG,
-    DEPTHS,
     EDGES,
     FREE,
     NEVER,
@@ -13,10 +12,11 @@ from kvtheory.models.continuum.prony.contact import (
     PEELING,
     RATE,
     SIDES,
-    SLIDES,
     STRESSES,
     TOUCHING,
+    accumulated,
     at_far_end,
+    at_present,
     edge_at,
     free,
     integral,
@@ -205,9 +205,7 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
     l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
     l_ground, r_ground = _ahead(run, 0, l, Y), _ahead(run, 1, r, Y)
     if exact:
-        for i in over(len(run.arms)):
-            for row in (DEPTHS, SLIDES):
-                run.here[i, row] = past(run, index, i, row, theta)
+        accumulated(run, index, theta)
         middle = 0.5 * (l + r)
         l_ground, r_ground = (
             at_far_end(run, 0, s, d, Y, middle),
@@ -427,9 +425,7 @@ def _one_interval(run: Run) -> bool:
     now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
     least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
     Y = b_.evaluate(run.pieces[now.piece], now.s)[0] - now.x
-    for i in over(len(run.arms)):
-        for row in (DEPTHS, SLIDES):
-            run.here[i, row] = run.state[i, row]
+    at_present(run)
     for i in range(now.first, now.first + now.count):
         segment = run.segments[run.chain[i]]
         low, high = in_contact(run, run.chain[i])
@@ -482,9 +478,7 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
         index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
         side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
         if not whole and side.segment != NEVER and side.state != FREE:
-            for i in over(len(run.arms)):
-                for row in (DEPTHS, SLIDES):
-                    run.here[i, row] = run.state[i, row]
+            at_present(run)
             xi, index, sigma = edge_at(
                 run, k, end, now.d, Y - now.x, side.xi, index, before + theta * (sigma - before)
             )
