@@ -9,9 +9,9 @@ has
     A_i' = d' + lambda B_i - A_i/T_i,   B_i' = 2 lambda - B_i/T_i,
 
 A_i and B_i starting at zero; those in contact at rest lack the term in brackets. Where A_i and B_i were
-counted anew at s_0 (see `counting`), elements that entered before also have e^-(s - s_0)/T_i k_i (A_i - xi B_i)
-with those of the old count at s_0. The moments F_i and M_i of s_i over the contact, from which both forces
-follow, obey, with I_n = int xi^n dxi, summed over both edges,
+counted anew at s_0 (see `counting`), elements that entered before also have, with those of the old count,
+e^-(s - s_0)/T_i k_i (A_i - xi B_i)(s_0). The moments F_i and M_i of s_i over the contact, from which both
+forces follow, obey, with I_n = int xi^n dxi, summed over both edges,
 
     F_i' = k_i (d' I_0 - 2 lambda I_1) - F_i/T_i +- s_e X_e',
     M_i' = lambda F_i + k_i (d' I_1 - 2 lambda I_2) - M_i/T_i +- xi_e s_e X_e'.
