@@ -14,9 +14,13 @@ from pathlib import Path
 
 import mpmath as mp
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
+
+settings.register_profile("any processor", settings.get_profile("default"), deadline=None)
+settings.load_profile("any processor")  # a busy machine fails no test
 
 FIRST = (
     *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_prony_continuum"),
