@@ -87,6 +87,14 @@ def value(row: Any, theta: float) -> float:
     return total
 
 
+def derivative(row: Any, theta: float) -> float:
+    """Return the derivative of a polynomial by theta."""
+    total = 0.0
+    for k in range(len(row) - 1, 0, -1):
+        total = total * theta + k * row[k]
+    return total
+
+
 def past(run: Run, index: int, i: Any, row: int, theta: float) -> Any:
     """Return a polynomial of an arm in the step `index` at `theta`."""
     powers, found = run.memory[index], 0.0 * run.arms[i, STIFFNESS]
@@ -255,9 +263,8 @@ def edge_at(
     before = at = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
     stiff = 1.0 + run.given.glass if state == PEELING else 1.0
-    flat = (
-        STALLED * stiff * (1.0 + abs(Y))
-    )  # a larger p, where X stands still, is not that of a root
+    # Where X stands still, a larger p is not that of a root.
+    flat = STALLED * stiff * (1.0 + abs(Y))
     for _ in range(ITERATIONS):
         x = max(min(x, high), low)
         if index != NEVER:

@@ -18,6 +18,7 @@ from kvtheory.models.continuum.prony.contact import (
     SLIDES,
     STRESSES,
     at_present,
+    derivative,
     motion,
     pressed,
 )
@@ -85,11 +86,9 @@ def integrate(run: Run, index: int, edge: int, low: float, high: float, large: f
     for j in range(n):
         x, weight = low + (high - low) * run.method[OTHER, 0, j], high - low
         if index != NEVER:
-            step, rate = run.steps[index], 0.0
             _, _, _, number, theta = motion(run, index, x)
-            for m in range(n, 0, -1):
-                rate = rate * theta + m * run.rows[index, EDGES + edge, m]
-            weight *= abs(rate / step.span - number)
+            rate = derivative(run.rows[index, EDGES + edge], theta) / run.steps[index].span
+            weight *= abs(rate - number)
         _, xi = pressed(run, now.s, now.d, Y, x + Y, edge, index, x)
         for i in range(len(run.arms)):
             if abs(run.state[i, DEPTHS]) > large:

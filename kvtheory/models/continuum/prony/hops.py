@@ -25,6 +25,7 @@ from kvtheory.models.continuum.prony.contact import (
     STRESSES,
     TOUCHING,
     at_far_end,
+    derivative,
     edge_at,
     free,
     motion,
@@ -68,9 +69,8 @@ def time_left(run: Run) -> float:
     now = run.now
     if now.steps == 0:
         return math.inf
-    rows, rate = run.rows[now.steps - 1], 0.0
-    for k in range(1, rows.shape[1]):
-        rate += k * (rows[EDGES + 1, k] - rows[EDGES, k])
+    rows = run.rows[now.steps - 1]
+    rate = derivative(rows[EDGES + 1], 1.0) - derivative(rows[EDGES], 1.0)
     if not rate < 0.0 or not now.smooth:
         return math.inf
     width = now.sides[1].xi - now.sides[0].xi

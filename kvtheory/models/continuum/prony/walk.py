@@ -17,6 +17,7 @@ from kvtheory.models.continuum.prony.contact import (
     accumulated,
     at_far_end,
     at_present,
+    derivative,
     edge_at,
     free,
     integral,
@@ -223,10 +224,7 @@ def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
     """
     now, row, n = run.now, run.rows[run.now.steps, EDGES + k], run.given.stages
     if now.sides[k].state == PEELING:
-        outward = 0.0
-        for m in range(n, 0, -1):
-            outward = outward * theta + m * row[m]
-        outward = SIDES[k] * (outward - run.steps[now.steps].span * number)
+        outward = SIDES[k] * (derivative(row, theta) - run.steps[now.steps].span * number)
         return n * (n + 1) * run.method[OTHER, LAST, 0] * abs(row[n]) + _allowed(run) - outward
     relaxing = 0.0
     for i in over(len(run.arms)):
