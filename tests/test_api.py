@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
@@ -141,6 +142,27 @@ def test_states_of_no_scenes_of_a_history_and_with_certificates_of_their_own():
     kv.steady().certificate.relative_error["depth"] = 1.0
     assert kv.steady().certificate.relative_error["depth"] < 1e-14
     assert kv.steady(kv.Scene(drive=kv.Drive(history=[(0.0, 0.3), (1.0, 0.1)]))) == kv.steady()
+
+
+RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[["1 GN/m^3", "10 ms"]]))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        kv.transient, kv.elements, kv.steady, kv.asymptotes, kv.stability, lambda: kv.solve(at=["1 ms"]),
+        lambda: kv.transient(RUBBER), lambda: kv.sweep(over={"drive.velocity": [0.1, 1.0]}),
+    ],
+)  # fmt: skip
+def test_results_can_be_sent_between_processes(make):
+    result = make()
+    assert pickle.loads(pickle.dumps(result)).as_dict() == result.as_dict()
+
+
+def test_a_motion_sent_between_processes_still_answers_at_any_time():
+    motion = kv.transient()
+    moved = pickle.loads(pickle.dumps(motion))
+    assert np.array_equal(moved.pressure([-1e-4, 0.0], 0.01), motion.pressure([-1e-4, 0.0], 0.01))
 
 
 def test_results_become_json_and_what_does_not_exist_is_null():

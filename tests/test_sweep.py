@@ -47,6 +47,45 @@ def test_zipped_points_lie_on_the_diagonal():
     assert [axis.name for axis in twice.axes] == ["point_1", "point_2"]
 
 
+LISTS = kv.Scene(support=kv.DeadWeight(mass=[1e3, 2e3, 3e3]))
+
+
+@pytest.mark.parametrize(
+    ("scene", "over", "names", "loads"),
+    [
+        (LISTS, {V: "10 mm/s:1 m/s:6:log"}, ["support.mass", V], [[1.0] * 6, [2.0] * 6, [3.0] * 6]),
+        (LISTS.replace({V: [0.1, 0.2, 0.3]}), None, ["point"], [1.0, 2.0, 3.0]),
+        (LISTS.replace({V: [[0.1], [0.2]]}), None, ["point"], [1.0, 2.0, 3.0] * 2),
+        (LISTS.replace({V: [0.1, 0.2, 0.3]}), {"support.mass": [2e3, 1e3]}, [V, "support.mass"], [[2.0, 1.0]] * 3),
+        (kv.Scene(drive=kv.Drive(velocity=[0.1, 1.0])), {"support.mass": [1e3, 3e3]}, [V, "support.mass"],
+         [[1.0, 3.0]] * 2),
+    ],
+)  # fmt: skip
+def test_arrays_of_the_scene_are_an_axis_of_the_sweep(scene, over, names, loads):
+    result = kv.sweep(scene, over=over, quantities=["load", "friction_force"])
+    assert [axis.name for axis in result.axes] == names
+    np.testing.assert_allclose(result["load"], 9806.65 * np.array(loads), rtol=1e-12)
+    for index in np.ndindex(result.shape):
+        at = {
+            key: axis.values[key][i]
+            for axis, i in zip(result.axes, index, strict=True)
+            for key in axis.values
+        }
+        assert result["friction_force"][index] == kv.steady(over=at).friction_force
+
+
+def test_transients_of_the_arrays_of_a_scene_do_not_fail():
+    found = kv.sweep(LISTS, over={V: [0.1, 0.2]}, quantities="friction_force.max")
+    assert found.failed == 0
+    one = kv.sweep(over={"support.mass": [3e3], V: [0.2]}, quantities="friction_force.max")
+    assert found["friction_force.max"][2, 1] == one["friction_force.max"][0, 0]
+
+
+def test_arrays_that_do_not_broadcast_are_pointed_to_every_combination():
+    with pytest.raises(ValueError, match="`sweep` with `over` takes every combination"):
+        kv.steady(LISTS, over={V: [0.1, 0.2]})
+
+
 SUPPORTS = {support: kv.Scene.table1(support) for support in ("fixed", "dead-weight", "suspended")}
 WEDGE = kv.Scene(indenter=kv.Wedge(inclination=0.1))
 

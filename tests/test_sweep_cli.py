@@ -52,6 +52,28 @@ def test_zipped_points_options_and_scene(place):
     assert result["depth"].tolist() == [1e-4, 1e-4]
 
 
+def test_lists_of_the_scene_file_are_columns(place):
+    text = kv.to_toml(kv.Scene()).replace('mass = "1000.0 kg/m"', 'mass = ["1 kg/mm", "2 kg/mm"]')
+    (place / "scene.toml").write_text(text)
+    run(
+        "scene.toml",
+        "--over",
+        "drive.velocity=10 mm/s,1 m/s",
+        "--quantity",
+        "load",
+        "-o",
+        "map.csv",
+    )
+    rows = [line for line in (place / "map.csv").read_text().splitlines() if line[0] != "#"]
+    assert rows[0] == "support.mass [kg/m],drive.velocity [m/s],load [N/m]"
+    masses, _, loads = np.array([row.split(",") for row in rows[1:]], float).T
+    assert masses.tolist() == [1e3, 1e3, 2e3, 2e3]
+    np.testing.assert_allclose(loads, 9.80665 * masses, rtol=1e-12)
+    run("scene.toml", "--quantity", "load", "-o", "lists.csv")
+    commands.refused(["sweep", "-o", "none.csv"], ["over", "is empty", "drive.velocity"])
+    assert not (place / "none.csv").exists()
+
+
 def test_workers_give_the_same_file(place):
     threads = ["--executor", THREADS]
     ways = [], ["--jobs", "2"], [*threads, "--block", "3"], [*threads, "--jobs", "1"]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def sweep(
     scene: Scene | None = None,
     *,
-    over: Mapping[Any, Any],
+    over: Mapping[Any, Any] | None = None,
     quantities: Sequence[str] | str | None = None,
     at: Any = None,
     method: str | None = None,
@@ -48,12 +48,14 @@ def sweep(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight.
+        What is modelled; without it, the paper's Table 1 with a dead weight. Arrays in it are the first axis:
+        they vary together, as they broadcast.
     over
         Maps a dotted key to its values: an array in SI, a list such as ``["10 ms", "1 s"]``, or a text
         ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A tuple of
         keys with a tuple of lists is one axis on which these values vary together. A ``drive.velocity``
         replaces a history or a waveform; the keys of a waveform, such as ``drive.frequency``, change it.
+        Only a scene with arrays may do without.
     quantities
         Steady quantities by name (default: all of them), and ``stable``: 1, or 0 where steady sliding is
         unstable on the spring in the drive (included by default with a spring). Of a transient:
@@ -133,13 +135,13 @@ def sweep(
     method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
-    scene: Scene | None = None, *, over: Mapping[Any, Any], quantities: Any = None, at: Any = None,
+    scene: Scene | None = None, *, over: Mapping[Any, Any] | None = None, quantities: Any = None, at: Any = None,
     method: str | None = None, rtol: float = 1e-6,
 ) -> "Plan":  # fmt: skip
     """Check the arguments of `sweep` together, and return the plan."""
-    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of
+    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of, spread
 
-    scene = scene_of(scene)
+    scene, over = spread(scene_of(scene), over)
     method = method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
     axes = axes_of(scene, over)

@@ -28,9 +28,9 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 @console.scene_options
 @console.json_option
 @click.option(
-    "--over", multiple=True, required=True, metavar="KEY=VALUES",
+    "--over", multiple=True, metavar="KEY=VALUES",
     help="Sweep a key over START:STOP:COUNT[:log] or V1,V2,...; repeatable, for all combinations. "
-    "KEY=VALUES & KEY=VALUES in one option vary together.",
+    "KEY=VALUES & KEY=VALUES in one option vary together. Lists in SCENE are the first axis.",
 )  # fmt: skip
 @click.option(
     "-o", "--output", required=True, type=OutputFile(),

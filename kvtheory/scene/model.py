@@ -180,7 +180,10 @@ class Scene(Part):
             return np.broadcast_shapes(*(each.shape for each in arrays.values()))
         except ValueError:
             told = ", ".join(f"{key} {each.shape}" for key, each in arrays.items())
-            raise SceneError([f"the arrays of the scene do not broadcast: {told}"]) from None
+            remedy = "`sweep` with `over` takes every combination"
+            raise SceneError(
+                [f"the arrays of the scene do not broadcast: {told}; {remedy}"]
+            ) from None
 
     def flat(self) -> "Scene":
         """Return the scene with its arrays broadcast to one dimension."""

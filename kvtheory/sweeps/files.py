@@ -105,7 +105,7 @@ def from_memory(plan: Plan, table: Table, blocks: Iterable[Block]) -> Sweep:
     """Return the table of all points as arrays over the axes; the blocks may be without theirs."""
     grid, summary = tuple(axis.size for axis in plan.axes), _summary(plan, blocks)
     values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
-    return _sweep(plan, summary, lambda: values, summary["done"])
+    return _sweep(plan, summary, values.copy, summary["done"])
 
 
 def save_sweep(result: Sweep, path: Path) -> None:

@@ -104,7 +104,7 @@ def columns_of(
 
 def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     """Return the axes of a sweep, or report every mistake; `kvtheory.sweep` describes `over`."""
-    if not isinstance(over, Mapping) or not over:
+    if not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])
     specs, problems = scene.replaceable, Problems()
     swept: dict[str, Array] = {}
@@ -135,6 +135,24 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     joint = sum(len(arrays) > 1 for arrays in axes)
     names = iter(["point"] if joint == 1 else [f"point_{i + 1}" for i in range(joint)])
     return tuple(Axis(next(names if len(each) > 1 else iter(each)), each) for each in axes)
+
+
+def spread(scene: Scene, over: Mapping[Any, Any] | None) -> tuple[Scene, dict[Any, Any]]:
+    """Return one of the scenes that arrays stand for, and `over` with these arrays as its first axis.
+
+    They vary together, as they broadcast; an array of a key that `over` sweeps is replaced by it.
+    """
+    over = dict(over or {})
+    swept = {key for keys in over for key in (keys if isinstance(keys, tuple) else (keys,))}
+    arrays = {
+        key: np.broadcast_to(array, scene.shape).reshape(-1)
+        for key, array in scene.arrays().items()
+    }
+    if not arrays:
+        return scene, over
+    one = scene.replace({key: array[0] for key, array in arrays.items()})
+    own = {key: array for key, array in arrays.items() if key not in swept}
+    return one, ({tuple(own): tuple(own.values())} if own else {}) | over
 
 
 @dataclass(frozen=True)

@@ -217,8 +217,9 @@ def structured(rows: Any, kind: np.dtype[Any]) -> Any:
     def plain(record: Any) -> Any:
         if isinstance(record, list):
             return [plain(each) for each in record]
-        names = getattr(record, "names", None)
-        return record if names is None else tuple([plain(getattr(record, name)) for name in names])
+        if not isinstance(record, _Record):
+            return record
+        return tuple([plain(getattr(record, name)) for name in record.layout.names or ()])
 
     return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
 
@@ -251,6 +252,20 @@ def _method(stages: int, arrays: bool) -> Any:
     return found if arrays else _filled(METHOD, found.tolist())
 
 
+class _Record:
+    """An object with the fields of a record."""
+
+    layout: np.dtype[Any]
+
+    def __reduce__(self) -> Any:
+        """Return how it is made again in another process."""
+        return _blank, (self.layout,), vars(self)
+
+
+def _blank(kind: np.dtype[Any]) -> Any:
+    return _class(kind)[0]()
+
+
 @cache
 def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], int]]]:
     """Return the class of a record, whose plain fields are zero, and its other fields with their lengths."""
@@ -258,7 +273,7 @@ def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], in
     nested = [(name, kind[name].base, count) for name, (count, *_) in shapes.items()
               if count or kind[name].names]  # fmt: skip
     plain = dict.fromkeys(shapes, 0) | {n: 0.0 for n in shapes if kind[n].kind == "f"}
-    return type("Record", (), {**plain, "names": kind.names}), nested
+    return type("Record", (_Record,), {**plain, "layout": kind}), nested
 
 
 def _blanks(count: int, kind: np.dtype[Any]) -> list[Any]:
