@@ -135,8 +135,8 @@ def sweep(
     method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
-    scene: Scene | None = None, *, over: Mapping[Any, Any] | None = None, quantities: Any = None, at: Any = None,
-    method: str | None = None, rtol: float = 1e-6,
+    scene: Scene | None = None, *, over: Mapping[Any, Any] | None = None, quantities: Any = None,
+    at: Any = None, method: str | None = None, rtol: float = 1e-6,
 ) -> "Plan":  # fmt: skip
     """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of, spread
