@@ -12,9 +12,12 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.explorer import save_explorer
+from kvtheory.explorer.controls import controls
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import THIN, layer_number
+from kvtheory.scene.model import SECTIONS
+from kvtheory.scene.quantities import quantities
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms
 from tests import SCENES, SUPPORTS
@@ -606,6 +609,122 @@ def test_the_curve_stays_in_sight_on_a_phone_and_the_buttons_on_a_low_screen(ses
         for name in ("copy-toml", "reset"):
             top, bottom = browser.run(box.format(f"getElementById('{name}')"))
             assert 0 < top < bottom < 700
+
+
+LAWS = {
+    kv.Foundation: {"retardation_time": 0.1},
+    kv.GeneralizedMaxwell: {},
+    kv.FractionalKelvinVoigt: {"retardation_time": 0.1, "order": 0.4},
+}
+SHAPES = (
+    (kv.Parabola(0.01), LAWS), (kv.Sphere(0.01), LAWS), (kv.Sphere(0.01, radius_across=0.003), LAWS),
+    (kv.Circle(0.02), [kv.Foundation]), (kv.Wedge(0.03), [kv.Foundation]),
+    (kv.PowerLaw(0.01, 2.6), [kv.Foundation]),
+)  # fmt: skip
+BASES = (
+    {"stiffness": 2e10},
+    {"modulus": 3e6, "thickness": 2e-4, "poisson_ratio": 0.35},
+    {"modulus": 2e5, "thickness": 2e-3, "poisson_ratio": 0.495},
+)
+ARRHENIUS = {"reference_temperature": 293.15, "activation_energy": 8e4}
+CLIMATES = (
+    {},
+    {"temperature": 300.15, **ARRHENIUS, "lowest_temperature": 253.15, "highest_temperature": 313.15},
+    {"temperature": 298.15, "reference_temperature": 296.15, "wlf": [17.44, 51.6]},
+    {"temperature": 250.15, "reference_temperature": 260.15, "wlf": [8.0, 95.0],
+     "lowest_frequency": 1e-2, "highest_frequency": 3e4},
+    {**ARRHENIUS, "lowest_frequency": 1e-3, "highest_frequency": 2.0},
+    {"temperature": 330.15, **ARRHENIUS, "lowest_temperature": 263.15, "highest_temperature": 313.15,
+     "lowest_frequency": 1e-2, "highest_frequency": 1e-1},
+)  # fmt: skip
+CARRIED = (
+    kv.Fixed(1e-4), kv.DeadWeight(30.0), kv.DeadWeight(load=700.0), kv.DeadWeight(5.0, load=300.0),
+    kv.Suspended(40.0, 3e5), kv.Suspended(stiffness=2e6, load=200.0, gravity=1.62),
+    kv.Suspended(9.0, 1e5, load=90.0),
+)  # fmt: skip
+DRIVES = (
+    kv.Drive(0.1), kv.Drive(-0.02), kv.Drive(3.0, stiffness=1e5, mass=7.0),
+    kv.Drive(history=[(0.0, 0.2), (0.1, 0.01)]), kv.Drive(0.01, stiffness=3e6, damping=20.0, mass=1.0),
+)  # fmt: skip
+
+
+def scenes_of_all_kinds():
+    """Scenes of each shape and foundation, in which layers, temperatures, supports and drives take turns."""
+    pairs = [(indenter, law) for indenter, laws in SHAPES for law in laws]
+    for count, (indenter, law) in enumerate(pairs * 4):
+        turn = count + count // len(pairs)
+        base = BASES[turn % len(BASES)]
+        own = {**LAWS[law], **base, **CLIMATES[turn % len(CLIMATES)]}
+        if law is kv.GeneralizedMaxwell:
+            first = next(iter(base.values()))
+            own["arms"] = [[3.0 * first, 1e-3], [0.5 * first, 0.2]][: 1 + turn // 3 % 2]
+        support, drive = CARRIED[turn % len(CARRIED)], DRIVES[turn % len(DRIVES)]
+        yield kv.Scene(indenter, law(**own), support, drive, kv.Run(0.1 + 0.01 * count))
+
+
+def keys_of(table):
+    """The keys of a scene file that hold numbers, and those of every class of a scene."""
+    return {
+        f"{section}.{name}"
+        for section, own in table.items()
+        for key in own.keys() - {"kind", "shape", "arms"}
+        for name in (["wlf.c_1", "wlf.c_2"] if key == "wlf" else [key])
+    }
+
+
+def number(text):
+    """The number that the page shows, such as 1.2\u00b710\u207b\u2075."""
+    plain = str.maketrans("\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-0123456789")
+    return float(text.replace("\u00b710", "e").translate(plain))
+
+
+OPENED = """page => {
+  Object.assign(MODEL, page);
+  Object.assign(SECTIONS, page.sections);
+  state = original();
+  build_controls();
+  update();
+  const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
+  return {
+    numbers: Object.fromEntries(all("#numbers b", (b) => [b.dataset.name, b.firstChild.textContent])),
+    found: slide(scene_of(state)), toml: as_toml(state), problem: document.getElementById("problem").textContent,
+    notes: ["layer", "measured"].map((id) => !document.getElementById(id).hidden),
+    sliders: all("input[type=range][data-key]", (e) => [e.dataset.key, Number(e.min), Number(e.value), Number(e.max)]),
+  };
+}"""
+
+
+def test_the_page_opens_at_scenes_of_every_kind_and_keeps_all_they_say(browser, tmp_path):
+    scenes = list(scenes_of_all_kinds())
+    pages = browser.run(f"{json.dumps([controls(scene) for scene in scenes])}.map({OPENED})")
+    path, seen, notes = tmp_path / "scene.toml", set(), set()
+    for scene, page in zip(scenes, pages, strict=True):
+        right, force = kv.steady(scene), 1e-3 if scene.indenter.per_width else 1.0
+        assert page["problem"] == "", scene
+        for name, factor in (("friction_coefficient", 1.0), ("load", force), ("depth", 1e3)):
+            due = getattr(right, name)
+            assert page["found"][name] == pytest.approx(due, rel=1e-12), (name, scene)
+            assert number(page["numbers"][name]) == pytest.approx(factor * due, rel=1e-4), scene
+        noted = [any(words in note for note in right.notes) for words in ("not thin", "extrapolates")]
+        assert page["notes"] == noted, scene
+        path.write_text(page["toml"], encoding="utf-8")
+        spring = {name: getattr(scene.drive, name) for name in ("stiffness", "damping", "mass")}
+        drive = kv.Drive(scene.drive.final_velocity, **({} if scene.drive.rigid else spring))
+        assert kv.load_scene(path) == replace(scene, drive=drive)
+        keys = {key for key, *_ in page["sliders"] if not key.startswith("arms")}
+        assert keys == keys_of(tomllib.loads(page["toml"]))
+        assert len(page["sliders"]) == len(keys) + 2 * len(scene.foundation.arms)
+        assert all(low <= value <= high for _, low, value, high in page["sliders"]), scene
+        seen |= keys
+        notes.add(tuple(noted))
+    declared = {
+        section: {name: 0 for cls in classes.values() for name in quantities(cls)}
+        for section, (_, classes) in SECTIONS.items()
+    }
+    declared["foundation"]["wlf"] = 0
+    assert seen == keys_of(declared)
+    assert len(notes) == 4
+    assert len(scenes) >= 40
 
 
 EXTREME = (

@@ -24,6 +24,27 @@ function show_layer(scene, state) {
     + "length a of the contact; otherwise use a boundary-element code.";
 }
 
+/** What leaves the range in which the foundation was measured, as kvtheory.scene.foundations says it. */
+function beyond_measured({ V, a_T, measured: m }, { leading_edge, trailing_edge }) {
+  const told = [], rate = Math.abs(V / (trailing_edge - leading_edge)) * a_T;
+  if (rate > 0 && (rate < m.lowest_frequency / MODEL.barely || rate > m.highest_frequency * MODEL.barely)) {
+    told.push(`V${m.temperature === undefined ? "" : "\u00a0a<sub>T</sub>"}/c = <b>${short(rate, 3)} Hz</b> is outside the frequencies at which the foundation `
+      + `was measured, so that its series extrapolates (${short(m.lowest_frequency, 3)} to ${short(m.highest_frequency, 3)} Hz).`);
+  }
+  const low = m.lowest_temperature ?? m.reference_temperature - m["wlf.c_2"] + MODEL.glass, high = m.highest_temperature ?? Infinity;
+  if (low > m.temperature + MODEL.near || high < m.temperature - MODEL.near) {
+    const known = high < Infinity ? `${short(low)} to ${short(high)} K` : `above ${short(low)} K`;
+    told.push(`The temperature is outside those at which its shift is known (${known}), so that a<sub>T</sub> extrapolates.`);
+  }
+  return told;
+}
+
+function show_measured(scene, state) {
+  const place = document.getElementById("measured"), told = beyond_measured(scene, state);
+  place.hidden = !told.length;
+  place.innerHTML = told.join("<br>");
+}
+
 function show_numbers(scene, state) {
   const force = force_units(scene);
   document.getElementById("numbers").innerHTML = NUMBERS.map(([name, told, unit, factor]) => {
