@@ -144,7 +144,9 @@ def test_method_of_lines_converges_and_counts_its_updates():
     assert runs[1][1] > 3 * runs[0][1] > 0
 
 
-def test_every_method_has_a_look_of_its_own_and_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
+def test_every_method_has_a_look_of_its_own_and_cvode_is_left_out_where_it_is_not_installed(
+    monkeypatch,
+):
     assert {*METHODS, *(method.name for method in steady_methods())} <= set(LOOKS)
     assert len(set(LOOKS.values())) == len(LOOKS)
     monkeypatch.setattr(methods, "find_spec", lambda name: None)

@@ -459,7 +459,8 @@ def test_the_footprint_fills_its_frame_and_stays_in_it(browser, across, velocity
         "(['critical', 'axis'].map(c => document.querySelector(`#footprint .${c}`).getBoundingClientRect()))"
     )
     size = browser.run(
-        "(({ width, height }) => [width, height])(document.querySelector('#footprint .axis').getBoundingClientRect())"
+        "(({ width, height }) => [width, height])"
+        "(document.querySelector('#footprint .axis').getBoundingClientRect())"
     )
     spare = np.array([left + right, top + bottom]) / size
     assert min(left, right, top, bottom) > 0.0
@@ -554,7 +555,8 @@ def test_the_formula_shown_is_the_limit_that_holds(browser, chosen, indenter, la
 TYPED = {
     "5 m/s": "5000", "5m/s": "5000", "0,5": "0.5", "\u2212.5 m\u00b7s^-1": "-500", "36 km/h": "10000",
     "1e-3": "1e-3",
-    "20 \u00b5m/ms": "20", "5 N/m": "does not fit", "5 furlong": "not known", "5 mx/s": "not known", "5 kfoo": "not known", "5 qm/s": "not known", "1,500": "comma",
+    "20 \u00b5m/ms": "20", "5 N/m": "does not fit", "5 furlong": "not known", "1,500": "comma",
+    "5 mx/s": "not known", "5 kfoo": "not known", "5 qm/s": "not known",
     "1,5,0": "number", "fast": "number", "": "number", "1e400": "number",
 }  # fmt: skip
 
@@ -723,9 +725,12 @@ OPENED = """page => {
   const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
   return {
     numbers: Object.fromEntries(all("#numbers b", (b) => [b.dataset.name, b.firstChild.textContent])),
-    found: slide(scene_of(state)), toml: as_toml(state), problem: document.getElementById("problem").textContent,
+    found: slide(scene_of(state)), toml: as_toml(state),
+    problem: document.getElementById("problem").textContent,
     notes: ["layer", "measured"].map((id) => !document.getElementById(id).hidden),
-    sliders: all("input[type=range][data-key]", (e) => [e.dataset.key, Number(e.min), Number(e.value), Number(e.max)]),
+    sliders: all(
+      "input[type=range][data-key]", (e) => [e.dataset.key, Number(e.min), Number(e.value), Number(e.max)],
+    ),
   };
 }"""
 
@@ -763,6 +768,59 @@ def test_the_page_opens_at_scenes_of_every_kind_and_keeps_all_they_say(browser, 
     assert seen == keys_of(declared)
     assert len(notes) == 4
     assert len(scenes) >= 40
+
+
+def test_a_temperature_can_be_typed_and_every_time_follows_it(session, tmp_path):
+    law = {"reference_temperature": 293.15, "activation_energy": 8e4, "temperature": 300.15}
+    layer = {"modulus": 3e6, "thickness": 2e-4, "poisson_ratio": 0.35}
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(arms=[[6e6, 0.1]], **layer, **law))
+    path = tmp_path / "explorer.html"
+    save_explorer(scene, path)
+    with watched(session, path) as browser:
+        for key, given, kept, value in (
+            ("temperature", "60 degC", "333.15", 333.15), ("temperature", "35 \u00b0C", "308.15", 308.15),
+            ("activation_energy", "1e5 J/mol", "100", 1e5), ("activation_energy", "0.09 MN m/mol", "90", 9e4),
+        ):  # fmt: skip
+            assert type_in(browser, f"foundation.{key}", given) == [kept, None, ""]
+            scene = scene.replace({f"foundation.{key}": value})
+            browser.settle()
+            right = kv.steady(scene).friction_coefficient
+            assert float(text(browser, "friction_coefficient")) == pytest.approx(right, rel=1e-4)
+        assert "not known" in type_in(browser, "drive.velocity", "20 degC")[2]
+        relaxed = "state => (s => [s.K, s.arms[0][0] / s.K])(scene_of(state))"
+        pick = (
+            "(e => {{ e.value = {}; e.dispatchEvent(new Event('change', {{ bubbles: true }})); }})"
+        )
+        select = "(document.querySelector('select[data-set=foundation]'))"
+        for choice, field in ((0, "stiffness"), (1, "modulus")):
+            browser.run(pick.format(choice) + select)
+            browser.settle()
+            assert browser.run("measure_of(state)") == field
+            assert browser.run(f"({relaxed})(state)")[1] == pytest.approx(2.0, rel=1e-5)
+            assert browser.run("state.values['foundation.activation_energy']") == "90"
+            path = tmp_path / f"{field}.toml"
+            path.write_text(browser.run("as_toml(state)"), encoding="utf-8")
+            right = kv.steady(kv.load_scene(path)).friction_coefficient
+            assert float(text(browser, "friction_coefficient")) == pytest.approx(right, rel=1e-4)
+
+
+def test_values_that_contradict_each_other_are_told(session, tmp_path):
+    law = {"reference_temperature": 293.15, "wlf": [8.0, 50.0], "temperature": 300.15}
+    measured = {"lowest_frequency": 1.0, "highest_frequency": 100.0}
+    path = tmp_path / "explorer.html"
+    save_explorer(kv.Scene(foundation=kv.Foundation(1e10, 0.1, **law, **measured)), path)
+    with watched(session, path) as browser:
+        for key, value, words in (
+            ("temperature", "243", "the pole of the WLF law"),
+            ("highest_frequency", "1", "expected above foundation.lowest_frequency"),
+        ):
+            browser.run(f"restore('#foundation.{key}={value}')")
+            browser.settle()
+            told = browser.run(
+                "(p => [p.hidden, p.textContent])(document.querySelector('#problem'))"
+            )
+            assert not told[0]
+            assert words in told[1]
 
 
 EXTREME = (

@@ -33,7 +33,7 @@ LINEAR = {
     "lowest_temperature": CELSIUS, "highest_temperature": CELSIUS,
     "activation_energy": (10.0, 400.0), "wlf.c_1": (1.0, 50.0), "wlf.c_2": (10.0, 500.0),
 }  # fmt: skip
-"""Ranges of the sliders that are not logarithmic, in the units shown; they reach to the value of the scene."""
+"""Ranges of the sliders that are not logarithmic, in the units shown; the value of the scene widens them."""
 DECADES = 3
 """Range of the other sliders, in decades to either side of their start value."""
 ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
