@@ -511,6 +511,23 @@ def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser, chosen, s
     assert f"{right.frequency:.4g} Hz" in rows
 
 
+def test_unstable_speeds_on_arms_are_found_between_pictures_for_the_last_scene(browser):
+    state = "restore('#foundation=generalized-maxwell&arms=30_10&drive.stiffness={}&drive.damping=0')"
+    for stiffness in (0.01, 0.03):
+        browser.run(state.format(stiffness))
+        browser.settle()
+        assert browser.run("kept.scene.drive.stiffness") == stiffness * 1e6
+    browser.run(
+        "new Promise(done => (f => f(f))(f => kept.data.looking ? setTimeout(f, 5, f) : done()))"
+    )
+    arms = kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01]])
+    scene = kv.Scene(foundation=arms, drive=kv.Drive(0.1, stiffness=3e4))
+    right = kv.stability(scene, quantity="critical_velocity")
+    assert browser.run("kept.data.from") == pytest.approx(right.critical_velocity, rel=1e-4)
+    legend = browser.run("document.querySelector('#curve-legend').textContent")
+    assert f"unstable on this spring, from {1e3 * right.critical_velocity:.4g} mm/s" in legend
+
+
 @pytest.mark.parametrize("velocity", ["1e-6", "1e9"])
 def test_the_exact_curve_reaches_a_scene_far_from_the_others(browser, velocity):
     browser.run(f"restore('#drive.velocity={velocity}')")

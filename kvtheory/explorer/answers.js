@@ -171,7 +171,7 @@ function show_stability(scene, state) {
     place.innerHTML = '<p class="note">Known for a parabola and for a ball that slide on Kelvin\u2013Voigt elements or on a Prony series.</p>';
     return;
   }
-  const { lower, upper, stable: on } = onset_of(scene, state), pairs = scene.arms ? [] : rates(scene, state);
+  const { lower, upper, stable: on } = onset_of(scene, state, { count: 12 }), pairs = scene.arms ? [] : rates(scene, state);
   const stable = !drive || on(drive.stiffness), some = Number.isFinite(upper.stiffness);
   const on_spring = stable ? "Stable on this spring: small disturbances decay" : "Unstable on this spring: small disturbances grow";
   const told = drive ? `${on_spring} (derivation ${scene.arms ? "F24" : "F22"}).` : "Stable under a rigid drive.";

@@ -144,7 +144,8 @@ def _slider(
     if own and own[0]:
         start = _text(own[0], spec.fitting(per_width).unit)
     else:
-        start = _text(STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name], unit)
+        usual = STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name]
+        start = _text(usual, unit)
     ends = LINEAR.get(name)
     return {
         "doc": spec.doc, "unit": UNITS[unit][0], "exponent": _exponent(unit), "start": start,
@@ -168,10 +169,12 @@ def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
         added = ADDED[section, name]
         always = [each for each in quantities(cls) if each not in added[-1][1]]
         return [{"told": title, "names": [*always, *more]} for title, more in added]
-    sets, found = list(_sets(cls)), []
+    sets, found, specs = list(_sets(cls)), [], quantities(cls)
     for names in sets:
         own = [name for name in names if not all(name in other for other in sets)]
-        found.append({"told": f"given by {', '.join(own)}".replace("_", " "), "names": names})
+        implied = {each for name in own[:1] for each in specs[name].beside}
+        told = ", ".join(name for name in own if name not in implied)
+        found.append({"told": f"given by {told}".replace("_", " "), "names": names})
     return found
 
 

@@ -64,7 +64,7 @@ function address(control) {
 function build_controls() {
   const parts = {}, focused = address(document.activeElement);
   for (const [key, slider] of sliders(state)) {
-    const [section, name] = parted(key), label = name.replace(/_/g, " ").replace("wlf.c ", "WLF C");
+    const [section, name] = parted(key), label = name.replace(/_/g, " ").replace("wlf.c ", "WLF C").replace("poisson", "Poisson\u2019s");
     (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), label));
   }
   const html = ["drive", "indenter", "support", "foundation", "run"].map((section) => {
@@ -89,7 +89,10 @@ function update() {
       : "These values leave the range of double precision.";
     return;
   }
-  if (key !== kept.key) kept = { key, data: curve_data(scene) };
+  const anew = key !== kept.key;
+  if (anew) kept = { key, data: curve_data(scene) };
+  Object.assign(kept, { scene, found });
+  if (!scene.arms) look(kept.data, Infinity);
   show_numbers(scene, found);
   show_layer(scene, found);
   show_measured(scene, found);
@@ -101,8 +104,19 @@ function update() {
   show_stability(scene, found);
   follow(scene, found);
   draw_motion();
+  if (anew) setTimeout(look_on, 0, kept);
   frames.push(performance.now() - start);
   if (frames.length > 500) frames.shift();
+}
+
+/** Milliseconds for which unstable speeds are looked for between two pictures. */
+const SLICE = 12;
+
+/** Find the unstable speeds between pictures, and draw the curve with them: many arms take seconds. */
+function look_on(now) {
+  if (now !== kept || !now.data.looking) return;
+  look(now.data, performance.now() + SLICE);
+  if (now.data.looking) setTimeout(look_on, 0, now); else draw_curve(now.scene, now.found, now.data);
 }
 
 let waiting = false;

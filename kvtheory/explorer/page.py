@@ -28,7 +28,7 @@ def save_explorer(scene: Scene, path: str | Path) -> None:
 
 
 def explorer_page(scene: Scene) -> str:
-    """Return the text of the page, or raise ValueError if its scripts cannot compute the scene, or for arrays.
+    """Return the text of the page, or raise ValueError if its scripts cannot compute the scene, or arrays.
 
     >>> explorer_page(Scene()).startswith("<!DOCTYPE html>")
     True
