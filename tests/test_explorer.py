@@ -512,7 +512,9 @@ def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser, chosen, s
 
 
 def test_unstable_speeds_on_arms_are_found_between_pictures_for_the_last_scene(browser):
-    state = "restore('#foundation=generalized-maxwell&arms=30_10&drive.stiffness={}&drive.damping=0')"
+    state = (
+        "restore('#foundation=generalized-maxwell&arms=30_10&drive.stiffness={}&drive.damping=0')"
+    )
     for stiffness in (0.01, 0.03):
         browser.run(state.format(stiffness))
         browser.settle()
