@@ -53,9 +53,8 @@ function show_numbers(scene, state) {
     return `<div><small>${told}</small><b data-name="${name}">${value}</b></div>`;
   }).join("");
   document.getElementById("readout").textContent =
-    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
-    + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`
-    + (layer_number(scene, state) > MODEL.thin ? ", layer not thin" : "");
+    (layer_number(scene, state) > MODEL.thin ? "Layer not thin: " : "") + `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
+    + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`;
 }
 
 /** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */
