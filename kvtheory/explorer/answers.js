@@ -52,8 +52,9 @@ function show_numbers(scene, state) {
     const value = `${short(state[name] * by, 5)}${shown ? ` <small>${shown}</small>` : ""}`;
     return `<div><small>${told}</small><b data-name="${name}">${value}</b></div>`;
   }).join("");
-  document.getElementById("readout").textContent =
-    (layer_number(scene, state) > MODEL.thin ? "Layer not thin: " : "") + `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
+  const warned = layer_number(scene, state) > MODEL.thin ? "Layer not thin: " : "";
+  document.getElementById("readout").textContent = warned
+    + `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
     + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`;
 }
 

@@ -70,7 +70,8 @@ def controls(scene: Scene) -> dict[str, Any]:
     ('mm', '10', -3)
     """
     line = scene.indenter.per_width
-    sections, values = {}, {}
+    sections: dict[str, Any] = {}
+    values: dict[str, str] = {}
     for section, (chooser, models) in SECTIONS.items():
         own = _given(scene, section)
         alternatives = {kind: _alternatives(section, kind, cls) for kind, cls in models.items()}

@@ -34,8 +34,6 @@ const UNITS = {
   N: [[1, 1, -2, 0, 0], 1], Pa: [[-1, 1, -2, 0, 0], 1], J: [[2, 1, -2, 0, 0], 1], Hz: [[0, 0, -1, 0, 0], 1],
   min: [[0, 0, 1, 0, 0], 60], h: [[0, 0, 1, 0, 0], 3600], "1": [[0, 0, 0, 0, 0], 1],
 };
-/** Where a foundation was measured. */
-const MEASURED = /^(temperature|reference_temperature|wlf\.c_2|(lowest|highest)_\w+)$/;
 const CELSIUS = ["degC", "\u00b0C"];
 
 /** The dimension and size of a unit such as N*s/m^2; nothing if it is unknown. */
@@ -158,9 +156,9 @@ function scene_of(state) {
   const scene = {
     indenter, shape, stretch: across === undefined ? 1 : Math.sqrt(across / radius),
     K: stiffness(v[`foundation.${measure_of(state)}`]), tau: v["foundation.retardation_time"] * a_T, a_T,
+    measured: Object.fromEntries(Object.entries(v).filter(([key]) => key.startsWith("foundation.")).map(([key, x]) => [parted(key)[1], x])),
     kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"], support,
   };
-  scene.measured = Object.fromEntries(Object.entries(v).map(([key, value]) => [parted(key)[1], value]).filter(([name]) => MEASURED.test(name)));
   if (h !== undefined) scene.layer = { thickness: h, poisson_ratio: nu };
   if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
   if (has_arms(state)) {

@@ -187,7 +187,7 @@ IN_MOTION = (
 def lacks_one_scene(scene: Scene) -> str:
     """Return why a function for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
-    told = "give one value of each (--set KEY=VALUE), or use `sweep`"
+    told = "use `sweep`, or give one value of each (--set KEY=VALUE)"
     return f"is for one scene, not for arrays ({keys}); {told}" if keys else ""
 
 
