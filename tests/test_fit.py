@@ -421,6 +421,12 @@ def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):
     assert found["not_identifiable"] == []
     assert kv.load_scene(out).foundation.stiffness == found["parameters"][VOIGT[0]]["value"]
     assert picture.stat().st_size > 10_000
+    again = printed(*command, ",".join(VOIGT), "--data", data, "-o", out, "--plot", picture)
+    assert kv.load_scene(out).foundation.stiffness == again["parameters"][VOIGT[0]]["value"]
+    second = tmp_path / "second.toml"
+    second.write_bytes(data.read_bytes())
+    refused([*command, VOIGT[0], "--data", second, "-o", second], ["is what this command reads"])
+    assert second.read_bytes() == data.read_bytes()
     shown = run(*command, ",".join(VOIGT)).stdout
     assert "standard error" in shown
     assert "25 rows, misfit 0.0" in shown
