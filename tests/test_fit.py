@@ -10,7 +10,7 @@ from scipy.stats import t as student
 
 import kvtheory as kv
 from kvtheory.api._fit import _followed
-from kvtheory.fitting import friction, records
+from kvtheory.fitting import confidence, friction, records
 from kvtheory.fitting.least_squares import descend
 from kvtheory.models.steady.methods import METHODS
 from tests.commands import printed, refused, run
@@ -96,7 +96,7 @@ def test_the_true_values_are_within_two_standard_errors(name, few):
     hits = []
     for seed in range(count):
         problem, found = solved_problem(scene, keys, table(scene, 0.02, seed, **how))
-        errors = friction.standard_errors(found, friction.intervals(problem, found))
+        errors = confidence.standard_errors(found, confidence.intervals(problem, found))
         hits.append(np.abs(np.expm1(true - found.point)) < 2.0 * errors)
     spread = 3.0 * np.sqrt(0.95 * 0.05 / (len(keys) * count))
     assert np.mean(hits) > 0.95 - max(spread, 0.02)
@@ -237,7 +237,7 @@ def test_a_time_series_tells_the_same_alone_and_with_a_curve():
     both = kv.fit(wrong, [series(TABLE1, 0.02), table(TABLE1, 0.02)], free=VOIGT)
     for found in (alone, both):
         for key, true in zip(VOIGT, (1e10, 0.1), strict=True):
-            value, error, (low, high) = found.parameters[key]
+            value, error, (low, high), _ = found.parameters[key]
             assert abs(value - true) < 3.0 * error < 0.05 * true
             assert low < value < high
         assert found.misfit == pytest.approx(0.02, rel=0.25)
@@ -325,26 +325,72 @@ def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
         METHODS["exact"],
     )  # fmt: skip
     _, best = friction.solve(problem)
-    limits = friction.intervals(problem, best)
+    limits = np.array([pieces for (pieces,) in confidence.intervals(problem, best)])
     errors = np.sqrt(np.diag(best.covariance))
     assert np.ptp(np.abs(limits - best.point[:, None]) / errors[:, None]) > 0.5
-    linear = np.linalg.inv(best.slopes.T @ best.slopes)
-    t = student.ppf(0.975, 30 - len(ONE_ARM))
+    allowed = allowed_rise(best)
     for i, ends in enumerate(limits):
         for end in ends:
+            rise = held(problem, i, end, best.point[None]) - best.residuals @ best.residuals
+            assert rise == pytest.approx(allowed[i], rel=0.03)
 
-            def held(points, i=i, end=end):
-                return problem.residuals(np.insert(points, i, end, axis=1))
 
-            start = np.delete(best.point, i)[None]
-            _, (least,) = descend(held, start, start[0] - 9.0, start[0] + 9.0, 200)
-            rise = least - best.residuals @ best.residuals
-            assert rise == pytest.approx((t * errors[i]) ** 2 / linear[i, i], rel=0.03)
+def allowed_rise(best):
+    """Return the rise of the sum of squares at the limits of 95 %, for each unknown."""
+    linear = np.linalg.inv(best.slopes.T @ best.slopes)
+    t = student.ppf(0.975, best.residuals.size - best.point.size)
+    return t**2 * np.diag(best.covariance) / np.diag(linear)
+
+
+def held(problem, i, value, starts):
+    """Return the least sum of squares over the others, of descents from `starts`, with one unknown held."""
+    start = np.delete(starts, i, axis=1)
+
+    def residuals(points):
+        return problem.residuals(np.insert(points, i, value, axis=1))
+
+    return descend(residuals, start, start.min(axis=0) - 9.0, start.max(axis=0) + 9.0, 200)[1].min()
+
+
+ARM = kv.Scene(foundation=kv.GeneralizedMaxwell("10 GN/m^3", arms=[["10 GN/m^3", "50 ms"]]))
+
+
+def test_a_second_minimum_that_the_data_allow_is_told_with_its_interval():
+    """A stiff arm that is a damper fits a few rows a little better than the arm that made them."""
+    data = table(ARM, 0.05, 7, np.geomspace(1e-3, 1.0, 12))
+    found = kv.fit(ARM, data, free=ONE_ARM)
+    (note,) = found.notes
+    assert "The data allow another fit, with a sum of squares 1.07 times the least" in note
+    assert "foundation.stiffness = 4.13e+09 N/m^3" in note
+    problem, best = solved_problem(ARM, ONE_ARM, data)
+    allowed = best.residuals @ best.residuals + allowed_rise(best)
+    grid = np.stack(np.meshgrid(*[(-4.0, 0.0, 4.0)] * len(ONE_ARM)), axis=-1).reshape(-1, 3)
+    starts = np.concatenate([row + grid for row in best.minima])
+    for i, key in enumerate(ONE_ARM):
+        own, (other,) = found.parameters[key].interval, found.parameters[key].other_intervals
+        assert any(low < ARM.values()[key] < high for low, high in (own, other))
+        assert f"{other[0]:.4g} to {other[1]:.4g}" in str(found)
+        between = np.log([own, other]).ravel()
+        between.sort()
+        for y, is_allowed in zip(
+            (between[:2].mean(), between[1:3].mean(), between[2:].mean()),
+            (True, False, True),
+            strict=True,
+        ):
+            assert (held(problem, i, y, starts) <= allowed[i]) == is_allowed
+        for end in np.log(other):
+            assert held(problem, i, end, best.minima[1:]) == pytest.approx(allowed[i], rel=0.02)
+
+
+def test_precise_data_allow_one_minimum_only():
+    found = kv.fit(ARM, table(ARM, 0.01, 7, np.geomspace(1e-3, 1.0, 20)), free=ONE_ARM)
+    assert found.notes == ()
+    assert not any(each.other_intervals for each in found.parameters.values())
 
 
 def test_intervals_are_those_of_student_if_errors_are_elliptic_and_infinite_if_open():
     found, t = kv.fit(TABLE1, table(TABLE1, 0.005), free=VOIGT), student.ppf(0.975, V.size - 2)
-    for value, error, (low, high) in found.parameters.values():
+    for value, error, (low, high), _ in found.parameters.values():
         assert np.log([value / low, high / value]) == pytest.approx(t * error / value, rel=0.05)
     slow = kv.fit(TABLE1, table(TABLE1, 0.01, 2, np.geomspace(1e-5, 1e-4, 12)), free=VOIGT)
     assert slow.parameters[VOIGT[0]].interval[0] == 0.0

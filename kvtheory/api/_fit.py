@@ -29,6 +29,8 @@ from kvtheory.scene.model import Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
+WEIGHED = 0.5
+"""Share of the points that are refined while models are weighed, as only the lowest minimum counts."""
 SIMULATED = 1e-3
 """Tolerance of a transient that only elements give."""
 NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED)
@@ -101,7 +103,7 @@ def fit(
     ----------
     Facts F3, F18, F25 and F26 of the derivations; Burnham and Anderson (2002), Model Selection.
     """
-    from kvtheory.fitting import friction
+    from kvtheory.fitting import confidence, friction
     from kvtheory.fitting.records import read
 
     scene = one_scene(scene, "a fit")
@@ -145,7 +147,7 @@ def fit(
         problem = friction.Problem(
             each, keys, sets, law, _followed, precise=not lacks_transient(each)
         )
-        best = friction.solve(problem, report=report)
+        best = friction.solve(problem, report=report, share=WEIGHED if models else 1.0)
         found[name] = *best, friction.information(*best)
     least = min(each[2] for each in found.values())
     weighed = [
@@ -155,14 +157,16 @@ def fit(
     total = sum(math.exp(-0.5 * row[3]) for row in weighed)
     name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
+    if models:
+        problem, best = friction.solve(problem)
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
-    limits = friction.intervals(problem, best)
+    limits = confidence.intervals(problem, best)
     scale = np.sqrt(np.outer(*[np.diag(best.covariance)] * 2))
     return FrictionFit(
         parameters={
-            key: Parameter(value, float(value * error), tuple(np.exp(ends).tolist()))
-            for key, value, error, ends in zip(
-                problem.keys, values, friction.standard_errors(best, limits), limits, strict=True
+            key: Parameter(value, float(value * error), *_pieces(pieces))
+            for key, value, error, pieces in zip(
+                problem.keys, values, confidence.standard_errors(best, limits), limits, strict=True
             )
         },
         correlations=tuple(map(tuple, (best.covariance / np.where(scale > 0.0, scale, 1.0)).tolist())),
@@ -178,6 +182,7 @@ def fit(
         notes=(
             *dict.fromkeys(note for each in problem.data for note in each.notes),
             *friction.alike(problem, best.point),
+            *confidence.others(problem, best, limits),
         ),
         scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
         data={
@@ -188,6 +193,12 @@ def fit(
             "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
     )  # fmt: skip
+
+
+def _pieces(limits: Any) -> tuple[Any, Any]:
+    """Return the interval of the best value, and the pieces apart from it."""
+    own, *others = [tuple(np.exp(ends).tolist()) for ends in limits]
+    return own, tuple(others)
 
 
 def _misfit(problem: Any, point: Any) -> float:

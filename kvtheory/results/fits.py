@@ -136,13 +136,15 @@ class Parameter(NamedTuple):
     """A fitted quantity of a scene, in SI, and its standard error.
 
     `interval` is that of 95 % confidence, by the profile of the sum of squares; a limit that the data do not
-    give is 0 or infinite. The standard error is that of linear theory at the minimum, or the longer side of
-    the interval over Student's t where that is larger.
+    give is 0 or infinite. Where the sum of squares has a second minimum that the data allow as well, the
+    set of 95 % may have more pieces, `other_intervals`. The standard error is that of linear theory at the
+    minimum, or the longer side of the interval over Student's t where that is larger.
     """
 
     value: float
     standard_error: float
     interval: tuple[float, float]
+    other_intervals: tuple[tuple[float, float], ...] = ()
 
 
 class WeighedModel(NamedTuple):
@@ -199,9 +201,9 @@ class FrictionFit(_Fit):
                 f"{error:.2g}",
                 specs[key].unit,
                 f"{error / value:.2g}",
-                f"{low:.4g} to {high:.4g}",
+                " or ".join(f"{low:.4g} to {high:.4g}" for low, high in (own, *others)),
             )
-            for key, (value, error, (low, high)) in self.parameters.items()
+            for key, (value, error, own, others) in self.parameters.items()
         ]
         heads = "quantity", "value", "standard error", "unit", "relative", "95 % interval"
         lines = aligned(heads, rows)
