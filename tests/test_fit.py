@@ -13,6 +13,7 @@ from kvtheory.api._fit import _followed
 from kvtheory.fitting import confidence, friction, records
 from kvtheory.fitting.least_squares import descend
 from kvtheory.models.steady.methods import METHODS
+from kvtheory.plots.fits import draw_fit
 from tests.commands import printed, refused, run
 
 V = np.geomspace(1e-3, 1.0, 25)
@@ -262,6 +263,59 @@ def test_a_series_that_theory_does_not_follow_says_so():
     assert "the model is off, and the standard errors are too small" in note
 
 
+def test_a_curve_that_theory_does_not_follow_says_so():
+    """Friction with a constant added and the time held: the residuals are one smooth sweep."""
+    data = table(TABLE1, 0.05, 1) | {"mu": 0.1 + measured(TABLE1, 0.05, 1)}
+    found = kv.fit(TABLE1, data, free=VOIGT[:1])
+    (note,) = (note for note in found.notes if "over velocity are alike" in note)
+    assert "the model is off, and the standard errors are too small" in note
+    mixed = np.random.default_rng(0).permutation(V.size)
+    again = kv.fit(TABLE1, {key: values[mixed] for key, values in data.items()}, free=VOIGT[:1])
+    assert note in again.notes
+    sound = [kv.fit(TABLE1, table(TABLE1, 0.05, seed), free=VOIGT).notes for seed in range(8)]
+    assert sound == [()] * 8
+
+
+def test_a_contact_that_is_no_parabola_any_more_is_told():
+    found = kv.fit(TABLE1, {"V [m/s]": V, "mu": 50.0 * measured(TABLE1)}, free=VOIGT)
+    half = kv.steady(found.scene, over={"drive.velocity": V}).half_length
+    (note,) = found.notes
+    assert f"up to {half.max() / TABLE1.indenter.radius:.3g} radii long" in note
+    assert kv.fit(TABLE1, {"V [m/s]": V, "mu": measured(TABLE1)}, free=VOIGT).notes == ()
+
+
+def test_friction_against_the_velocity_is_refused_and_of_some_rows_noted():
+    mu = measured(TABLE1)
+    assert kv.fit(TABLE1, {"V [m/s]": -V, "mu": -mu}, free=VOIGT).notes == ()
+    with pytest.raises(ValueError, match='column "mu": has the opposite sign of the velocity'):
+        kv.fit(TABLE1, {"V [m/s]": V, "mu": -mu}, free=VOIGT)
+    over_time = series(TABLE1, columns=["friction_force"])
+    over_time["friction_force [N/m]"] *= -1.0
+    with pytest.raises(ValueError, match="has the opposite sign of the velocity"):
+        kv.fit(TABLE1, over_time, free=VOIGT[1:])
+    mu[0] *= -1.0
+    (note,) = kv.fit(TABLE1, {"V [m/s]": V, "mu": mu}, free=VOIGT).notes
+    assert note == "In 1 of 25 rows friction and velocity have opposite signs."
+
+
+def test_a_series_of_a_drive_at_rest_is_refused():
+    still = kv.Scene(drive=kv.Drive("0 mm/s"))
+    data = {"t [ms]": np.arange(20.0), "F_x [N/m]": np.ones(20)}
+    with pytest.raises(ValueError, match="`drive` of the scene is at rest throughout"):
+        kv.fit(still, data, free=VOIGT)
+
+
+def test_the_picture_shows_the_residuals_of_the_misfit_and_names_their_size():
+    data = table(TABLE1, 0.05, 1) | {"mu": 0.1 + measured(TABLE1, 0.05, 1)}
+    found = kv.fit(TABLE1, data, free=VOIGT[:1])
+    rest = draw_fit(found).axes[1]
+    shown = rest.lines[0].get_ydata()
+    assert np.sqrt(np.mean(shown**2)) == pytest.approx(100.0 * found.misfit, rel=1e-5)
+    assert rest.get_title() == f"residuals, RMS {100.0 * found.misfit:.3g} %"
+    fitted = kv.steady(found.scene, over={"drive.velocity": V}).friction_coefficient
+    assert shown == pytest.approx(100.0 * (fitted - data["mu"]) / np.sqrt(fitted * data["mu"]))
+
+
 def test_rows_before_the_start_are_left_out():
     data = series(TABLE1)
     time, force = data["t [ms]"] - 20.0, data["friction_force [N/m]"]
@@ -429,6 +483,7 @@ BAD = {
     "negative load": ("V [mm/s],mu,F_z [N/mm]\n1,1,-3\n2,1,3\n3,1,3\n", "line 2"),
     "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n", "needs a scene with foundation.wlf"),
     "huge": (MU + "5,1e300\n", "1e+300 is not plausible"),
+    "tiny": (MU + "5,1e-300\n", 'line 6, column "mu": 1e-300 is not plausible'),
     "foundation.stifness": (MU, 'did you mean "foundation.stiffness"'),
     "drive.velocity": (MU, "is given by the data"),
     "": (MU, "expected the keys of free quantities"),
@@ -451,6 +506,15 @@ def test_mistakes_are_messages(tmp_path, name):
     path.write_text(text)
     with pytest.raises(ValueError, match=re.escape(told)):
         kv.fit(data=path, free=free)
+
+
+def test_a_key_that_does_not_exist_is_shown_short_with_the_nearest():
+    arms = kv.GeneralizedMaxwell("1 GN/m^3", arms=[[1e9, 10.0**k] for k in range(-8, 4)])
+    for key in ("x" * 5000, "foundation.arms[3].stifness"):
+        with pytest.raises(ValueError, match="is not a quantity of this scene") as caught:
+            kv.fit(kv.Scene(foundation=arms), {"V [m/s]": V, "mu": V}, free=[key])
+        assert len(str(caught.value)) < 250
+    assert 'did you mean "foundation.arms[3].stiffness"?' in str(caught.value)
 
 
 def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):

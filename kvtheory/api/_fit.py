@@ -24,7 +24,7 @@ from kvtheory.scene.capabilities import (
     require,
 )
 from kvtheory.scene.foundations import MEASURED
-from kvtheory.scene.mistakes import Problems, nearest
+from kvtheory.scene.mistakes import Problems, nearest, shown
 from kvtheory.scene.model import Scene
 
 DIGITS = 6
@@ -103,7 +103,7 @@ def fit(
     ----------
     Facts F3, F18, F25 and F26 of the derivations; Burnham and Anderson (2002), Model Selection.
     """
-    from kvtheory.fitting import confidence, friction
+    from kvtheory.fitting import confidence, friction, remarks
     from kvtheory.fitting.records import read
 
     scene = one_scene(scene, "a fit")
@@ -161,6 +161,10 @@ def fit(
         problem, best = friction.solve(problem)
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
     limits = confidence.intervals(problem, best)
+    fitted = [
+        {name: rows[0] for name, rows in each.items()}
+        for each in problem.theory(np.log(values)[None])
+    ]
     scale = np.sqrt(np.outer(*[np.diag(best.covariance)] * 2))
     return FrictionFit(
         parameters={
@@ -181,14 +185,15 @@ def fit(
         ),
         notes=(
             *dict.fromkeys(note for each in problem.data for note in each.notes),
-            *friction.alike(problem, best.point),
+            *remarks.alike(problem, best.point),
+            *remarks.large(problem, best.point),
             *confidence.others(problem, best, limits),
         ),
         scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
         data={
-            "sets": problem.data, "fitted": [
-                {name: rows[0] for name, rows in each.items()}
-                for each in problem.theory(np.log(values)[None])
+            "sets": problem.data, "fitted": fitted, "residuals": [
+                {name: friction.relative(each, name, own[name]) for name in each.measured}
+                for each, own in zip(problem.data, fitted, strict=True)
             ],
             "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
@@ -227,9 +232,11 @@ def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:
         value = scene.values().get(own[0]) if own else None
         if not own:
             told = "is given by the data" if key in NOT_FREE else "is not a quantity of this scene"
-            problems.append(f"`free` {key}: {told}; {nearest(key, known)}")
+            problems.append(f"`free` {shown(key)}: {told}; {nearest(key, known)}")
         elif not value or value < 0.0:
-            problems.append(f"`free` {key}: is not above 0 in the scene, so that it has no scale")
+            problems.append(
+                f"`free` {shown(key)}: is not above 0 in the scene, so that it has no scale"
+            )
         keys += [each for each in own if each not in keys]
     problems.report()
     return tuple(keys)

@@ -21,7 +21,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 from kvtheory.fitting.least_squares import Fit, descend, slopes, student
-from kvtheory.fitting.records import FRICTION, Data
+from kvtheory.fitting.records import FRICTION, Data, largest_speed
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import as_given, given
@@ -72,8 +72,6 @@ SHAPED = "retardation_time", "order"
 """Quantities that belong to one law of the foundation."""
 FAILED = 1e3
 """Residual where theory has no answer."""
-ALIKE = 0.5
-"""Correlation of neighbouring residuals of a time series from which they are not scatter."""
 
 
 @dataclass(frozen=True)
@@ -148,22 +146,12 @@ class Problem:
         return replace(self, data=parts, rough=True, memory={})
 
     def columns(self, points: Array) -> list[Array]:
-        """Return the residuals of each column measured, of unknowns in rows.
-
-        Over velocity relative to the geometric mean of data and theory, without bias; over time to
-        the root mean square.
-        """
-        found = []
-        for data, own in zip(self.data, self.theory(points), strict=True):
-            for name, values in data.measured.items():
-                scale: Any = np.sqrt(np.mean(values * values))
-                if data.time is None:
-                    scale = np.sqrt(np.abs(own[name] * values))
-                    scale = np.maximum(scale, FLOOR * np.abs(values).max())
-                found.append(
-                    np.nan_to_num((own[name] - values) * (data.weight / scale), nan=FAILED)
-                )
-        return found
+        """Return the relative residuals of each column measured, times its weights, of unknowns in rows."""
+        return [
+            np.nan_to_num(relative(data, name, own[name]) * data.weight, nan=FAILED)
+            for data, own in zip(self.data, self.theory(points), strict=True)
+            for name in data.measured
+        ]
 
     def count(self, point: Array) -> float:
         """Return the number of residuals; those relative to the floor scatter less, and count in part."""
@@ -234,10 +222,12 @@ class Problem:
                 break
         a = np.mean(self.solve(scene.replace({**still, key: first})).half_length)
         speeds = [
-            each.conditions["drive.velocity"] if each.time is None else _speeds(scene, each.time)
+            each.conditions["drive.velocity"]
+            if each.time is None
+            else largest_speed(scene, each.time)
             for each in self.data
         ]
-        V = np.abs(np.concatenate(speeds))
+        V = np.abs(np.hstack(speeds))
         moving = V[V > 0.0]
         return first, a / np.array([moving.max(), moving.min()])
 
@@ -253,12 +243,17 @@ class Problem:
         return float(np.mean(static.get(name, mu * state.load)))
 
 
-def _speeds(scene: Scene, time: Array) -> Array:
-    """Return the largest speed of the drive during a time series."""
-    drive = scene.drive
-    if drive.function is None:
-        return np.array([max(abs(V) for _, V in drive.points)])
-    return np.abs([drive.called(t) for t in time.tolist()]).max(keepdims=True)
+def relative(data: Data, name: str, found: Array) -> Array:
+    """Return the relative residuals of a column measured.
+
+    Over velocity relative to the geometric mean of data and theory, without bias; over time to the root mean
+    square.
+    """
+    values = data.measured[name]
+    scale: Any = np.sqrt(np.mean(values * values))
+    if data.time is None:
+        scale = np.maximum(np.sqrt(np.abs(found * values)), FLOOR * np.abs(values).max())
+    return np.asarray((found - values) / scale)
 
 
 def solve(
@@ -330,19 +325,6 @@ def _apart(points: Array, score: Array) -> tuple[Array, Array]:
         if not near[i, kept].any():
             kept.append(i)
     return points[order[kept]], score[order[kept]]
-
-
-def alike(problem: Problem, point: Array) -> list[str]:
-    """Return a note on each column over time whose residuals are alike from row to row."""
-    names = [(data, name) for data in problem.data for name in data.measured]
-    notes = []
-    for (data, name), rows in zip(names, problem.columns(point[None]), strict=True):
-        r = rows[0] - rows[0].mean()
-        alike = float(r[1:] @ r[:-1] / max(float(r @ r), np.finfo(float).tiny))
-        if data.time is not None and alike > ALIKE and float(np.std(r)) > STEP[FINE] ** 2:
-            told = f"The residuals of {name} over time are alike from row to row (correlation {alike:.2f})"
-            notes.append(f"{told}: the model is off, and the standard errors are too small.")
-    return notes
 
 
 def _sorted(points: Array, keys: Sequence[str]) -> Array:

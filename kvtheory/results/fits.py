@@ -164,8 +164,9 @@ class FrictionFit(_Fit):
     `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
     of the correlations of their logarithms, in the same order. `not_identifiable` lists the keys that the
     data cannot tell, or cannot tell apart: a combination of them is uncertain by more than a factor of two.
-    `misfit` is the root mean square of the relative residuals. `models` are the foundations that were
-    weighed. `scene` is the scene with the fitted values.
+    `misfit` is the root mean square of the residuals, over velocity relative to the geometric mean of the
+    measured and the fitted value, over time to the root mean square of what is measured. `models` are the
+    foundations that were weighed. `scene` is the scene with the fitted values.
     """
 
     heading = "# A scene whose quantities were fitted to measured friction"
@@ -179,7 +180,7 @@ class FrictionFit(_Fit):
     notes: tuple[str, ...] = ()
     scene: Scene = field(default_factory=Scene, repr=False)
     data: Any = field(default=None, repr=False, compare=False)
-    """Conditions, measured and fitted quantities by name, and units."""
+    """Conditions, measured and fitted quantities and relative residuals by name, and units."""
 
     @property
     def remarks(self) -> list[str]:
