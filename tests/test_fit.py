@@ -215,6 +215,17 @@ def test_models_are_weighed_and_no_more_is_taken_than_needed():
     assert "springpot" in str(found)
 
 
+def test_weights_of_models_follow_akaike_and_add_up_to_one():
+    """Of data that several models fit about as well."""
+    found = kv.fit(TABLE1, table(TABLE1, 0.05, 0, np.geomspace(1e-3, 1.0, 14)), models=True)
+    best, *others = sorted(found.models, key=lambda model: model.aicc)
+    assert best.aicc == 0.0
+    assert best.weight < 0.9
+    assert sum(model.weight for model in found.models) == pytest.approx(1.0)
+    for model in others:
+        assert model.weight / best.weight == pytest.approx(np.exp(-0.5 * model.aicc))
+
+
 def test_models_with_more_unknowns_than_values_are_left_out():
     found = kv.fit(TABLE1, table(TABLE1, 0.01, 4, V[::10]), models=True)
     assert found.model == "kelvin-voigt"

@@ -98,7 +98,7 @@ def read_factors(data: Any) -> tuple[Array, Array]:
         table.require("a_T", a_T > 0.0, "is not above 0")
         log_shift = np.log10(a_T)
     name, most = ("log10 a_T" if "log10 a_T" in table else "a_T"), math.log10(LARGEST)
-    order, small = np.argsort(T), np.abs(log_shift) < most
+    order, small = np.argsort(T), np.abs(log_shift) <= most
     T, log_shift = T[order], log_shift[order]
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
