@@ -183,7 +183,7 @@ def _over_velocity(fit: FrictionFit, data: Any, name: str, off: Any, over: Any, 
             over.plot(curve * x_factor, line * factor, color=colour, linewidth=1.0)
         rest.plot(V[own] * x_factor, off[own], "o", color=colour, markersize=3)
     over.set(xscale="log", xlabel=x_label, ylabel=label)
-    rest.set(xscale="log", xlabel=x_label, ylabel="fit minus data [% of their geometric mean]")
+    rest.set(xscale="log", xlabel=x_label, ylabel="fit minus data\n[% of geometric mean]")
     if len(sets) > 1:
         over.legend()
 
