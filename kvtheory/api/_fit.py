@@ -147,18 +147,19 @@ def fit(
         problem = friction.Problem(
             each, keys, sets, law, _followed, precise=not lacks_transient(each)
         )
-        best = friction.solve(problem, report=report, share=WEIGHED if models else 1.0)
-        found[name] = *best, friction.information(*best)
+        solved = friction.solve(problem, report=report, share=WEIGHED if models else 1.0)
+        found[name] = *solved, friction.information(*solved)
+    name = min(found, key=lambda each: found[each][2])
+    if models:
+        solved = friction.solve(found[name][0])
+        found[name] = *solved, friction.information(*solved)
     least = min(each[2] for each in found.values())
     weighed = [
-        (name, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
-        for name, (problem, best, aicc) in found.items()
+        (each, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
+        for each, (problem, best, aicc) in found.items()
     ]
     total = sum(math.exp(-0.5 * row[3]) for row in weighed)
-    name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
-    if models:
-        problem, best = friction.solve(problem)
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
     limits = confidence.intervals(problem, best)
     fitted = [

@@ -58,7 +58,9 @@ def check_outputs(context: click.Context) -> None:
     context.meta[OVERWRITE] = context.params.pop("overwrite", False)
     for parameter in context.command.params:
         option, kind = parameter.opts[0], parameter.type
-        for path in _given(context, parameter) if isinstance(kind, OutputFile) else ():
+        if not isinstance(kind, OutputFile):
+            continue
+        for path in _given(context, parameter):
             if not kind.suffixes:
                 _check_not_an_input(option, path)
                 continue

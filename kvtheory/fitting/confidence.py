@@ -14,6 +14,7 @@ from kvtheory.fitting.friction import Problem
 from kvtheory.fitting.least_squares import Fit, covariance, student, updated
 
 Array = NDArray[np.float64]
+Places = NDArray[np.int_]
 
 NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
 """Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
@@ -67,7 +68,7 @@ def _joined(spans: Array, best: float) -> list[tuple[float, float]]:
 
 
 def _limits(
-    problem: Problem, found: Fit, place: Array, own: Array, least: float, rise: Array
+    problem: Problem, found: Fit, place: Places, own: Places, least: float, rise: Array
 ) -> Array:
     """Return the limits of unknowns `own` around the minima at `place`, or infinity.
 

@@ -163,7 +163,7 @@ def _against(table: Table, measured: Mapping[str, Array], V: Array) -> int:
         if signs.min() < 0.0 and signs.max() <= 0.0:
             told = "has the opposite sign of the velocity throughout"
             raise table.error(name, f"{told}; expected friction with the sign of the velocity")
-        against = max(against, np.count_nonzero(signs < 0.0))
+        against = max(against, int(np.count_nonzero(signs < 0.0)))
     return against
 
 
