@@ -215,7 +215,9 @@ def _factor(written: str, unit: str) -> Fraction:
         told = f'"{written}" is not a known unit{hint}; expected {expected(unit)}'
         raise ValueError(told) from None
     if angle:
-        raise ValueError(f'the unit "{written}" holds an angle or a count; expected {expected(unit)}')
+        raise ValueError(
+            f'the unit "{written}" holds an angle or a count; expected {expected(unit)}'
+        )
     if factor is None:
         raise ValueError(f'the unit "{written}" has the wrong dimension; expected {expected(unit)}')
     return factor
