@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -119,6 +120,8 @@ load = ["1 N", "2 N"]
 [drive]
 velocity = "1 mm/s:1 m/s:2:log"
 """
+CASES = [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
+"""Radius, stiffness of the first arm, load and velocity of both scenes."""
 
 
 def test_a_scene_of_arrays_is_many_scenes(place):
@@ -128,8 +131,7 @@ def test_a_scene_of_arrays_is_many_scenes(place):
     path.write_text(kv.to_toml(scene), encoding="utf-8")
     assert kv.load_scene(path) == scene
     forces = printed("steady", "many.toml")["friction_force"]
-    cases = [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
-    for force, (radius, glassy, load, velocity) in zip(forces, cases, strict=True):
+    for force, (radius, glassy, load, velocity) in zip(forces, CASES, strict=True):
         rubber = kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)])
         one = kv.Scene(kv.Sphere(radius), rubber, kv.DeadWeight(load=load), kv.Drive(velocity))
         assert force == kv.steady(one).friction_force
@@ -140,6 +142,33 @@ def test_a_scene_of_arrays_is_many_scenes(place):
     assert table.read_text("utf-8").startswith(",".join([*keys, "drive.velocity [m/s],depth [m]"]))
 
 
+def test_a_check_shows_the_numbers_of_many_scenes_in_their_shape(place):
+    path, ones = place / "many.toml", []
+    path.write_text(ARRAYS, encoding="utf-8")
+    for radius, glassy, load, velocity in CASES:
+        rubber = kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)])
+        one = kv.Scene(kv.Sphere(radius), rubber, kv.DeadWeight(load=load), kv.Drive(velocity))
+        (place / "one.toml").write_text(kv.to_toml(one), encoding="utf-8")
+        ones.append(printed("scene", "one.toml"))
+    found = printed("scene", "many.toml")
+    for name, both in {name: [one[name] for one in ones] for name in ones[0]}.items():
+        assert np.array_equal(found[name], both) or found[name] == both[0] == both[1], name
+    lines = dict(
+        line.split("  ", 1)
+        for line in run("scene", "many.toml").stdout.splitlines()
+        if "  " in line
+    )
+    assert lines["radius"].strip() == "0.01 … 0.02"
+    assert "2 scenes; sphere" in run("scene", "many.toml").stdout
+    law = ["temperature", "reference_temperature"]
+    thermal = [f"foundation.{key}=20 degC" for key in law] + [
+        "foundation.activation_energy=80 kJ/mol"
+    ]
+    thermal[0] = 'foundation.temperature=["20 degC", "30 degC"]'
+    warm = printed("scene", *(part for each in thermal for part in ("--set", each)))
+    assert warm["shift_factor"] == pytest.approx([1.0, 0.33868], rel=1e-5)
+
+
 def test_commands_take_ranges_and_refuse_them_over_time():
     many = ("--set", "drive.velocity=1 mm/s:1 m/s:50:log")
     lines = run("steady", *many).stdout.splitlines()
@@ -148,7 +177,7 @@ def test_commands_take_ranges_and_refuse_them_over_time():
     stable = run("stability", *many, "--set", "drive.stiffness=1 MN/m^2").stdout
     assert stable.splitlines()[2].startswith("drive.velocity [m/s]  stable  critical_stiffness")
     assert "V = 1 … 1000 mm/s" in run("asymptotes", *many).stdout
-    for command in ("transient", "elements", "compare", "scene"):
+    for command in ("transient", "elements", "compare"):
         refused([command, *many], ["arrays (drive.velocity); use `sweep`"])
 
 

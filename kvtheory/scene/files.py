@@ -333,6 +333,9 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     spring = {key: values.pop(key) for key in SPRING if waveform and key in values}
     with found.catching(section, table):
         made = cls(**values)
+    for key, array in {} if made is None else made.arrays().items():
+        if not array.size:
+            found.add(f"{section}.{key}", [], "is empty; expected at least one value")
     if waveform:
         with found.catching(section, table):
             made = Drive(velocity=0.0 if made is None else None, waveform=made, **spring)
