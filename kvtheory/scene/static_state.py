@@ -134,8 +134,7 @@ def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
 
 
 FAR = 10.0
-"""Powers of ten from Table 1 from which a message names a value as suspicious. If none is so far, it names the
-farthest, and those at least half as far."""
+"""Powers of ten from Table 1 from which a value is named as suspicious, or half of those of the farthest."""
 
 
 def out_of_range(scene: Scene, why: str = "") -> str:
