@@ -6,6 +6,7 @@ import shlex
 import subprocess
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
@@ -404,6 +405,30 @@ def test_names_with_signs_are_names_and_capital_endings_are_endings(place, stem)
     assert Path(f"{stem}.CSV").read_bytes().startswith(b"depth [m]")
     assert Path(f"{stem}.PNG").read_bytes().startswith(b"\x89PNG")
     assert Path(f"{stem}-map.CSV").read_bytes().startswith(b"# kvtheory sweep")
+
+
+def test_a_read_only_directory_is_refused_before_the_work_by_the_name_of_the_file(
+    place, monkeypatch
+):
+    monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK)
+    for command in (["transient", *SHORT], ["sweep", *OVER]):
+        told = refused([*command, "-o", "a.csv"], ['"a.csv" cannot be written', "read-only"])
+        assert ".part" not in told
+
+
+def test_threads_may_write_one_file(place):
+    state = kv.steady(over={"drive.velocity": np.geomspace(0.01, 1.0, 50)})
+    with ThreadPoolExecutor(10) as pool:
+        list(pool.map(lambda _: state.to_csv("a.csv"), range(50)))
+    assert [path.name for path in place.iterdir()] == ["a.csv"]
+
+
+def test_an_epoch_that_is_no_time_costs_one_message(place, monkeypatch):
+    for epoch in ("x", "9" * 30):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+        refused(["steady", "--plot", "a.svg"], ["SOURCE_DATE_EPOCH", epoch[:20], "whole number"])
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1")
+    run("steady", "--plot", "a.svg")
 
 
 # Streams

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
@@ -133,6 +134,14 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
 def split(text: str) -> list[str]:
     """Return the items of a comma-separated option."""
     return [item.strip() for item in text.split(",") if item.strip()]
+
+
+def names(context: click.Context, option: click.Parameter, value: Any) -> Any:
+    """Refuse an option of comma-separated names that is given and names nothing; a callback."""
+    given = context.get_parameter_source(option.name or "") is ParameterSource.COMMANDLINE
+    if given and not all(map(split, value if isinstance(value, tuple) else [value])):
+        raise click.BadParameter("expected at least one name", context, option)
+    return value
 
 
 def text(value: Any, unit: str) -> str:
