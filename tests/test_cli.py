@@ -175,6 +175,12 @@ def test_commands_take_ranges_and_refuse_them_over_time():
     lines = run("steady", *many).stdout.splitlines()
     assert "21 of 50 scenes; --json prints all" in lines
     assert [line.split()[0] for line in lines[3:24:10]] == ["0.001", "0.0294705", "1"]
+    few = run("steady", "--set", "drive.velocity=1 mm/s:1 m/s:31:log").stdout.splitlines()
+    assert [line.split()[0] for line in few[3:35:30]] == ["0.001", "1"]
+    assert not any("of 31 scenes" in line for line in few)
+    pair = "stability", "--set", "drive.velocity=91 mm/s", "--set", "drive.stiffness=1 MN/m^2"
+    rates = [line.split()[:2] for line in run(*pair).stdout.splitlines()[-5:-2]]
+    assert [frequency for _, frequency in rates] == ["4.85237", "0", "0"]
     stable = run("stability", *many, "--set", "drive.stiffness=1 MN/m^2").stdout
     assert stable.splitlines()[2].startswith("drive.velocity [m/s]  stable  critical_stiffness")
     assert "V = 1 … 1000 mm/s" in run("asymptotes", *many).stdout
