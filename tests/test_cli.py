@@ -486,3 +486,25 @@ def test_warnings_read_as_messages():
     run("cite")
     shown = warnings.formatwarning("compiled anew", RuntimeWarning, "x.py", 1)
     assert shown == "kvtheory: warning: compiled anew\n"
+
+
+INTERRUPTED = """
+import builtins, sys
+import kvtheory.__main__ as entry
+assert "numpy" not in sys.modules and "typing" not in sys.modules  # whose imports could be interrupted
+genuine = builtins.__import__
+def stopped(name, *rest, **how):
+    if name == "numpy":
+        raise KeyboardInterrupt
+    return genuine(name, *rest, **how)
+builtins.__import__ = stopped
+entry.command()
+"""
+
+
+def test_an_interrupt_during_the_imports_is_a_message_too():
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", INTERRUPTED], capture_output=True, text=True, check=False,
+        env={"PATH": os.defpath, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "kvtheory: interrupted\n")
