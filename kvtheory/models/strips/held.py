@@ -54,7 +54,10 @@ class HeldBall:
     def pressure(self, x: ArrayLike, time: float) -> Any:
         """Return the pressure in the middle plane."""
         x, a = np.asarray(x, dtype=float), self.units.half_length
-        path = self.scene.drive.motion(self.scene.run.duration, 1.0)
+        end = self.scene.run.duration
+        if not 0.0 <= time <= end:
+            raise ValueError(f"`time` must lie in [0, {end!r}] s, got {time!r}")
+        path = self.scene.drive.motion(end, 1.0)
         l_r = path.velocity(time) * self.scene.foundation.retardation_time
         ahead = -x if l_r < 0.0 else x
         bent = a * a - x * x - 2.0 * l_r * x

@@ -24,7 +24,12 @@ from kvtheory.models.continuum.prony.contact import DEPTHS, FREE, PEELING, STIFF
 from kvtheory.models.continuum.prony.energy import ledger
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
-from kvtheory.models.continuum.solved_scene import ScaledMotion, end_of, scaled_drive
+from kvtheory.models.continuum.solved_scene import (
+    STEPS_A_PIECE,
+    ScaledMotion,
+    end_of,
+    scaled_drive,
+)
 from kvtheory.progress import Progress
 from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
@@ -157,6 +162,7 @@ def transient(
     """
     units = own_units(scene)
     drive = scaled_drive(scene, units)
+    limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     foundation, spring = scene.foundation, None
     arms = [
         (arm.stiffness / foundation.stiffness, arm.relaxation_time / units.time)
@@ -174,7 +180,7 @@ def transient(
 
         return solve(
             drive, arms, (units.inertia_number, units.support_number), drive.end, tolerance,
-            spring=spring, control=control, progress=report, max_steps=max_steps or STEP_LIMIT,
+            spring=spring, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     rtol = min(rtol, LOOSEST)
