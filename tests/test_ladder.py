@@ -172,6 +172,15 @@ def test_no_tolerance_is_suggested_that_would_be_refused(error, hint):
     assert ("try a tolerance" in str(failed.value)) == hint
 
 
+def test_the_share_of_the_choice_counts_every_rung_that_was_not_used():
+    found = kv.solve(quantity="depth", rtol=1e-6)
+    times = [(1.0, 2.0), (4.0, 8.0), (16.0, 32.0)]
+    steps = tuple(
+        replace(found.climb[0], choosing=choosing, solving=solving) for choosing, solving in times
+    )
+    assert replace(found, climb=steps).choosing_share == (3.0 + 12.0 + 16.0) / (3.0 + 12.0 + 48.0)
+
+
 def test_a_drive_that_is_a_function_has_no_steady_sliding():
     scene = kv.Scene(drive=kv.Drive(function=lambda t: 0.1 * math.sin(60 * t)))
     with pytest.raises(kv.SceneError, match=r"drive\.function"):
