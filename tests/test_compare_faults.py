@@ -376,7 +376,7 @@ def test_the_trials_of_steady_sliding_agree_with_exact_steady_sliding(name):
     for curve, expected in (("depth", exact.depth), ("normal_force", exact.load),
                             ("friction_force", exact.friction_force)):  # fmt: skip
         np.testing.assert_allclose(found[curve], expected, rtol=0.02)
-    late, early = steady_changes(methods, [Rule(hunt=1.0), Rule(start=0.8)], np.array([-0.1, 0.1]))
+    late, early = steady_changes(methods, [Rule(hunt_crossley=1.0), Rule(start=0.8)], np.array([-0.1, 0.1]))
     assert late["friction_force"][0] == -late["friction_force"][1]
     assert not any(values.any() for values in early.values())
 

@@ -27,12 +27,12 @@ class Rule(NamedTuple):
     depth_rate: float = 1.0  # factor on delta' in the compression rate
     slide_rate: float = 1.0  # factor on -h' V there
     decay: float = 1.0  # the free surface decays as exp(-decay t/tau); infinite: no memory
-    pulls: bool = False  # an element sticks, and pulls, until it is back at z = 0
+    tension: bool = False  # elements may pull, until they are back at z = 0
     stale: float = (
         0.0  # part of the pressure of receding elements that the equation of motion misses
     )
     drops: float = 0.0  # part of the whole force that it misses while the indenter rises
-    hunt: float = 0.0  # damping is this times C u/delta_0, as in the law of Hunt and Crossley
+    hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
     front: float = 1.0  # weight of elements before the lowest point
@@ -66,11 +66,12 @@ POINTS, HALVINGS = 24, 24
 """Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
 SHALLOWEST, DEEPEST = 1e-3, 4.0
 """Ends of that interval, in static depths."""
-STEADY = "slide_rate", "pulls", "hunt", "friction", "central", "front", "back", "lost", "flat"
+STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "front", "back", "lost",
+          "flat")  # fmt: skip
 EVEN = "depth", "normal_force", "peak_pressure"
-"""What of a rule shows in steady sliding; and the curves that do not change sign with the velocity."""
+"""Fields of a rule that affect steady sliding; and the curves that do not change sign with the velocity."""
 SLOWEST, TINY = 1e-9, 1e-300
-"""Lowest speed on arms, in a_0/tau; and a force in N that divides where there is none."""
+"""Lowest speed on arms, in a_0/tau; and the divisor if the force vanishes."""
 IMPLICIT = 0.52
 """Weight of the end of a step; slightly more than the trapezoidal rule, for damping."""
 
@@ -143,7 +144,7 @@ class Elements:
         rubbed = (
             p + (1.0 - rule.friction) * damping * slope * speed
         )  # from which friction is computed
-        p, rubbed = (np.where(on & ((q > 0.0) | (rule.pulls > 0.0)), q, 0.0) for q in (p, rubbed))
+        p, rubbed = (np.where(on & ((q > 0.0) | (rule.tension > 0.0)), q, 0.0) for q in (p, rubbed))
         inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
         area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
         reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
@@ -167,11 +168,12 @@ class Elements:
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
         """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
         free = np.where(forgets | sticks, 0.0, np.exp(-age) * old) if h else old
         on = np.where(sticks, g > 0.0, np.where(old == 0.0, touching, g >= free))
-        size = np.where(rule.hunt > 0.0, rule.hunt * g / StaticState.of(self.scene).depth, 1.0)
+        factor = rule.hunt_crossley * g / StaticState.of(self.scene).depth
+        size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
         damping = foundation.damping * size
         p = foundation.stiffness * g + damping * rise
         surface = np.where(on, np.maximum(g, 0.0), free)
@@ -180,7 +182,7 @@ class Elements:
     def _arms(self, h: float, near: slice, g: Any, rise: Any, _touching: Any) -> Any:
         """Return the same on arms, strained at a constant rate during the step."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
         moduli, times = _moduli_and_times(self.scene)
         kept = np.exp(-h / times)
         gain = moduli * ((1.0 - kept) * times / h if h else 1.0)
