@@ -36,7 +36,8 @@ SYMBOLS = {"tau": "foundation.retardation_time", "K": "foundation.stiffness", "R
 RULES = {"pull": "tension allowed at the trailing edge", "stale": "contact lost while rising",
          "dropped": "contact lost while rising", "frozen": "no relaxation of the free surface",
          "unrelaxed": "no relaxation of the free surface",
-         "forgetful": "memory forgotten where sliding reverses"}  # fmt: skip
+         "forgetful": "memory forgotten where sliding reverses",
+         "cleared": "memory forgotten where sliding reverses"}  # fmt: skip
 """The name of the fault of each wrong rule of the simulator."""
 
 
@@ -115,7 +116,7 @@ def plants():
     """Return every plant."""
     wrong = {
         "Table 1": ("pull", "dropped", "unrelaxed"),
-        "reversal": ("pull", "stale", "frozen", "unrelaxed", "forgetful"),
+        "reversal": ("pull", "stale", "frozen", "unrelaxed", "forgetful", "cleared"),
         "suspended": ("pull", "dropped"),
         "spring, to and fro": ("forgetful", "stale", "frozen"),
     }
@@ -129,7 +130,7 @@ def quick():
     alike = {"tau x 0.9", "K x 1.2", "R x 0.9", "M x 0.9", "g x 1.2", "V x 1.2", "time in s for ms"}
     # Where the base keeps its velocity, stale contacts do less than the elements at an edge.
     more = {
-        "reversal": {"rule: frozen", "rule: stale", "rule: forgetful"},
+        "reversal": {"rule: frozen", "rule: stale", "rule: forgetful", "rule: cleared"},
         "spring": {"k_x x 0.9", "M_x x 1.2", "c_x x 1.2", "rigid drive"},
         "spring, to and fro": {"rule: forgetful"},
     }

@@ -10,7 +10,7 @@ import numpy as np
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
 from kvtheory.checks.checklist import PHASE, SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
+from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNKNOWN, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Pair, Trial, bench, scaled_scene
 from kvtheory.checks.theory import Theory
@@ -48,6 +48,8 @@ SCATTER = "scatter"
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",
+    UNKNOWN: "The differences may be the error of a sound method: they are within that of elements and steps "
+    f"{case_of.COARSER:g} times as coarse as assumed, and the data do not show theirs (per_length)",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
@@ -120,12 +122,35 @@ def compare(
     elif others and case.resolution.spacing_read:  # the edges may be wrong themselves
         case = replace(case, resolution=case.resolution._replace(spacing_read=""))
         checks = judge(case)
+    case, checks = _undecided(case, checks)
     text, explanations = diagnose(case, checks)
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
         verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
     )  # fmt: skip
+
+
+def _undecided(case: Case, checks: tuple[Check, ...]) -> tuple[Case, tuple[Check, ...]]:
+    """Return what a coarser simulation allows, and that it is undecided, if nothing tells it from a fault."""
+    failed = [each for each in checks if each.ok is False and each.name not in INCONCLUSIVE]
+    ratios = [each.measured / each.allowed for each in failed if each.measured and each.allowed]
+    if not ratios or max(ratios) > case_of.COARSER:
+        return case, checks
+    coarse = case_of.coarsened(case)
+    if coarse is None or verdict(found := judge(coarse)) == "disagrees":
+        return case, checks
+    unit = "elements and steps over those assumed, with which all other checks pass"
+    needed = Check(
+        UNKNOWN,
+        case_of.COARSER,
+        1.0,
+        False,
+        "F15",
+        unit,
+        "give per_length, or the scheme and more rows",
+    )
+    return coarse, (*found, needed)
 
 
 def _off_by(power: int, found: Comparison, series: Series) -> Comparison:

@@ -89,7 +89,7 @@ MISTAKES = (
     Mistake("memory forgotten where sliding reverses",
             "the indenter meets an undeformed foundation where it re-enters ground that it left: the "
             "surface there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
-            [Rule(decay=FORGETFUL)], "comes back"),
+            [Rule(decay=FORGETFUL), Rule(clears=True)], "comes back"),
     Mistake("wrong time of the free surface",
             "the free surface relaxes {:.3g} times as fast as exp(-t/tau) (Eq. 20)",
             [Rule(decay=factor) for factor in TIMES], "Kelvin-Voigt", TIMES, 1.0),

@@ -41,6 +41,7 @@ class Rule(NamedTuple):
     flat: bool = False  # every strip of a ball is as deep as the middle one
     start: float = 1.0  # initial depth over the static depth
     loaded: bool = False  # arms bear load at the start
+    clears: bool = False  # the free surface is forgotten at the instant at which sliding reverses
     freezes: bool = False  # arms do not relax once the indenter has left them
     damper: float = 0.0  # a damper on the indenter, in units of C times the contact
 
@@ -208,6 +209,17 @@ class Elements:
         self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
         self.seen[near] = time
 
+    def direction(self, forward: Any, speed: Array, depth: Array, moved: Array) -> Array:
+        """Return which indenters slide forward; of one that has turned, a rule may clear the free surface."""
+        now = np.where(speed == 0.0, forward, speed > 0.0)
+        clears = (self.rule.clears > 0.0) & (now != forward)[:, None, None]
+        if clears.any():
+            x = self.places + moved[:, None, None]
+            g = depth[:, None, None] - self.heights - x * x / (2.0 * self.scene.indenter.radius)  # type: ignore[union-attr]
+            free = clears & (self.surface > np.maximum(g, 0.0))
+            self.surface[free], self.stress[:, free] = 0.0, 0.0
+        return now
+
     def relax(self, time: float, near: slice) -> None:
         """Relax the columns near the indenter from the time they were last in use to this one."""
         late = np.flatnonzero(self.seen[near] < time) + near.start
@@ -309,7 +321,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if k_x:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
-        forward = np.where(speed == 0.0, forward, speed > 0.0)
+        forward = elements.direction(forward, speed, depth, base - along)
         edges = np.where(forward, (found.left, found.right), (found.right, found.left))
         spring = k_x * along + drive.damping * along_rate if k_x else found.friction
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
