@@ -48,8 +48,8 @@ SCATTER = "scatter"
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",
-    UNKNOWN: "The differences may be the error of a sound method: they are within that of elements and steps "
-    f"{case_of.COARSER:g} times as coarse as assumed, and the data do not show theirs (per_length)",
+    UNKNOWN: "The differences may be the error of a sound method, not a fault: a time step "
+    f"{case_of.LONGER:g} times as long as assumed allows them, and these data do not show theirs",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
@@ -132,25 +132,14 @@ def compare(
 
 
 def _undecided(case: Case, checks: tuple[Check, ...]) -> tuple[Case, tuple[Check, ...]]:
-    """Return what a coarser simulation allows, and that it is undecided, if nothing tells it from a fault."""
+    """Return what longer steps allow, and that they are not known, if nothing tells these from a fault."""
     failed = [each for each in checks if each.ok is False and each.name not in INCONCLUSIVE]
     ratios = [each.measured / each.allowed for each in failed if each.measured and each.allowed]
-    if not ratios or max(ratios) > case_of.COARSER:
+    longer = case_of.with_longer_steps(case) if ratios and max(ratios) <= case_of.LONGER else None
+    if longer is None or verdict(found := judge(longer)) == "disagrees":
         return case, checks
-    coarse = case_of.coarsened(case)
-    if coarse is None or verdict(found := judge(coarse)) == "disagrees":
-        return case, checks
-    unit = "elements and steps over those assumed, with which all other checks pass"
-    needed = Check(
-        UNKNOWN,
-        case_of.COARSER,
-        1.0,
-        False,
-        "F15",
-        unit,
-        "give per_length, or the scheme and more rows",
-    )
-    return coarse, (*found, needed)
+    unit = "time step, over the one assumed, with which all other checks pass"
+    return longer, (*found, Check(UNKNOWN, case_of.LONGER, 1.0, False, "F15", unit))
 
 
 def _off_by(power: int, found: Comparison, series: Series) -> Comparison:

@@ -44,13 +44,14 @@ QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
-FEW_ROWS, COARSER = 32, 4.0
-"""Rows that do not show the elements and steps of a simulation; and how much coarser than assumed these may
-be where neither user nor rows tell: of a ball none do, as its strips gain elements one after the other."""
+FEW_ROWS, LONGER = 32, 4.0
+"""Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
+assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
+one."""
 SAWTOOTH = "the sawtooth"
 """What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
-UNKNOWN = "known elements and steps"
+UNKNOWN = "known time step"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
 """Noise over the load that is negligible; and the largest allowed that is not of elements."""
@@ -144,13 +145,13 @@ def make_case(
     return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
 
 
-def coarsened(case: Case) -> Case | None:
-    """Return the case of a simulation with coarser elements and steps, if the data may be of such a one."""
+def with_longer_steps(case: Case) -> Case | None:
+    """Return the case of a simulation with longer steps, if the data may be of such a one."""
     fine, ball = case.resolution, not case.theory.scene.indenter.per_width
     shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
     if fine.spacing_known or fine.step_known or (shown and not ball):
         return None
-    coarse = fine._replace(spacing=COARSER * fine.spacing, time_step=COARSER * fine.time_step)
+    coarse = fine._replace(time_step=LONGER * fine.time_step)
     budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
     return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
