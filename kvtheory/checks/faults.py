@@ -123,7 +123,7 @@ FORCES = "normal_force", "friction_force"
 """Columns that may be late or filtered, together or alone."""
 SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
 """Columns whose sign follows that of the velocity."""
-DELAYS, SMALL = (0.05, 0.3, 2.0, 10.0), 1e-6
+DELAYS, SMALL = (0.05, 0.2, 0.5, 1.2, 3.0, 8.0, 20.0), 1e-6
 """Initial guesses for a delay or time constant, in hundredths of the span; and a step, relative to it."""
 ONSET = 0.1
 """Change of a force, relative to its range, from which the drive has started."""
