@@ -453,7 +453,7 @@ def test_an_offset_is_named_however_exact_the_data(share):
 
 @pytest.mark.parametrize("noise", [0.0, 5e-3])
 def test_tension_under_a_fixed_indenter_is_no_low_pass(noise):
-    """Both forces are constant: F_z = (4/3) K a delta, F_x = K tau V (2/3) a^3/R^2 of a contact that sticks."""
+    """Both forces are constant: F_z = (4/3) K a delta, F_x = K tau V (2/3) a^3/R^2 of a stuck contact."""
     R, depth, K, tau, V = 0.01, 3e-4, 1e10, 0.1, 0.07
     scene = kv.Scene(
         kv.Parabola(R), kv.Foundation(K, tau), kv.Fixed(depth), kv.Drive(V), kv.Run(0.2)
