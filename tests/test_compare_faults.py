@@ -12,6 +12,7 @@ from figures.engines import RUNS, hunt_crossley
 from kvtheory.api._compare import METHODS
 from kvtheory.checks.comparing import _ranked
 from kvtheory.checks.comparison_case import COARSEST, make_case
+from kvtheory.checks.faults import time_units
 from kvtheory.checks.hypotheses import Hypothesis, Trial, bench, fixed, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.checks.trial_elements import Rule, steady, steady_changes
@@ -190,6 +191,15 @@ def test_a_unit_of_the_time_is_named_where_so_long_a_run_is_not_simulated():
     assert first_of(found, "unit of time").factor == 1e3
     assert "With the times in that unit: All " in found.diagnosis
     assert found.series["time"][-1] == pytest.approx(8.0)
+
+
+def test_no_unit_of_the_time_is_tried_that_leaves_nothing_but_steady_sliding():
+    """Any unit that is large enough fits data that are constant."""
+    rows = bench(
+        make_case(Theory(TABLE_1, METHODS), read(exact(TABLE_1, 101)), None, 1.0, COARSEST)
+    )
+    tried = {round(each.factor, 12) for each in time_units(rows)}
+    assert tried == {0.1, 10.0, 100.0, 1e3, 1e6}
 
 
 def test_what_cannot_be_told_apart_is_said():
