@@ -193,13 +193,13 @@ def test_a_unit_of_the_time_is_named_where_so_long_a_run_is_not_simulated():
     assert found.series["time"][-1] == pytest.approx(8.0)
 
 
-def test_no_unit_of_the_time_is_tried_that_leaves_nothing_but_steady_sliding():
-    """Any unit that is large enough fits data that are constant."""
+def test_no_unit_of_the_time_is_tried_that_leaves_no_motion():
+    """Any unit that is large or small enough fits data that are constant."""
     rows = bench(
         make_case(Theory(TABLE_1, METHODS), read(exact(TABLE_1, 101)), None, 1.0, COARSEST)
     )
     tried = {round(each.factor, 12) for each in time_units(rows)}
-    assert tried == {0.1, 10.0, 100.0, 1e3, 1e6}
+    assert tried == {0.1, 10.0}
 
 
 def test_what_cannot_be_told_apart_is_said():

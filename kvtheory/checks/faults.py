@@ -114,7 +114,7 @@ DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
 LONGEST = 30.0
-"""Longest motion computed to try a unit of the time, in durations of the run or of the data."""
+"""Longest motion that is computed to try a unit of the time, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 """Initial guesses for an offset of the time, in both directions, in spans of the data."""
 HUNDREDTH = 0.01
@@ -309,10 +309,14 @@ def _scaled(bench: Bench, name: str, factor: float) -> Array:
 
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:
-    """Multiply the times by powers of ten; a much longer motion is nearly all steady, which any unit fits."""
+    """Multiply the times by powers of ten that leave some motion.
+
+    Much later all is steady sliding, and much sooner the start: any such unit fits data that are constant.
+    """
     scene, end = bench.theory.scene, float(bench.time[-1])
-    longest = LONGEST * max(scene.run.duration, end)
-    for power in (power for power in DECADES if end * 10.0**power <= longest):
+    ends = scene.run.duration, end
+    shortest, longest = min(ends) / LONGEST, LONGEST * max(ends)
+    for power in (power for power in DECADES if shortest <= end * 10.0**power <= longest):
         pair = bench.against(scene, bench.time * 10.0**power)
         yield fixed("unit of time", TIME_UNIT.format(-power), pair, 10.0**-power)
 
