@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory import compilation
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
@@ -112,7 +113,7 @@ def test_a_long_slide_on_slow_arms_ends_in_steady_sliding():
 
 def test_small_disturbances_decay_at_the_rates_of_f24(monkeypatch):
     """A while after a small change of the velocity four rates are left, whose recurrence the depth obeys."""
-    monkeypatch.setattr(trajectory, "WORTHWHILE", 0)
+    monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_: compilation.available())
     arms, V, held = (
         [(3e10, 0.01), (5e9, 0.2)],
         0.2,
@@ -297,19 +298,6 @@ def test_many_arms_are_interpreted_at_once():
     assert calls[1] < 3.0 * calls[0]
 
 
-def test_compiled_kernels_are_loaded_soon_and_compiled_late(monkeypatch):
-    monkeypatch.undo()
-    monkeypatch.setattr(trajectory.compilation, "available", lambda: True)
-    monkeypatch.setattr(trajectory, "kernel", lambda: None)
-    for steps, on_disk, wanted in (
-        (trajectory.LOADABLE - 1, True, False), (trajectory.LOADABLE, True, True),
-        (trajectory.WORTHWHILE - 1, False, False), (trajectory.WORTHWHILE, False, True),
-    ):  # fmt: skip
-        monkeypatch.setattr(trajectory.Tally, "steps", steps)
-        monkeypatch.setattr(trajectory.compilation, "on_disk", lambda _, found=on_disk: found)
-        assert trajectory.worthwhile() is wanted
-
-
 def test_hops_agree_with_elements():
     """The indenter leaves the foundation, flies, lands on relaxing ground, and leaves it again."""
     scene = sliding([(3e11, 0.01)], 0.3, 0.026)
@@ -385,8 +373,8 @@ def test_compiled_kernels_give_the_same_numbers(monkeypatch):
     pytest.importorskip("numba")
     scene = sliding([(5e10, 0.1), (2e10, 3e-3)], kv.Drive(velocity=0.05, stiffness=1e8))
     found = []
-    for enough in (10**9, 0):
-        monkeypatch.setattr(trajectory, "WORTHWHILE", enough)
+    for fast in (False, True):
+        monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_, fast=fast: fast)
         found.append(kv.transient(scene, at=[0.01, 0.06]))
     assert [each.compiled for each in found] == [False, True]
     assert apart(*found, scene) < 1e-12
