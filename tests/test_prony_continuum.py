@@ -111,6 +111,35 @@ def test_a_long_slide_on_slow_arms_ends_in_steady_sliding():
     assert np.abs(books.balance / (books.stored_at_rest + books.work)).max() < 1e-5
 
 
+def test_what_is_dissipated_is_the_power_of_the_arm_over_time():
+    """That power, int s^2/(K_1 tau_1) dx with s = p - K u, from pressures and surfaces at many instants."""
+    K, K_1, tau = 4e9, 3e10, 0.01
+    drive = kv.Drive(history=[(0.0, 0.05), (0.01, 0.05), (0.01, -0.05), (0.02, -0.05)])
+    scene = kv.Scene(
+        foundation=kv.GeneralizedMaxwell(K, [[K_1, tau]]), drive=drive, run=kv.Run(0.02)
+    )
+    nodes, weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
+    times = np.concatenate([0.01 * nodes, 0.01 + 0.01 * nodes])
+    found = kv.transient(scene, at=times, rtol=1e-7, certify=False)
+    inside, outside = [], []
+    for k, time in enumerate(times):
+        low, high = sorted([found.leading_edge[k], found.trailing_edge[k]])
+        x = np.linspace(low, high, 61)[1:-1]
+        within = found.pressure(x, time) - K * found.surface(x, time)
+        free = np.append(np.linspace(low - 3e-3, low, 121), np.linspace(high, high + 3e-3, 121))
+        beyond = -K * np.where((free < low) | (free > high), found.surface(free, time), 0.0)
+        assert not beyond[[0, -1]].any()  # all of what is compressed
+        inside.append((within**2).sum() * (high - low) / 60.0)
+        outside.append((beyond**2).sum() * 2.5e-5)
+    books = found.energy([0.0, 0.02])
+    for name, squares in (("contact", inside), ("surface", outside)):
+        expected = 0.01 * np.append(weights, weights) @ squares / (K_1 * tau)
+        none, measured = getattr(books, f"dissipated_{name}")
+        assert none == 0.0
+        assert measured == pytest.approx(expected, rel=0.02), name
+    assert np.abs(books.balance).max() < 1e-8 * books.work[1]
+
+
 def test_small_disturbances_decay_at_the_rates_of_f24(monkeypatch):
     """A while after a small change of the velocity four rates are left, whose recurrence the depth obeys."""
     monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_: compilation.available())

@@ -205,7 +205,7 @@ def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
 
 
 def _follow_parent(unusable: tuple[str, ...]) -> None:
-    """Leave interrupts to the parent process, and end with it, even if it is killed; it has warned already."""
+    """Leave interrupts to the parent process, which has warned, and end with it, even if it is killed."""
     compilation.give_up(unusable)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()

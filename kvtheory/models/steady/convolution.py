@@ -8,13 +8,14 @@ where <u'> is the mean of u' over the memory of the branch: with v = (int_0^s g)
 u'(X - s(v)), however fast the branch relaxes, and the integrand has no boundary layer. The trailing edge is
 the first zero of the pressure, and
 
-    W = int p dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
+    W = int u'(X) int_0^(c - X) G ds dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
 
 as a greater depth adds a step of compression at the leading edge, which relaxes with G. There is one zero:
 where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises and G does not.
 """
 
 import math
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -152,20 +153,41 @@ class Contact:
         self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
         """Positions, distances from the trailing edge, and weights of both rules."""
         self.rate = -shape.slope(self.x)
-        self.rows, apart = self.remembered(self.x)
-        self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
-        self.load, load_apart = self.total(self.pressure)
-        error = apart + load_apart / self.load
-        error = error ** (1.0 if getattr(shape, "bent", False) else 1.5)
-        self.load_error = MARGIN * (error + getattr(shape, "noise", 0.0))
-        if not self.load_error < LIMIT:
+        impulse = self.ahead + (0.0 if memory is None else memory.amount(self.ahead).sum(axis=0))
+        self.load, apart = self.total(self.rate * impulse)
+        self.load_error = self._error(apart / self.load)
+        self.load_slope = self.a + x_te  # dW/d(delta) over K
+        if memory is not None:
+            self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
+
+    def _error(self, apart: float) -> float:
+        """Return the relative error from the difference of both rules."""
+        apart = apart ** (1.0 if getattr(self.shape, "bent", False) else 1.5)
+        error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
+        if not error < LIMIT:
             raise QuadratureError(
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "
                 "`kinks` does not name every kink"
             )
-        self.load_slope = self.a + x_te  # dW/d(delta) over K
-        if memory is not None:
-            self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
+        return error
+
+    @cached_property
+    def passed(self) -> tuple[Array, float]:
+        """The pressure of each branch at the nodes, and the error of integrals over it."""
+        rows, apart = self.remembered(self.x)
+        pressure = self.depth - self.shape.height(self.x) + rows.sum(axis=0)
+        load, load_apart = self.total(pressure)
+        return rows, max(self._error(apart + load_apart / load), self.load_error)
+
+    @property
+    def rows(self) -> Array:
+        """The pressure of each branch at the nodes."""
+        return self.passed[0]
+
+    @property
+    def pressure(self) -> Array:
+        """The pressure at the nodes."""
+        return self.depth - self.shape.height(self.x) + self.rows.sum(axis=0)
 
     def total(self, values: Array) -> tuple[float, float]:
         """Return the integral over the contact, and the difference of both rules."""
@@ -228,12 +250,13 @@ class Contact:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
         if self.memory is None:
             return 0.0, 0.0, self.load_error
+        error = self.passed[1]
         left, _ = self.remembered(np.array([self.x_te]))
         work, lost = self.memory.works(self, left)
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
         rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
         rest = held if abs(rest - held) > JUMP * self.depth else rest
-        return work + 0.5 * rest * rest, lost, self.load_error
+        return work + 0.5 * rest * rest, lost, error
 
     def quantities(self) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
