@@ -50,12 +50,13 @@ def available() -> bool:
 @cache
 def _imported() -> bool:
     try:
-        from numba import config
+        import numba
     except (
         Exception
     ) as error:  # whatever a numba raises that does not fit NumPy, Python or its libraries
         warn_unusable(f"numba cannot be imported ({_in_a_line(error)})", FITTING)
         return False
+    config: Any = numba.config
     if config.DISABLE_JIT:
         warn_unusable("numba is switched off by NUMBA_DISABLE_JIT", "unset this variable")
         return False
@@ -121,7 +122,8 @@ def _register(function: Any, stand_in: Any = None, *, linking: bool, inlined: bo
     """Register a function with numba; what stands for it may add up in any order."""
     from numba.extending import overload
 
-    body, own = stand_in or function, dict(PUBLIC)
+    body = stand_in or function
+    own: Any = dict(PUBLIC)
     if stand_in:
         own["fastmath"] = {"reassoc", "nsz"}
     if linking:

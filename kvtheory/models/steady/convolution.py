@@ -41,8 +41,10 @@ Array = Any
 """Of floats."""
 Shape = Convex | ConvexProfile
 
-NODES, BOTH = RULES[3]
-"""A double-exponential rule from 0 to 1: its nodes, with weights of it and of the one of twice its step."""
+USED = RULES[2:4]
+"""Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
+ENOUGH = 1e-15
+"""Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -131,8 +133,9 @@ class Contact:
 
     load_curvature, guess, noise = None, (), 0.0
 
-    def __init__(self, shape: Shape, memory: Memory, depth: float) -> None:
-        self.shape, self.memory, self.depth = shape, memory, depth
+    def __init__(self, shape: Shape, memory: Memory, depth: float, rule: int = 0) -> None:
+        self.shape, self.memory, self.depth, self.rule = shape, memory, depth, rule
+        self.nodes, self.both = nodes, both = USED[rule]
         # The extent at rest: h(-a) = h(back) = depth.
         if isinstance(shape, ConvexProfile):
             self.a, self.back = shape.sides(depth)
@@ -146,10 +149,10 @@ class Contact:
         rows: list[list[Array]] = [[], [], []]
         # Nodes are exact towards the end that is closer to the lowest point.
         for start, end in pieces:
-            forth, back = (end - start) * NODES, (end - start) * NODES[::-1]
+            forth, back = (end - start) * nodes, (end - start) * nodes[::-1]
             rows[0].append(start + forth if abs(start) < abs(end) else end - back)
             rows[1].append(x_te - end + back)
-            rows[2].append((end - start) * BOTH)
+            rows[2].append((end - start) * both)
         self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
         """Positions, distances from the trailing edge, and weights of both rules."""
         self.rate = -shape.slope(self.x)
@@ -178,6 +181,13 @@ class Contact:
         pressure = self.depth - self.shape.height(self.x) + rows.sum(axis=0)
         load, load_apart = self.total(pressure)
         return rows, max(self._error(apart + load_apart / load), self.load_error)
+
+    @property
+    def finer(self) -> "Contact | None":
+        """The contact by the finer rule if pressures need it."""
+        if self.passed[1] < ENOUGH or self.rule + 1 == len(USED):
+            return None
+        return Contact(self.shape, self.memory, self.depth, self.rule + 1)
 
     @property
     def rows(self) -> Array:
@@ -210,9 +220,9 @@ class Contact:
         for first, last in pairwise(cuts):
             width = last - first
             if width.any():
-                past = memory.delay(first[..., None] + width[..., None] * NODES, X)
+                past = memory.delay(first[..., None] + width[..., None] * self.nodes, X)
                 rate = -shape.slope(np.maximum(x[:, None] - past, -a))
-                means.append(width[..., None] * (rate @ BOTH.T))
+                means.append(width[..., None] * (rate @ self.both.T))
         fine, coarse = np.moveaxis(sum(means), -1, 0)
         size = np.abs(amount * fine).sum(axis=0)
         apart = np.abs(amount * (fine - coarse)).sum(axis=0)
@@ -250,6 +260,8 @@ class Contact:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
         if self.memory is None:
             return 0.0, 0.0, self.load_error
+        if finer := self.finer:
+            return finer.friction()
         error = self.passed[1]
         left, _ = self.remembered(np.array([self.x_te]))
         work, lost = self.memory.works(self, left)
@@ -260,6 +272,8 @@ class Contact:
 
     def quantities(self) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
+        if finer := self.finer:
+            return finer.quantities()
         friction, lost, error = self.friction()
         edges, share = (-self.a, self.x_te), share_lost(friction, lost)
         values = self.half_length, *edges, self.load, friction, self.peak(), share
@@ -305,5 +319,9 @@ class ViscoelasticLine:
         return self.shallow(load, lambda x: x + spring), ()
 
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
-        """Return the contact at a depth."""
-        return Contact(self.shape, self.memory, depth)
+        """Return the contact at a depth, by the finer rule if the load needs it."""
+        if not getattr(self.shape, "bent", False):
+            contact = Contact(self.shape, self.memory, depth)
+            if contact.load_error < ENOUGH:
+                return contact
+        return Contact(self.shape, self.memory, depth, 1)

@@ -262,7 +262,8 @@ class Ground:
             theta, polynomial.polyint(self.rows[index, RATE].T), tensor=False
         )
         l, r = along(EDGES), along(EDGES + 1)
-        _, friction = forces(l, r, d, F.sum(axis=0), M.sum(axis=0))
+        of_arrays: Any = forces
+        _, friction = of_arrays(l, r, d, F.sum(axis=0), M.sum(axis=0))
         power = 2.0 * self.arms[:, STIFFNESS, None] * (rate * F - 2.0 * number * M)
         for k, side in enumerate((-1.0, 1.0)):
             _, moves, _, _ = self.place(k, s)

@@ -169,8 +169,8 @@ def solve(
             raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
         if fast is None and interpreted and status != walk.DONE and now.s:
             to_come = (thread_time() - begun) * (end / now.s - 1.0)
-            if KERNEL.worthwhile(to_come) and prepared(arrays := as_arrays(run)):
-                run = arrays
+            if KERNEL.worthwhile(to_come) and prepared(same := as_arrays(run)):
+                run = same
         if progress is not None:
             progress(now.s)
     return Trajectory(run)
