@@ -17,6 +17,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from kvtheory import compilation
 from kvtheory.progress import Progress
 from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import files
@@ -180,7 +181,8 @@ def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
         if plan.vectorised or jobs == 1:  # which start with the first task
             return futures.ThreadPoolExecutor(jobs)
         spawn = multiprocessing.get_context("spawn")
-        return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
+        known = (compilation.known_unusable(),)
+        return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent, initargs=known)
 
     pool = fresh()
 
@@ -202,8 +204,9 @@ def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
         pool.shutdown()
 
 
-def _follow_parent() -> None:
-    """Leave interrupts to the parent process, and end with it, even if it is killed."""
+def _follow_parent(unusable: tuple[str, ...]) -> None:
+    """Leave interrupts to the parent process, which has warned, and end with it, even if it is killed."""
+    compilation.give_up(unusable)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()
     threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
