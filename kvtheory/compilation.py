@@ -95,6 +95,13 @@ def warn_not_kept(why: object) -> None:
     warnings.warn(f"{told}; {remedy}", RuntimeWarning, stacklevel=2)
 
 
+def _types(arguments: Any) -> Any:
+    """Return the types that numba gives to arguments."""
+    from numba import typeof
+
+    return tuple(map(typeof, arguments))
+
+
 def _half(x: float) -> float:
     return 0.5 * x
 
@@ -228,15 +235,9 @@ class Kernel:
         """Load or compile the entry for arguments like these; return whether that worked, else warn."""
         with _lock:
             if self.compiled is None and available():
-                try:
-                    from numba import typeof
-
-                    signature = tuple(map(typeof, arguments))
-                    self.compiled = self._loaded(signature) or self._made_for(signature)
-                except Exception as error:  # whatever other versions of numba or LLVM raise
-                    warn_unusable(
-                        f"numba cannot compile the kernels ({_in_a_line(error)})", FITTING
-                    )
+                if (loaded := self._loaded(arguments)) is None:
+                    compiling()  # what a progress function raises is not for `_made_for` to catch
+                self.compiled = loaded or self._made_for(arguments)
         return self.compiled is not None and available()
 
     @cached_property
@@ -253,7 +254,7 @@ class Kernel:
         entry.__qualname__ = f"{self.entry.__name__}_{self.digest}"
         return njit(entry, nogil=True, **PUBLIC, **options)
 
-    def _loaded(self, signature: Any) -> Any:
+    def _loaded(self, arguments: Any) -> Any:
         """Return the entry if it is on disk, else None."""
 
         def load_or_stop(*key: Any) -> Any:
@@ -270,14 +271,20 @@ class Kernel:
             entry = self._made(cache=True)
             disk = entry._cache
             load, disk.load_overload = disk.load_overload, load_or_stop
-            entry.compile(signature)
+            entry.compile(_types(arguments))
         except Exception:
             return None
         return entry
 
-    def _made_for(self, signature: Any) -> Any:
-        """Compile the entry, and keep it on disk if there is a writable place."""
-        compiling()
+    def _made_for(self, arguments: Any) -> Any:
+        """Compile the entry, and keep it on disk if there is a writable place; warn if that fails."""
+        try:
+            return self._made_by_numba(_types(arguments))
+        except Exception as error:  # whatever other versions of numba or LLVM raise
+            warn_unusable(f"numba cannot compile the kernels ({_in_a_line(error)})", FITTING)
+            return None
+
+    def _made_by_numba(self, signature: Any) -> Any:
         linking = linked()
         for module in self.modules:
             stand_ins = getattr(module, "COMPILED", {})

@@ -190,6 +190,17 @@ def test_compiling_is_reported_and_loading_what_is_compiled_is_not(short):
     assert told == [(0.25, "begun"), (0.25, COMPILING)]
 
 
+def test_a_progress_function_may_stop_the_call_before_kernels_are_compiled(short):
+    def stop(share, words):
+        raise TimeoutError(words)
+
+    kernel = short()
+    with listening(stop), pytest.raises(TimeoutError, match=COMPILING):
+        kernel.prepared(1.5)
+    assert compilation.available()
+    assert kernel.prepared(1.5)
+
+
 def test_kernels_that_cannot_be_kept_are_compiled_with_a_warning(short, monkeypatch):
     """No place for the cache, as of a function without a file, or no space at it."""
     homeless, known = {}, short()
