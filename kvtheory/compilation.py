@@ -236,8 +236,8 @@ class Kernel:
         with _lock:
             if self.compiled is None and available():
                 if (loaded := self._loaded(arguments)) is None:
-                    compiling()  # what a progress function raises is not for `_made_for` to catch
-                self.compiled = loaded or self._made_for(arguments)
+                    compiling()  # what a progress function raises is not caught
+                self.compiled = loaded or self._made_or_warned(arguments)
         return self.compiled is not None and available()
 
     @cached_property
@@ -276,15 +276,15 @@ class Kernel:
             return None
         return entry
 
-    def _made_for(self, arguments: Any) -> Any:
+    def _made_or_warned(self, arguments: Any) -> Any:
         """Compile the entry, and keep it on disk if there is a writable place; warn if that fails."""
         try:
-            return self._made_by_numba(_types(arguments))
+            return self._made_for(_types(arguments))
         except Exception as error:  # whatever other versions of numba or LLVM raise
             warn_unusable(f"numba cannot compile the kernels ({_in_a_line(error)})", FITTING)
             return None
 
-    def _made_by_numba(self, signature: Any) -> Any:
+    def _made_for(self, signature: Any) -> Any:
         linking = linked()
         for module in self.modules:
             stand_ins = getattr(module, "COMPILED", {})
