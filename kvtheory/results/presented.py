@@ -95,7 +95,7 @@ class Presented(Exported):
 
     def _repr_html_(self) -> str:
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
-        reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
+        reason = self.certificate.sentence
         notes = "".join(f"<p>{escape(note)}</p>" for note in (reason, *getattr(self, "notes", ())))
         return html_table(self._title, heads, self._shown()) + notes
 
