@@ -38,6 +38,13 @@ def test_text_and_table_are_short_and_name_quantities_units_model_and_error(resu
     assert result.certificate.statement.split(",")[0][:30] in html.replace("&quot;", '"')
 
 
+def test_a_result_without_errors_says_so():
+    for result in (kv.steady(method="asymptote"), kv.transient(at=["1 ms"], certify=False)):
+        assert "Errors are not estimated" in str(result)
+        assert "errors up to" not in str(result)
+        assert "Errors are not estimated" in result._repr_html_()
+
+
 def test_files_hold_what_the_result_holds(result, tmp_path):
     """CSV, NetCDF and `Dataset`: first what varies, then the quantities."""
     import xarray
