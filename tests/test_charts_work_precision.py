@@ -2,6 +2,7 @@
 
 import json
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -31,8 +32,9 @@ from kvtheory.charts.work_precision import (
     make_chart,
 )
 from kvtheory.plots.work_precision import LOOKS, draw_work_precision
+from kvtheory.scene import template
 from tests import work_precision_reference as stored
-from tests.commands import run
+from tests.commands import refused, run
 
 BRIEF = Effort(repeats=1, longest=60.0, whole=1.0, every=5)
 METHODS = transient_methods()
@@ -142,8 +144,11 @@ def test_method_of_lines_converges_and_counts_its_updates():
     assert runs[1][1] > 3 * runs[0][1] > 0
 
 
-def test_every_method_has_a_look_and_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
+def test_every_method_has_a_look_of_its_own_and_cvode_is_left_out_where_it_is_not_installed(
+    monkeypatch,
+):
     assert {*METHODS, *(method.name for method in steady_methods())} <= set(LOOKS)
+    assert len(set(LOOKS.values())) == len(LOOKS)
     monkeypatch.setattr(methods, "find_spec", lambda name: None)
     assert "two states, CVODE" not in transient_methods()
 
@@ -238,6 +243,44 @@ def test_command(tmp_path, monkeypatch):
     assert [chart["name"] for chart in data["charts"]] == ["this scene, steady", "this scene"]
     assert data["environment"]["processors"] >= 1
     assert "agree on depth to" in done.output
+
+
+@pytest.mark.parametrize("command", [("explore",), ("chart", "work-precision", "--quick")])
+@pytest.mark.parametrize(
+    ("section", "own", "key"),
+    [
+        ("drive", {"velocity": ["10 mm/s"]}, "drive.velocity"),
+        ("drive", {"velocity": "1 mm/s:1 m/s:4:log"}, "drive.velocity"),
+        ("support", {"kind": "dead-weight", "mass": ["1 kg/mm", "2 kg/mm"]}, "support.mass"),
+        (
+            "foundation",
+            {"kind": "generalized-maxwell", "stiffness": "10 GN/m^3",
+             "arms": [[["30 GN/m^3", "20 GN/m^3"], "10 ms"]]},
+            "foundation.arms[0].stiffness",
+        ),
+        (
+            "foundation",
+            {"stiffness": "10 GN/m^3", "retardation_time": "100 ms", "temperature": ["20 degC", "30 degC"],
+             "reference_temperature": "20 degC", "wlf": ["17.44", "51.6 K"]},
+            "foundation.temperature",
+        ),
+    ],
+)  # fmt: skip
+def test_what_shows_one_scene_says_which_key_holds_a_list(tmp_path, command, section, own, key):
+    scene = tomllib.loads(template())
+    scene[section] = own
+    lines = [
+        f"[{name}]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in table.items())
+        for name, table in scene.items()
+    ]
+    path, output = tmp_path / "scene.toml", tmp_path / "drawn"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    output.mkdir()
+    file = output / ("page.html" if command == ("explore",) else "chart.png")
+    told = refused((*command, path, "-o", file), [f"is for one scene, not for arrays ({key})"])
+    assert told.count("\n") == 1
+    assert "use `sweep`, or give one value of each (--set KEY=VALUE)" in told
+    assert not list(output.iterdir())
 
 
 def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():

@@ -15,10 +15,12 @@ from kvtheory.checks.hypotheses import scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.fitting.series import MOST_ROWS, read
 from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.plots.comparison import save_comparison_report
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.columns import SPELLINGS
 from tests import SCENES as MANY
 from tests import confusion
+from tests.browser import Browser
 from tests.commands import printed, refused, run
 from tests.confusion import disturbed
 from tests.faulty_simulator import simulate
@@ -509,6 +511,30 @@ def test_the_command(tmp_path, sound):
     assert "agrees with theory" in again.stdout
     shown = run("compare", "--help")
     assert "kvtheory compare" in shown.stdout.split("Example")[1]
+
+
+def test_the_report_can_be_read_on_a_phone(tmp_path, sound):
+    wrong = {**sound, "friction_force": -sound["friction_force"]}
+    report = tmp_path / "r.html"
+    save_comparison_report(kv.compare(data=wrong), kv.Scene(), report)
+    browser = Browser(tmp_path / "profile")
+    try:
+        browser.screen(390, 844, phone=True)
+        browser.open(report)
+        assert browser.run("document.documentElement.scrollWidth") == 390
+        rows = browser.run(
+            "[...document.querySelectorAll('tr')].map(row => [row, ...row.cells]"
+            ".map(e => e.getBoundingClientRect()).map(r => [r.left, r.right, r.top, r.bottom]))"
+        )
+    finally:
+        browser.close()
+    assert len(rows) > 15
+    for row, *cells in rows:
+        left, right, top, bottom = np.transpose(cells)
+        assert left.min() >= 0.0
+        assert right.max() <= 390.0
+        assert row[3] - row[2] < bottom.max() - top.min() + 12.0  # no empty lines
+        assert left[-1] < 200.0 < right[-1]  # what is measured has half of the width
 
 
 def test_the_table_of_schemes_says_what_their_polynomials_do():

@@ -12,9 +12,12 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.explorer import save_explorer
+from kvtheory.explorer.controls import controls
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import THIN, layer_number
+from kvtheory.scene.model import SECTIONS
+from kvtheory.scene.quantities import quantities
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms
 from tests import SCENES, SUPPORTS
@@ -329,6 +332,17 @@ def test_keys_move_a_slider_and_the_answer_follows(browser):
     assert "velocity" in browser.run("location.hash")
 
 
+@pytest.mark.parametrize(
+    ("before", "after"), [("-100", -115.0), ("100", 115.0), ("0.01", 0.115), ("-0.01", -0.115)]
+)
+def test_a_slider_keeps_the_direction_of_sliding(browser, before, after):
+    browser.run(f"restore('#drive.velocity={before}')")
+    browser.run("document.getElementById('drive.velocity').focus()")
+    browser.press("ArrowRight", 39)
+    assert float(browser.run("state.values['drive.velocity']")) == after
+    assert float(text(browser, "friction_coefficient")) * after > 0.0
+
+
 def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
     reached = set()
     for _ in range(60):
@@ -433,6 +447,26 @@ def test_the_footprint_is_that_of_python(browser):
         assert back == pytest.approx(edges[1], rel=error)
 
 
+@pytest.mark.parametrize("across", [0.5, 10, 300])
+@pytest.mark.parametrize("velocity", [100, -3000])
+def test_the_footprint_fills_its_frame_and_stays_in_it(browser, across, velocity):
+    browser.run(
+        f"restore('#indenter=sphere&indenter.radius_across={across}&drive.velocity={velocity}')"
+    )
+    browser.settle()
+    left, right, top, bottom = browser.run(
+        "(([a, b]) => [a.left - b.left, b.right - a.right, a.top - b.top, b.bottom - a.bottom])"
+        "(['critical', 'axis'].map(c => document.querySelector(`#footprint .${c}`).getBoundingClientRect()))"
+    )
+    size = browser.run(
+        "(({ width, height }) => [width, height])"
+        "(document.querySelector('#footprint .axis').getBoundingClientRect())"
+    )
+    spare = np.array([left + right, top + bottom]) / size
+    assert min(left, right, top, bottom) > 0.0
+    assert min(spare) == pytest.approx(0.3 / 2.3, rel=0.02)
+
+
 def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser):
     def told(state):
         browser.run(f"restore('{state}')")
@@ -475,6 +509,30 @@ def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser, chosen, s
     rows = browser.run("document.querySelector('#stability').textContent")
     assert f"stable above{right.critical_stiffness / spring:.4g} {unit}" in rows
     assert f"{right.frequency:.4g} Hz" in rows
+
+
+def test_unstable_speeds_on_arms_are_found_between_pictures_for_the_last_scene(browser):
+    state = (
+        "restore('#foundation=generalized-maxwell&arms=30_10&drive.stiffness={}&drive.damping=0')"
+    )
+    browser.run(
+        "looked = [], look = (f => (data, until) => (looked.push(data), f(data, until)))(look)"
+    )
+    for stiffness in (0.01, 0.03):
+        browser.run(f"first = kept; {state.format(stiffness)}")
+        browser.settle()
+        browser.run("looked.length = 0")
+        assert browser.run("kept.scene.drive.stiffness") == stiffness * 1e6
+    browser.run(
+        "new Promise(done => (f => f(f))(f => kept.data.looking ? setTimeout(f, 5, f) : done()))"
+    )
+    arms = kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01]])
+    scene = kv.Scene(foundation=arms, drive=kv.Drive(0.1, stiffness=3e4))
+    right = kv.stability(scene, quantity="critical_velocity")
+    assert browser.run("kept.data.from") == pytest.approx(right.critical_velocity, rel=1e-4)
+    legend = browser.run("document.querySelector('#curve-legend').textContent")
+    assert browser.run("!looked.includes(first.data)")
+    assert f"unstable on this spring, from {1e3 * right.critical_velocity:.4g} mm/s" in legend
 
 
 @pytest.mark.parametrize("velocity", ["1e-6", "1e9"])
@@ -522,6 +580,7 @@ TYPED = {
     "5 m/s": "5000", "5m/s": "5000", "0,5": "0.5", "\u2212.5 m\u00b7s^-1": "-500", "36 km/h": "10000",
     "1e-3": "1e-3",
     "20 \u00b5m/ms": "20", "5 N/m": "does not fit", "5 furlong": "not known", "1,500": "comma",
+    "5 mx/s": "not known", "5 kfoo": "not known", "5 qm/s": "not known",
     "1,5,0": "number", "fast": "number", "": "number", "1e400": "number",
 }  # fmt: skip
 
@@ -606,6 +665,197 @@ def test_the_curve_stays_in_sight_on_a_phone_and_the_buttons_on_a_low_screen(ses
         for name in ("copy-toml", "reset"):
             top, bottom = browser.run(box.format(f"getElementById('{name}')"))
             assert 0 < top < bottom < 700
+
+
+LAWS = {
+    kv.Foundation: {"retardation_time": 0.1},
+    kv.GeneralizedMaxwell: {},
+    kv.FractionalKelvinVoigt: {"retardation_time": 0.1, "order": 0.4},
+}
+SHAPES = (
+    (kv.Parabola(0.01), LAWS), (kv.Sphere(0.01), LAWS), (kv.Sphere(0.01, radius_across=0.003), LAWS),
+    (kv.Circle(0.02), [kv.Foundation]), (kv.Wedge(0.03), [kv.Foundation]),
+    (kv.PowerLaw(0.01, 2.6), [kv.Foundation]),
+)  # fmt: skip
+BASES = (
+    {"stiffness": 2e10},
+    {"modulus": 3e6, "thickness": 2e-4, "poisson_ratio": 0.35},
+    {"modulus": 2e5, "thickness": 2e-3, "poisson_ratio": 0.495},
+)
+ARRHENIUS = {"reference_temperature": 293.15, "activation_energy": 8e4}
+CLIMATES = (
+    {},
+    {"temperature": 300.15, **ARRHENIUS, "lowest_temperature": 253.15, "highest_temperature": 313.15},
+    {"temperature": 272.15, "reference_temperature": 296.15, "wlf": [5.0, 51.6]},
+    {"temperature": 250.15, "reference_temperature": 260.15, "wlf": [8.0, 95.0],
+     "lowest_frequency": 1e-2, "highest_frequency": 3e4},
+    {**ARRHENIUS, "lowest_frequency": 1e-3, "highest_frequency": 2.0},
+    {"temperature": 316.15, **ARRHENIUS, "lowest_temperature": 263.15, "highest_temperature": 313.15,
+     "lowest_frequency": 1e-2, "highest_frequency": 1e-1},
+)  # fmt: skip
+CARRIED = (
+    kv.Fixed(1e-4), kv.DeadWeight(30.0), kv.DeadWeight(load=700.0), kv.DeadWeight(5.0, load=300.0),
+    kv.Suspended(40.0, 3e5), kv.Suspended(stiffness=2e6, load=200.0, gravity=1.62),
+    kv.Suspended(9.0, 1e5, load=90.0),
+)  # fmt: skip
+RIGID = kv.Drive(0.1), kv.Drive(-0.02), kv.Drive(history=[(0.0, 0.2), (0.1, 0.01)])
+DRIVES = (
+    *RIGID, kv.Drive(3.0, stiffness=1e5, mass=7.0), kv.Drive(0.01, stiffness=3e6, damping=20.0, mass=1.0),
+)  # fmt: skip
+
+
+def scenes_of_all_kinds():
+    """Scenes of each shape and foundation, in which layers, temperatures, supports and drives take turns."""
+    pairs = [(indenter, law) for indenter, laws in SHAPES for law in laws]
+    for count, (indenter, law) in enumerate(pairs * 4):
+        turn = count + count // len(pairs)
+        base = BASES[turn % len(BASES)]
+        own = {**LAWS[law], **base, **CLIMATES[turn % len(CLIMATES)]}
+        if law is kv.GeneralizedMaxwell:
+            first = next(iter(base.values()))
+            own["arms"] = [[3.0 * first, 1e-3], [0.5 * first, 0.2]][: 1 + turn // 3 % 2]
+        slow = law is kv.GeneralizedMaxwell and not indenter.per_width  # on a spring, a second each
+        drives = RIGID if slow else DRIVES
+        yield kv.Scene(
+            indenter, law(**own), CARRIED[turn % len(CARRIED)], drives[turn % len(drives)],
+            kv.Run(0.1 + 0.01 * count),
+        )  # fmt: skip
+
+
+def keys_of(table):
+    """The keys of a scene file that hold numbers, and those of every class of a scene."""
+    return {
+        f"{section}.{name}"
+        for section, own in table.items()
+        for key in own.keys() - {"kind", "shape", "arms"}
+        for name in (["wlf.c_1", "wlf.c_2"] if key == "wlf" else [key])
+    }
+
+
+def number(text):
+    """The number that the page shows, such as 1.2\u00b710\u207b\u2075."""
+    plain = str.maketrans(
+        "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079", "-0123456789"
+    )
+    return float(text.replace("\u00b710", "e").translate(plain))
+
+
+OPENED = """page => {
+  Object.assign(MODEL, page);
+  Object.assign(SECTIONS, page.sections);
+  state = original();
+  build_controls();
+  update();
+  const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
+  return {
+    numbers: Object.fromEntries(all("#numbers b", (b) => [b.dataset.name, b.firstChild.textContent])),
+    found: slide(scene_of(state)), toml: as_toml(state),
+    problem: document.getElementById("problem").textContent,
+    notes: ["layer", "measured"].map((id) => !document.getElementById(id).hidden),
+    sliders: all(
+      "input[type=range][data-key]", (e) => [e.dataset.key, Number(e.min), Number(e.value), Number(e.max)],
+    ),
+  };
+}"""
+
+
+def test_the_page_opens_at_scenes_of_every_kind_and_keeps_all_they_say(browser, tmp_path):
+    scenes = list(scenes_of_all_kinds())
+    pages = browser.run(f"{json.dumps([controls(scene) for scene in scenes])}.map({OPENED})")
+    path, seen, notes = tmp_path / "scene.toml", set(), set()
+    for scene, page in zip(scenes, pages, strict=True):
+        right, force = kv.steady(scene), 1e-3 if scene.indenter.per_width else 1.0
+        assert page["problem"] == "", scene
+        for name, factor in (("friction_coefficient", 1.0), ("load", force), ("depth", 1e3)):
+            due = getattr(right, name)
+            assert page["found"][name] == pytest.approx(due, rel=1e-12), (name, scene)
+            assert number(page["numbers"][name]) == pytest.approx(factor * due, rel=1e-4), scene
+        noted = [
+            any(words in note for note in right.notes) for words in ("not thin", "extrapolates")
+        ]
+        assert page["notes"] == noted, scene
+        path.write_text(page["toml"], encoding="utf-8")
+        spring = {name: getattr(scene.drive, name) for name in ("stiffness", "damping", "mass")}
+        drive = kv.Drive(scene.drive.final_velocity, **({} if scene.drive.rigid else spring))
+        assert kv.load_scene(path) == replace(scene, drive=drive)
+        keys = {key for key, *_ in page["sliders"] if not key.startswith("arms")}
+        assert keys == keys_of(tomllib.loads(page["toml"]))
+        assert len(page["sliders"]) == len(keys) + 2 * len(scene.foundation.arms)
+        assert all(low <= value <= high for _, low, value, high in page["sliders"]), scene
+        seen |= keys
+        notes.add(tuple(noted))
+    declared = {
+        section: {name: 0 for cls in classes.values() for name in quantities(cls)}
+        for section, (_, classes) in SECTIONS.items()
+    }
+    declared["foundation"]["wlf"] = 0
+    assert seen == keys_of(declared)
+    assert len(notes) == 4
+    assert len(scenes) >= 40
+
+
+def test_a_temperature_can_be_typed_and_every_time_follows_it(session, tmp_path):
+    law = {"reference_temperature": 293.15, "activation_energy": 8e4, "temperature": 300.15}
+    layer = {"modulus": 3e6, "thickness": 2e-4, "poisson_ratio": 0.35}
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(arms=[[6e6, 0.1]], **layer, **law))
+    path = tmp_path / "explorer.html"
+    save_explorer(scene, path)
+    with watched(session, path) as browser:
+        for key, given, kept, value in (
+            ("temperature", "60 degC", "333.15", 333.15), ("temperature", "35 \u00b0C", "308.15", 308.15),
+            ("activation_energy", "1e5 J/mol", "100", 1e5), ("activation_energy", "0.09 MN m/mol", "90", 9e4),
+        ):  # fmt: skip
+            assert type_in(browser, f"foundation.{key}", given) == [kept, None, ""]
+            scene = scene.replace({f"foundation.{key}": value})
+            browser.settle()
+            right = kv.steady(scene).friction_coefficient
+            assert float(text(browser, "friction_coefficient")) == pytest.approx(right, rel=1e-4)
+        assert "not known" in type_in(browser, "drive.velocity", "20 degC")[2]
+        relaxed = "state => (s => [s.K, s.arms[0][0] / s.K])(scene_of(state))"
+        pick = (
+            "(e => {{ e.value = {}; e.dispatchEvent(new Event('change', {{ bubbles: true }})); }})"
+        )
+        select = "(document.querySelector('select[data-set=foundation]'))"
+        for choice, field in ((0, "stiffness"), (1, "modulus")):
+            browser.run(pick.format(choice) + select)
+            browser.settle()
+            assert browser.run("measure_of(state)") == field
+            assert browser.run(f"({relaxed})(state)")[1] == pytest.approx(2.0, rel=1e-5)
+            assert browser.run("state.values['foundation.activation_energy']") == "90"
+            path = tmp_path / f"{field}.toml"
+            path.write_text(browser.run("as_toml(state)"), encoding="utf-8")
+            names = {}
+            exec(browser.run("as_python(state)"), names)
+            assert names["scene"] == kv.load_scene(path)
+            assert browser.run("as_toml(from_hash(as_hash(state))) === as_toml(state)")
+            right = kv.steady(kv.load_scene(path)).friction_coefficient
+            assert float(text(browser, "friction_coefficient")) == pytest.approx(right, rel=1e-4)
+
+
+def test_values_that_contradict_each_other_are_told(session, tmp_path):
+    law = {"reference_temperature": 293.15, "wlf": [8.0, 50.0], "temperature": 300.15}
+    measured = {"lowest_frequency": 1.0, "highest_frequency": 100.0}
+    path = tmp_path / "explorer.html"
+    save_explorer(kv.Scene(foundation=kv.Foundation(1e10, 0.1, **law, **measured)), path)
+    with watched(session, path) as browser:
+        for key, value, words in (
+            ("temperature", "243", "the pole of the WLF law"),
+            ("highest_frequency", "1", "expected above foundation.lowest_frequency"),
+        ):
+            browser.run(f"restore('#foundation.{key}={value}')")
+            browser.settle()
+            told = browser.run(
+                "(p => [p.hidden, p.textContent])(document.querySelector('#problem'))"
+            )
+            assert not told[0]
+            assert words in told[1]
+        browser.run("restore('#foundation.wlf.c_2=60&foundation.temperature=20 degC')")
+        assert browser.run("decodeURIComponent(as_hash(state))") == (
+            "foundation.temperature=293.15&foundation.wlf.c_2=60"
+        )
+        names = {}
+        exec(browser.run("as_python(state)"), names)
+        assert names["scene"].foundation.wlf == kv.scene.foundations.WLF(8.0, 60.0)
 
 
 EXTREME = (

@@ -111,6 +111,8 @@ def test_a_ball_has_a_difference_and_no_bound():
         kv.fewer_arms(kv.Scene())
     with pytest.raises(ValueError, match="other than 0"):
         kv.fewer_arms(kv.Scene(foundation=RUBBER), velocities=[0.0, 1.0])
+    with pytest.raises(ValueError, match="`velocities`: expected one value or more"):
+        kv.fewer_arms(kv.Scene(foundation=RUBBER), velocities=[])
 
 
 def test_solve_follows_elements_with_no_more_arms_than_the_tolerance_needs():

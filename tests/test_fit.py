@@ -10,9 +10,10 @@ from scipy.stats import t as student
 
 import kvtheory as kv
 from kvtheory.api._fit import _followed
-from kvtheory.fitting import friction, records
+from kvtheory.fitting import confidence, friction, records
 from kvtheory.fitting.least_squares import descend
 from kvtheory.models.steady.methods import METHODS
+from kvtheory.plots.fits import draw_fit
 from tests.commands import printed, refused, run
 
 V = np.geomspace(1e-3, 1.0, 25)
@@ -96,7 +97,7 @@ def test_the_true_values_are_within_two_standard_errors(name, few):
     hits = []
     for seed in range(count):
         problem, found = solved_problem(scene, keys, table(scene, 0.02, seed, **how))
-        errors = friction.standard_errors(found, friction.intervals(problem, found))
+        errors = confidence.standard_errors(found, confidence.intervals(problem, found))
         hits.append(np.abs(np.expm1(true - found.point)) < 2.0 * errors)
     spread = 3.0 * np.sqrt(0.95 * 0.05 / (len(keys) * count))
     assert np.mean(hits) > 0.95 - max(spread, 0.02)
@@ -214,6 +215,17 @@ def test_models_are_weighed_and_no_more_is_taken_than_needed():
     assert "springpot" in str(found)
 
 
+def test_weights_of_models_follow_akaike_and_add_up_to_one():
+    """Of data that several models fit about as well."""
+    found = kv.fit(TABLE1, table(TABLE1, 0.05, 0, np.geomspace(1e-3, 1.0, 14)), models=True)
+    best, *others = sorted(found.models, key=lambda model: model.aicc)
+    assert best.aicc == 0.0
+    assert best.weight < 0.9
+    assert sum(model.weight for model in found.models) == pytest.approx(1.0)
+    for model in others:
+        assert model.weight / best.weight == pytest.approx(np.exp(-0.5 * model.aicc))
+
+
 def test_models_with_more_unknowns_than_values_are_left_out():
     found = kv.fit(TABLE1, table(TABLE1, 0.01, 4, V[::10]), models=True)
     assert found.model == "kelvin-voigt"
@@ -237,7 +249,7 @@ def test_a_time_series_tells_the_same_alone_and_with_a_curve():
     both = kv.fit(wrong, [series(TABLE1, 0.02), table(TABLE1, 0.02)], free=VOIGT)
     for found in (alone, both):
         for key, true in zip(VOIGT, (1e10, 0.1), strict=True):
-            value, error, (low, high) = found.parameters[key]
+            value, error, (low, high), _ = found.parameters[key]
             assert abs(value - true) < 3.0 * error < 0.05 * true
             assert low < value < high
         assert found.misfit == pytest.approx(0.02, rel=0.25)
@@ -260,6 +272,59 @@ def test_a_series_that_theory_does_not_follow_says_so():
     data["friction_force [N/m]"] += 300.0 * np.sin(data["t [ms]"] / 8.0)
     (note,) = kv.fit(TABLE1, data, free=VOIGT[1:]).notes
     assert "the model is off, and the standard errors are too small" in note
+
+
+def test_a_curve_that_theory_does_not_follow_says_so():
+    """Friction with a constant added and the time held: the residuals are one smooth sweep."""
+    data = table(TABLE1, 0.05, 1) | {"mu": 0.1 + measured(TABLE1, 0.05, 1)}
+    found = kv.fit(TABLE1, data, free=VOIGT[:1])
+    (note,) = (note for note in found.notes if "over velocity are alike" in note)
+    assert "the model is off, and the standard errors are too small" in note
+    mixed = np.random.default_rng(0).permutation(V.size)
+    again = kv.fit(TABLE1, {key: values[mixed] for key, values in data.items()}, free=VOIGT[:1])
+    assert note in again.notes
+    sound = [kv.fit(TABLE1, table(TABLE1, 0.05, seed), free=VOIGT).notes for seed in range(8)]
+    assert sound == [()] * 8
+
+
+def test_a_contact_that_is_no_parabola_any_more_is_told():
+    found = kv.fit(TABLE1, {"V [m/s]": V, "mu": 50.0 * measured(TABLE1)}, free=VOIGT)
+    half = kv.steady(found.scene, over={"drive.velocity": V}).half_length
+    (note,) = found.notes
+    assert f"up to {half.max() / TABLE1.indenter.radius:.3g} radii long" in note
+    assert kv.fit(TABLE1, {"V [m/s]": V, "mu": measured(TABLE1)}, free=VOIGT).notes == ()
+
+
+def test_friction_against_the_velocity_is_refused_and_of_some_rows_noted():
+    mu = measured(TABLE1)
+    assert kv.fit(TABLE1, {"V [m/s]": -V, "mu": -mu}, free=VOIGT).notes == ()
+    with pytest.raises(ValueError, match='column "mu": has the opposite sign of the velocity'):
+        kv.fit(TABLE1, {"V [m/s]": V, "mu": -mu}, free=VOIGT)
+    over_time = series(TABLE1, columns=["friction_force"])
+    over_time["friction_force [N/m]"] *= -1.0
+    with pytest.raises(ValueError, match="has the opposite sign of the velocity"):
+        kv.fit(TABLE1, over_time, free=VOIGT[1:])
+    mu[0] *= -1.0
+    (note,) = kv.fit(TABLE1, {"V [m/s]": V, "mu": mu}, free=VOIGT).notes
+    assert note == "In 1 of 25 rows friction and velocity have opposite signs."
+
+
+def test_a_series_of_a_drive_at_rest_is_refused():
+    still = kv.Scene(drive=kv.Drive("0 mm/s"))
+    data = {"t [ms]": np.arange(20.0), "F_x [N/m]": np.ones(20)}
+    with pytest.raises(ValueError, match="`drive` of the scene is at rest throughout"):
+        kv.fit(still, data, free=VOIGT)
+
+
+def test_the_picture_shows_the_residuals_of_the_misfit_and_names_their_size():
+    data = table(TABLE1, 0.05, 1) | {"mu": 0.1 + measured(TABLE1, 0.05, 1)}
+    found = kv.fit(TABLE1, data, free=VOIGT[:1])
+    rest = draw_fit(found).axes[1]
+    shown = rest.lines[0].get_ydata()
+    assert np.sqrt(np.mean(shown**2)) == pytest.approx(100.0 * found.misfit, rel=1e-5)
+    assert rest.get_title() == f"residuals, RMS {100.0 * found.misfit:.3g} %"
+    fitted = kv.steady(found.scene, over={"drive.velocity": V}).friction_coefficient
+    assert shown == pytest.approx(100.0 * (fitted - data["mu"]) / np.sqrt(fitted * data["mu"]))
 
 
 def test_rows_before_the_start_are_left_out():
@@ -325,26 +390,72 @@ def test_intervals_are_where_the_least_sum_of_squares_is_as_large_as_said():
         METHODS["exact"],
     )  # fmt: skip
     _, best = friction.solve(problem)
-    limits = friction.intervals(problem, best)
+    limits = np.array([pieces for (pieces,) in confidence.intervals(problem, best)])
     errors = np.sqrt(np.diag(best.covariance))
     assert np.ptp(np.abs(limits - best.point[:, None]) / errors[:, None]) > 0.5
-    linear = np.linalg.inv(best.slopes.T @ best.slopes)
-    t = student.ppf(0.975, 30 - len(ONE_ARM))
+    allowed = allowed_rise(best)
     for i, ends in enumerate(limits):
         for end in ends:
+            rise = held(problem, i, end, best.point[None]) - best.residuals @ best.residuals
+            assert rise == pytest.approx(allowed[i], rel=0.03)
 
-            def held(points, i=i, end=end):
-                return problem.residuals(np.insert(points, i, end, axis=1))
 
-            start = np.delete(best.point, i)[None]
-            _, (least,) = descend(held, start, start[0] - 9.0, start[0] + 9.0, 200)
-            rise = least - best.residuals @ best.residuals
-            assert rise == pytest.approx((t * errors[i]) ** 2 / linear[i, i], rel=0.03)
+def allowed_rise(best):
+    """Return the rise of the sum of squares at the limits of 95 %, for each unknown."""
+    linear = np.linalg.inv(best.slopes.T @ best.slopes)
+    t = student.ppf(0.975, best.residuals.size - best.point.size)
+    return t**2 * np.diag(best.covariance) / np.diag(linear)
+
+
+def held(problem, i, value, starts):
+    """Return the least sum of squares over the others, of descents from `starts`, with one unknown held."""
+    start = np.delete(starts, i, axis=1)
+
+    def residuals(points):
+        return problem.residuals(np.insert(points, i, value, axis=1))
+
+    return descend(residuals, start, start.min(axis=0) - 9.0, start.max(axis=0) + 9.0, 200)[1].min()
+
+
+ARM = kv.Scene(foundation=kv.GeneralizedMaxwell("10 GN/m^3", arms=[["10 GN/m^3", "50 ms"]]))
+
+
+def test_a_second_minimum_that_the_data_allow_is_told_with_its_interval():
+    """A stiff arm that is a damper fits a few rows a little better than the arm that made them."""
+    data = table(ARM, 0.05, 7, np.geomspace(1e-3, 1.0, 12))
+    found = kv.fit(ARM, data, free=ONE_ARM)
+    (note,) = found.notes
+    assert "The data allow another fit, with a sum of squares 1.07 times the least" in note
+    assert "foundation.stiffness = 4.13e+09 N/m^3" in note
+    problem, best = solved_problem(ARM, ONE_ARM, data)
+    allowed = best.residuals @ best.residuals + allowed_rise(best)
+    grid = np.stack(np.meshgrid(*[(-4.0, 0.0, 4.0)] * len(ONE_ARM)), axis=-1).reshape(-1, 3)
+    starts = np.concatenate([row + grid for row in best.minima])
+    for i, key in enumerate(ONE_ARM):
+        own, (other,) = found.parameters[key].interval, found.parameters[key].other_intervals
+        assert any(low < ARM.values()[key] < high for low, high in (own, other))
+        assert f"{other[0]:.4g} to {other[1]:.4g}" in str(found)
+        between = np.log([own, other]).ravel()
+        between.sort()
+        for y, is_allowed in zip(
+            (between[:2].mean(), between[1:3].mean(), between[2:].mean()),
+            (True, False, True),
+            strict=True,
+        ):
+            assert (held(problem, i, y, starts) <= allowed[i]) == is_allowed
+        for end in np.log(other):
+            assert held(problem, i, end, best.minima[1:]) == pytest.approx(allowed[i], rel=0.02)
+
+
+def test_precise_data_allow_one_minimum_only():
+    found = kv.fit(ARM, table(ARM, 0.01, 7, np.geomspace(1e-3, 1.0, 20)), free=ONE_ARM)
+    assert found.notes == ()
+    assert not any(each.other_intervals for each in found.parameters.values())
 
 
 def test_intervals_are_those_of_student_if_errors_are_elliptic_and_infinite_if_open():
     found, t = kv.fit(TABLE1, table(TABLE1, 0.005), free=VOIGT), student.ppf(0.975, V.size - 2)
-    for value, error, (low, high) in found.parameters.values():
+    for value, error, (low, high), _ in found.parameters.values():
         assert np.log([value / low, high / value]) == pytest.approx(t * error / value, rel=0.05)
     slow = kv.fit(TABLE1, table(TABLE1, 0.01, 2, np.geomspace(1e-5, 1e-4, 12)), free=VOIGT)
     assert slow.parameters[VOIGT[0]].interval[0] == 0.0
@@ -383,6 +494,7 @@ BAD = {
     "negative load": ("V [mm/s],mu,F_z [N/mm]\n1,1,-3\n2,1,3\n3,1,3\n", "line 2"),
     "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n", "needs a scene with foundation.wlf"),
     "huge": (MU + "5,1e300\n", "1e+300 is not plausible"),
+    "tiny": (MU + "5,1e-300\n", 'line 6, column "mu": 1e-300 is not plausible'),
     "foundation.stifness": (MU, 'did you mean "foundation.stiffness"'),
     "drive.velocity": (MU, "is given by the data"),
     "": (MU, "expected the keys of free quantities"),
@@ -407,6 +519,15 @@ def test_mistakes_are_messages(tmp_path, name):
         kv.fit(data=path, free=free)
 
 
+def test_a_key_that_does_not_exist_is_shown_short_with_the_nearest():
+    arms = kv.GeneralizedMaxwell("1 GN/m^3", arms=[[1e9, 10.0**k] for k in range(-8, 4)])
+    for key in ("x" * 5000, "foundation.arms[3].stifness"):
+        with pytest.raises(ValueError, match="is not a quantity of this scene") as caught:
+            kv.fit(kv.Scene(foundation=arms), {"V [m/s]": V, "mu": V}, free=[key])
+        assert len(str(caught.value)) < 250
+    assert 'did you mean "foundation.arms[3].stiffness"?' in str(caught.value)
+
+
 def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):
     data, scene, out, picture = (
         tmp_path / n for n in ("mu.csv", "ball.toml", "out.toml", "fit.svg")
@@ -421,6 +542,12 @@ def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):
     assert found["not_identifiable"] == []
     assert kv.load_scene(out).foundation.stiffness == found["parameters"][VOIGT[0]]["value"]
     assert picture.stat().st_size > 10_000
+    again = printed(*command, ",".join(VOIGT), "--data", data, "-o", out, "--plot", picture)
+    assert kv.load_scene(out).foundation.stiffness == again["parameters"][VOIGT[0]]["value"]
+    second = tmp_path / "second.toml"
+    second.write_bytes(data.read_bytes())
+    refused([*command, VOIGT[0], "--data", second, "-o", second], ["is what this command reads"])
+    assert second.read_bytes() == data.read_bytes()
     shown = run(*command, ",".join(VOIGT)).stdout
     assert "standard error" in shown
     assert "25 rows, misfit 0.0" in shown

@@ -10,6 +10,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.fitting import moduli, shifting, spectrum
 from kvtheory.fitting.spectrum import Moduli, Series
+from kvtheory.plots.fits import draw_fit
 from kvtheory.sweeps.plan import REMARKS
 from tests.commands import printed, refused, run
 
@@ -96,6 +97,36 @@ BAD = {
     "nan": (HEAD + ROWS + "9,1,nan\n", "line 7, column \"E'' [MPa]\": nan is not a finite number"),
     "negative": (HEAD + "9,-1,1\n" + ROWS, 'line 2, column "E\' [MPa]": -1 is not above 0'),
     "negative loss": (HEAD + "9,1,-2\n" + ROWS, "line 2, column \"E'' [MPa]\": -2 is negative"),
+    "huge frequency": (
+        HEAD + ROWS + "1e300,7,1\n",
+        'line 7, column "f [Hz]": 1e+300 is not plausible',
+    ),
+    "tiny frequency": (
+        HEAD + "1e-300,1,1\n" + ROWS,
+        'line 2, column "f [Hz]": 1e-300 is not plausible',
+    ),
+    "huge modulus": (HEAD + ROWS + "1e4,1e300,1\n", 'column "E\' [MPa]": 1e+300 is not plausible'),
+    "tiny modulus": (
+        HEAD + "1e-3,1e-300,1\n" + ROWS,
+        'column "E\' [MPa]": 1e-300 is not plausible',
+    ),
+    "huge loss": (HEAD + ROWS + "1e4,7,1e300\n", "column \"E'' [MPa]\": 1e+300 is not plausible"),
+    "huge tan delta": (
+        "f [Hz],E' [MPa],tan δ\n" + table("{f},{E},{i}e300"),
+        'column "tan δ": 1e+300 is not plausible',
+    ),
+    "another tan delta": (
+        "f [Hz],E' [MPa],E'' [MPa],tan δ\n" + table("{f},{E},0.1,{tan}"),
+        "column \"tan δ\": is 3 times E'' over E' (median of the rows); leave out the column that is wrong",
+    ),
+    "huge time": (
+        "t [s],E(t) [MPa]\n1,4\n2,3\n4,2\n1e300,1\n",
+        'column "t [s]": 1e+300 is not plausible',
+    ),
+    "huge temperature": (
+        "f [Hz],E' [MPa],E'' [MPa],T [C]\n" + table("{f},{E},{L},1e300"),
+        "1e+300 is not plausible",
+    ),
     "zero frequency": (HEAD + "0,1,1\n" + ROWS, 'line 2, column "f [Hz]": 0 is not above 0'),
     "two rows": (HEAD + "1,2,1\n2,3,1\n", "2 rows; at least 4"),
     "one frequency": (HEAD + "1,2,1\n1,3,1\n1,4,1\n1,5,1\n", "at different frequencies"),
@@ -176,6 +207,21 @@ def test_noise_adds_no_arms_and_the_misfit_is_the_noise(noise):
         assert np.array(found.arms) == pytest.approx(
             np.column_stack([TRUE.modulus, TRUE.time]), rel=5 * noise
         )
+
+
+def test_times_are_half_a_decade_beyond_the_data_at_most():
+    """2 ms and 200 s, seen from 10 ms to 1 s only."""
+    series = Series(1e6, np.array([5e6, 3e6]), np.array([2e-3, 200.0]))
+    found = kv.fit_foundation(dynamic(series=series, omega=np.geomspace(1.0, 100.0, 30)))
+    assert [tau for _, tau in found.arms] == pytest.approx([10.0**-2.5, 10.0**0.5], rel=1e-5)
+
+
+def test_the_picture_names_the_temperatures_and_the_marks():
+    data, _ = wlf_sweeps(0.01)
+    data["T [C]"] = np.round(data["T [C]"], -1) - 1e-14
+    axes = draw_fit(kv.fit_foundation(data)).axes
+    assert axes[0].get_title() == "measured at -10 to 50 °C (light)"
+    assert [text.get_text() for text in axes[0].get_legend().get_texts()] == ["storage", "loss"]
 
 
 def test_no_series_is_better_than_the_dual_bound_and_the_best_is_close_to_it():
@@ -282,6 +328,11 @@ def test_given_shift_factors_are_used_and_arrhenius_is_found(tmp_path):
     assert found.shift_factors[0] == pytest.approx((-10.0, law.log_shift(263.15, 293.15)), abs=0.3)
     with pytest.raises(ValueError, match="no temperature with a_T = 1"):
         kv.fit_foundation(data, shift_factors={"T [degC]": T, "log_aT": T + 100.0})
+    for name, far in (("log_aT", -400.0 * np.sign(T - 20.0)), ("a_T", 10.0 ** (-7.0 * (T - 20.0)))):
+        with pytest.raises(
+            ValueError, match=rf'column "{name}": .* expected log10 a_T from -30 to 30'
+        ):
+            kv.fit_foundation(data, shift_factors={"T [degC]": T, name: far})
     with pytest.raises(ValueError, match="has none for"):
         kv.fit_foundation(data, shift_factors={"T [degC]": T[:-1], "log_aT": 20.0 - T[:-1]})
 

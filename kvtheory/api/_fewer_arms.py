@@ -72,10 +72,9 @@ def fewer_arms(
         told = "a bound is known for a parabola under a dead weight or at a fixed depth"
         raise ValueError(f"`proved` = True: {told}; give False")
     V = abs(scene.drive.final_velocity) * AROUND if velocities is None else np.abs(velocities)
-    if not V.all():
-        raise ValueError(
-            "`velocities`: expected values other than 0, at which there is no friction"
-        )
+    if not V.size or not V.all():
+        told = "expected one value or more, other than 0, at which there is no friction"
+        raise ValueError(f"`velocities`: {told}")
     with double_precision(scene):
         found = reduced(METHODS[method_for(scene, None)], scene, np.sort(V), rtol, proved=proved)
     return FewerArms(

@@ -24,11 +24,13 @@ from kvtheory.scene.capabilities import (
     require,
 )
 from kvtheory.scene.foundations import MEASURED
-from kvtheory.scene.mistakes import Problems, nearest
+from kvtheory.scene.mistakes import Problems, nearest, shown
 from kvtheory.scene.model import Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
+WEIGHED = 0.5
+"""Share of the points that are refined while models are weighed, as only the lowest minimum counts."""
 SIMULATED = 1e-3
 """Tolerance of a transient that only elements give."""
 NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED)
@@ -101,7 +103,7 @@ def fit(
     ----------
     Facts F3, F18, F25 and F26 of the derivations; Burnham and Anderson (2002), Model Selection.
     """
-    from kvtheory.fitting import friction
+    from kvtheory.fitting import confidence, friction, remarks
     from kvtheory.fitting.records import read
 
     scene = one_scene(scene, "a fit")
@@ -145,24 +147,31 @@ def fit(
         problem = friction.Problem(
             each, keys, sets, law, _followed, precise=not lacks_continuum(each)
         )
-        best = friction.solve(problem, report=report)
-        found[name] = *best, friction.information(*best)
+        solved = friction.solve(problem, report=report, share=WEIGHED if models else 1.0)
+        found[name] = *solved, friction.information(*solved)
+    name = min(found, key=lambda each: found[each][2])
+    if models:
+        solved = friction.solve(found[name][0])
+        found[name] = *solved, friction.information(*solved)
     least = min(each[2] for each in found.values())
     weighed = [
-        (name, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
-        for name, (problem, best, aicc) in found.items()
+        (each, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
+        for each, (problem, best, aicc) in found.items()
     ]
     total = sum(math.exp(-0.5 * row[3]) for row in weighed)
-    name = min(found, key=lambda each: found[each][2])
     problem, best, _ = found[name]
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
-    limits = friction.intervals(problem, best)
+    limits = confidence.intervals(problem, best)
+    fitted = [
+        {name: rows[0] for name, rows in each.items()}
+        for each in problem.theory(np.log(values)[None])
+    ]
     scale = np.sqrt(np.outer(*[np.diag(best.covariance)] * 2))
     return FrictionFit(
         parameters={
-            key: Parameter(value, float(value * error), tuple(np.exp(ends).tolist()))
-            for key, value, error, ends in zip(
-                problem.keys, values, friction.standard_errors(best, limits), limits, strict=True
+            key: Parameter(value, float(value * error), *_pieces(pieces))
+            for key, value, error, pieces in zip(
+                problem.keys, values, confidence.standard_errors(best, limits), limits, strict=True
             )
         },
         correlations=tuple(map(tuple, (best.covariance / np.where(scale > 0.0, scale, 1.0)).tolist())),
@@ -177,17 +186,25 @@ def fit(
         ),
         notes=(
             *dict.fromkeys(note for each in problem.data for note in each.notes),
-            *friction.alike(problem, best.point),
+            *remarks.alike(problem, best.point),
+            *remarks.large(problem, best.point),
+            *confidence.others(problem, best, limits),
         ),
         scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
         data={
-            "sets": problem.data, "fitted": [
-                {name: rows[0] for name, rows in each.items()}
-                for each in problem.theory(np.log(values)[None])
+            "sets": problem.data, "fitted": fitted, "residuals": [
+                {name: friction.relative(each, name, own[name]) for name in each.measured}
+                for each, own in zip(problem.data, fitted, strict=True)
             ],
             "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
     )  # fmt: skip
+
+
+def _pieces(limits: Any) -> tuple[Any, Any]:
+    """Return the interval of the best value, and the pieces apart from it."""
+    own, *others = [tuple(np.exp(ends).tolist()) for ends in limits]
+    return own, tuple(others)
 
 
 def _misfit(problem: Any, point: Any) -> float:
@@ -216,9 +233,11 @@ def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:
         value = scene.values().get(own[0]) if own else None
         if not own:
             told = "is given by the data" if key in NOT_FREE else "is not a quantity of this scene"
-            problems.append(f"`free` {key}: {told}; {nearest(key, known)}")
+            problems.append(f"`free` {shown(key)}: {told}; {nearest(key, known)}")
         elif not value or value < 0.0:
-            problems.append(f"`free` {key}: is not above 0 in the scene, so that it has no scale")
+            problems.append(
+                f"`free` {shown(key)}: is not above 0 in the scene, so that it has no scale"
+            )
         keys += [each for each in own if each not in keys]
     problems.report()
     return tuple(keys)

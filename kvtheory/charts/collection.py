@@ -9,7 +9,7 @@ from kvtheory.charts.steady_precision import SteadyProblem, steady_methods, suit
 from kvtheory.charts.work_precision import FULL, QUICK, Chart, make_chart
 from kvtheory.progress import Progress, silent
 from kvtheory.scene import Drive, Scene
-from kvtheory.scene.capabilities import lacks_rigid_continuum, require
+from kvtheory.scene.capabilities import lacks_one_scene, lacks_rigid_continuum, require
 from kvtheory.scene.mistakes import nearest
 
 Job = Callable[..., Chart]
@@ -24,6 +24,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     for name in standard:
         if name not in (*STANDARD, ALL):
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
+    require(lacks_one_scene, scene, "the chart")
     require(lacks_rigid_continuum, scene, "the chart of transients")
     jobs: list[Job] = []
     for name in STANDARD if ALL in standard else standard or ("this scene",):

@@ -57,16 +57,22 @@ def check_outputs(context: click.Context) -> None:
     """Raise unless all files that a command was told to write can be written."""
     context.meta[OVERWRITE] = context.params.pop("overwrite", False)
     for parameter in context.command.params:
-        path, kind = context.params.get(parameter.name or ""), parameter.type
-        if path is None or not isinstance(kind, OutputFile):
+        option, kind = parameter.opts[0], parameter.type
+        if not isinstance(kind, OutputFile):
             continue
-        option = parameter.opts[0]
-        if not kind.suffixes:
-            _check_not_an_input(option, path)
-            continue
-        check_output(option, path, kind.suffixes)
-        if kind.beside:
-            check_output(option, path.with_suffix(".json"), [".json"])
+        for path in _given(context, parameter):
+            if not kind.suffixes:
+                _check_not_an_input(option, path)
+                continue
+            check_output(option, path, kind.suffixes)
+            if kind.beside:
+                check_output(option, path.with_suffix(".json"), [".json"])
+
+
+def _given(context: click.Context, parameter: click.Parameter) -> Sequence[Any]:
+    """Return the values of a parameter: none, one, or those of an option that is repeated."""
+    value = context.params.get(parameter.name or "")
+    return value if isinstance(value, tuple) else () if value is None else (value,)
 
 
 def check_output(option: str, path: Path, suffixes: Sequence[str]) -> None:
@@ -90,9 +96,10 @@ def _check_not_an_input(option: str, path: Path) -> None:
     if context is None or not path.exists():
         return
     read = [
-        context.params.get(parameter.name or "")
+        each
         for parameter in context.command.params
         if isinstance(parameter.type, click.Path) and parameter.type.exists
+        for each in _given(context, parameter)
     ]
     if "overrides" in context.params:
         from kvtheory.scene.files import drive_file

@@ -24,6 +24,27 @@ function show_layer(scene, state) {
     + "length a of the contact; otherwise use a boundary-element code.";
 }
 
+/** What leaves the range in which the foundation was measured, as kvtheory.scene.foundations says it. */
+function beyond_measured({ V, a_T, measured: m }, { leading_edge, trailing_edge }) {
+  const told = [], rate = Math.abs(V / (trailing_edge - leading_edge)) * a_T;
+  if (rate > 0 && (rate < m.lowest_frequency / MODEL.barely || rate > m.highest_frequency * MODEL.barely)) {
+    told.push(`V${m.temperature === undefined ? "" : "\u00a0a<sub>T</sub>"}/c = <b>${short(rate, 3)} Hz</b> is outside the frequencies at which the foundation `
+      + `was measured, so that its series extrapolates (${short(m.lowest_frequency, 3)} to ${short(m.highest_frequency, 3)} Hz).`);
+  }
+  const low = m.lowest_temperature ?? m.reference_temperature - m["wlf.c_2"] + MODEL.glass, high = m.highest_temperature ?? Infinity;
+  if (low > m.temperature + MODEL.near || high < m.temperature - MODEL.near) {
+    const known = high < Infinity ? `${short(low)} to ${short(high)} K` : `above ${short(low)} K`;
+    told.push(`The temperature is outside those at which its shift is known (${known}), so that a<sub>T</sub> extrapolates.`);
+  }
+  return told;
+}
+
+function show_measured(scene, state) {
+  const place = document.getElementById("measured"), told = beyond_measured(scene, state);
+  place.hidden = !told.length;
+  place.innerHTML = told.join("<br>");
+}
+
 function show_numbers(scene, state) {
   const force = force_units(scene);
   document.getElementById("numbers").innerHTML = NUMBERS.map(([name, told, unit, factor]) => {
@@ -31,10 +52,10 @@ function show_numbers(scene, state) {
     const value = `${short(state[name] * by, 5)}${shown ? ` <small>${shown}</small>` : ""}`;
     return `<div><small>${told}</small><b data-name="${name}">${value}</b></div>`;
   }).join("");
-  document.getElementById("readout").textContent =
-    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
-    + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`
-    + (layer_number(scene, state) > MODEL.thin ? ", layer not thin" : "");
+  const warned = layer_number(scene, state) > MODEL.thin ? "Layer not thin: " : "";
+  document.getElementById("readout").textContent = warned
+    + `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
+    + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`;
 }
 
 /** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */
@@ -150,7 +171,7 @@ function show_stability(scene, state) {
     place.innerHTML = '<p class="note">Known for a parabola and for a ball that slide on Kelvin\u2013Voigt elements or on a Prony series.</p>';
     return;
   }
-  const { lower, upper, stable: on } = onset_of(scene, state), pairs = scene.arms ? [] : rates(scene, state);
+  const { lower, upper, stable: on } = onset_of(scene, state, { count: 12 }), pairs = scene.arms ? [] : rates(scene, state);
   const stable = !drive || on(drive.stiffness), some = Number.isFinite(upper.stiffness);
   const on_spring = stable ? "Stable on this spring: small disturbances decay" : "Unstable on this spring: small disturbances grow";
   const told = drive ? `${on_spring} (derivation ${scene.arms ? "F24" : "F22"}).` : "Stable under a rigid drive.";

@@ -87,12 +87,18 @@ function curve_data(scene) {
   const speeds = Array.from({ length: POINTS + 1 }, (_, k) => centre * 10 ** (decades * (2 * k / POINTS - 1)));
   const drawn = { ...scene, rough: true }, states = speeds.map((V) => slide({ ...drawn, V }));
   const exact = states.map((state, k) => [speeds[k], state.friction_coefficient]);
-  return { known, centre, decades, tops: rising ? [] : maxima(drawn, exact), exact, ...unstable_speeds(scene, speeds, states) };
+  const data = { known, centre, decades, tops: rising ? [] : maxima(drawn, exact), exact, unstable: speeds.map(() => false) };
+  return Object.assign(data, { looking: true, search: find_unstable(scene, speeds, states, data) });
+}
+
+/** Look for unstable speeds until an instant. */
+function look(data, until) {
+  while (data.looking && performance.now() < until) data.looking = !data.search.next().done;
 }
 
 function draw_curve(scene, state, data) {
   const speed = Math.abs(scene.V), friction = Math.abs(state.friction_coefficient);
-  const { known, centre, decades, tops, exact, unstable, from } = data;
+  const { known, centre, decades, tops, exact, unstable, from, looking } = data;
   const ends = [centre * 10 ** -decades, centre * 10 ** decades];
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
   // A scene far from the curve that was found: up to it a few points are enough, near a limit.
@@ -120,7 +126,8 @@ function draw_curve(scene, state, data) {
     return frame(x, y, box, "velocity [mm/s]", name) + `<g ${clip}>${drawn}</g>${marks}`;
   }, "Friction coefficient over velocity, with its asymptotes");
   const parts = [swatch("exact", "exact")];
-  if (unstable.some(Boolean)) parts.push(swatch("unstable", `unstable on this spring${from ? `, from ${short(from * 1e3)} mm/s` : ""}`));
+  const onset = looking ? ": looking for it \u2026" : from && `, from ${short(from * 1e3)} mm/s`;
+  if (unstable.some(Boolean) || (looking && scene.drive)) parts.push(swatch("unstable", `unstable on this spring${onset || ""}`));
   if (known.low) parts.push(swatch("low", "limit at low velocity"), swatch("high", "limit at high velocity"));
   if (known.critical) parts.push(swatch("critical", `V* = ${short(known.critical * 1e3)} mm/s`));
   tops.forEach((top, k) => parts.push(dot("top", `${k ? "another" : "maximum"} ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`)));

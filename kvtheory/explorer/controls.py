@@ -1,18 +1,17 @@
-"""The sliders of the explorer: the quantities of a scene, from the dataclasses that declare them."""
+"""The sliders of the explorer: the quantities that a scene gives, and those that its parts could be given."""
 
+import dataclasses
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
-from kvtheory.scene.capabilities import lacks_scripts
-from kvtheory.scene.foundations import FOUNDATIONS, MEASURED, THERMAL, THIN, Arm
+from kvtheory.scene.capabilities import DRIVES, SUPPORTS, lacks_scripts
+from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SECTIONS, Scene
-from kvtheory.scene.quantities import Quantity, given, required
-from kvtheory.scene.quantities import quantities as declared
+from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
 
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
@@ -27,8 +26,14 @@ A quantity per unit width in a line contact has the same digits for a ball, in i
 1 kg/mm."""
 STIFFNESSES = {"suspended": 3e7, "drive": 1e6, "arm": 3e10}
 """Start values of the stiffnesses other than that of a foundation."""
-LINEAR = {"exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49)}
-"""Ranges of the sliders that are not logarithmic."""
+CELSIUS = (173.15, 473.15)
+LINEAR = {
+    "exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49),
+    "temperature": CELSIUS, "reference_temperature": CELSIUS,
+    "lowest_temperature": CELSIUS, "highest_temperature": CELSIUS,
+    "activation_energy": (10.0, 400.0), "wlf.c_1": (1.0, 50.0), "wlf.c_2": (10.0, 500.0),
+}  # fmt: skip
+"""Ranges of the sliders that are not logarithmic, in the units shown; the value of the scene widens them."""
 DECADES = 3
 """Range of the other sliders, in decades to either side of their start value."""
 ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
@@ -44,100 +49,110 @@ ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
 }
 """By section and choice: titles and names of the sets of optional quantities."""
 VARIES = "The drive of the scene varies in time; the page takes its final velocity."
-RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
-"""Arms shown for a scene without any."""
+RUBBER = (3.0, 0.01), (0.5, 1.0)
+"""Arms shown for a scene without any: share of the relaxed stiffness, and relaxation time (s)."""
 DIGITS = 6
-"""Digits of what follows from a temperature or a layer: all of them would not fit into a field."""
-UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
-
-
-def quantities(cls: Any) -> dict[str, Quantity]:
-    """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
-    hidden = {*THERMAL, *MEASURED, *(["modulus"] if cls is Arm else [])}
-    return {name: spec for name, spec in declared(cls).items() if name not in hidden}
+"""Digits of the stiffnesses of these arms: all of them would not fit into a field."""
+UNITS = SHOWN_UNITS | {
+    "N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3), "K": ("K", 1.0), "1/s": ("Hz", 1.0),
+    "J/mol": ("kJ/mol", 1e-3),
+}  # fmt: skip
 
 
 def controls(scene: Scene) -> dict[str, Any]:
     """Return sections, choices and sliders as plain data, and the values of the scene.
 
+    A class has sliders for what defines it (`_alternatives`), and for all else that the scene gives and it
+    can hold, such as a temperature.
+
     >>> found = controls(Scene())["sections"]["indenter"]["choices"]["parabola"]["radius"]
     >>> found["unit"], found["start"], found["exponent"]
     ('mm', '10', -3)
     """
-    foundation = scene.foundation
-    if foundation.shift_factor != 1.0 or (foundation.arms and foundation.modulus is not None):
-        scene = replace(scene, foundation=foundation.plain())
-        own = (pair for pair in scene.values().items() if pair[0].startswith("foundation."))
-        scene = scene.replace({key: float(f"{value:.{DIGITS}g}") for key, value in own})
-    values = {section: _values(scene, section) for section in SECTIONS}
     line = scene.indenter.per_width
-    sections = {}
+    sections: dict[str, Any] = {}
+    values: dict[str, str] = {}
     for section, (chooser, models) in SECTIONS.items():
-        part = getattr(scene, section)
+        own = _given(scene, section)
+        alternatives = {kind: _alternatives(section, kind, cls) for kind, cls in models.items()}
+        choices = {}
+        for kind, cls in models.items():
+            fields = {field.name for field in dataclasses.fields(cls)}
+            named = {name for each in alternatives[kind] for name in each["names"]}
+            specs = {name: spec for name, spec in quantities(cls).items() if name in named}
+            specs |= {n: spec for n, (_, spec) in own.items() if n.partition(".")[0] in fields}
+            choices[kind] = {
+                name: _slider(getattr(cls, "kind", section), spec, name, own.get(name), line)
+                for name, spec in specs.items()
+            }
         sections[section] = {
-            "chooser": chooser,
-            "choices": {
-                kind: {
-                    name: _slider(
-                        getattr(cls, "kind", section), spec, name,
-                        values[section].get(name) if isinstance(part, cls) else None, line,
-                    )
-                    for name, spec in quantities(cls).items()
-                }
-                for kind, cls in models.items()
-            },
-            "alternatives": {
-                kind: _alternatives(section, kind, cls) for kind, cls in models.items()
-            },
+            "chooser": chooser, "choices": choices, "alternatives": alternatives,
             "classes": {kind: cls.__name__ for kind, cls in models.items()},
         }  # fmt: skip
+        values |= {
+            f"{section}.{name}": _text(value, spec.fitting(line).unit)
+            for name, (value, spec) in own.items()
+        }
     shown = {
         "choices": {
             section: getattr(getattr(scene, section), chooser) if chooser else section
             for section, (chooser, _) in SECTIONS.items()
         },
-        "values": {
-            f"{section}.{name}": _text(
-                value, quantities(getattr(scene, section))[name].fitting(line).unit
-            )
-            for section, own in values.items()
-            for name, value in own.items()
-        },
-        "arms": [
-            [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
-            for arm in scene.foundation.arms or RUBBER
-        ],
+        "values": values, "arms": _arms(scene.foundation),
         "note": "" if scene.drive.constant else VARIES,
-    }
-    arm = {name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()}
-    whole = [name for name, cls in SHAPES.items() if not cls.per_width]
+    }  # fmt: skip
     return {
-        "sections": sections, "arm": arm, "allowed": _allowed(), "thin": THIN, "whole": whole,
-        "scene": shown,
+        "sections": sections, "allowed": _allowed(), "scene": shown,
+        "arm": {name: _slider("arm", s, name, None, True) for name, s in quantities(Arm).items()},
+        "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
+        "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
     }  # fmt: skip
 
 
-def _values(scene: Scene, section: str) -> dict[str, float]:
-    """Return the quantities that a part of the scene sets, in SI; for a drive its final velocity."""
+def _given(scene: Scene, section: str) -> dict[str, tuple[float, Quantity]]:
+    """Return what a part of the scene and the parts within it, but arms, are given, in SI and with its spec.
+
+    Of a drive that is its final velocity. Times are those at the reference temperature.
+    """
     part = getattr(scene, section)
-    found = {name: getattr(part, name) for name in given(part)}
+    inner = () if section == "drive" else part.nested()
+    parts = {"": part, **{f"{name}.": each for name, each in inner if not isinstance(each, Arm)}}
+    found = {
+        f"{prefix}{name}": (as_given(getattr(each, name)), spec)
+        for prefix, each in parts.items()
+        for name, spec in given(each).items()
+    }
     if section == "drive":
-        found |= {"velocity": part.final_velocity}
-        found |= {} if part.rigid else {"damping": part.damping}
+        specs = quantities(part)
+        found["velocity"] = part.final_velocity, specs["velocity"]
+        found |= {} if part.rigid else {"damping": (part.damping, specs["damping"])}
     return found
 
 
+def _arms(foundation: Any) -> list[list[str]]:
+    """Return stiffness, or of a layer modulus, and relaxation time of each arm, those of `RUBBER` if none."""
+    name, unit = ("stiffness", "N/m^3") if foundation.modulus is None else ("modulus", "N/m^2")
+    pairs = [(getattr(arm, name), as_given(arm.relaxation_time)) for arm in foundation.arms]
+    relaxed = getattr(foundation, name)
+    usual = [(float(f"{share * relaxed:.{DIGITS}g}"), time) for share, time in RUBBER]
+    return [[_text(size, unit), _text(time, "s")] for size, time in pairs or usual]
+
+
 def _slider(
-    of: str, spec: Quantity, name: str, value: float | None, per_width: bool
+    of: str, spec: Quantity, name: str, own: tuple[float, Quantity] | None, per_width: bool
 ) -> dict[str, Any]:
     unit, whole = spec.unit, spec.fitting(False).unit
-    start = _text(STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name], unit)
-    if value:
-        start = _text(value, spec.fitting(per_width).unit)
+    if own and own[0]:
+        start = _text(own[0], spec.fitting(per_width).unit)
+    else:
+        usual = STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name]
+        start = _text(usual, unit)
+    ends = LINEAR.get(name)
     return {
         "doc": spec.doc, "unit": UNITS[unit][0], "exponent": _exponent(unit), "start": start,
         "whole": {"unit": UNITS[whole][0], "exponent": _exponent(whole)} if spec.per_width else None,
-        "linear": LINEAR.get(name), "decades": DECADES, "range": spec.range,
+        "linear": ends and [min(ends[0], float(start)), max(ends[1], float(start))],
+        "decades": DECADES, "range": spec.range, "difference": spec.difference,
         "minimum": _finite(spec.minimum), "exclusive": spec.exclusive,
         "below": _finite(spec.below), "maximum": _finite(spec.maximum),
     }  # fmt: skip
@@ -155,18 +170,18 @@ def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
         added = ADDED[section, name]
         always = [each for each in quantities(cls) if each not in added[-1][1]]
         return [{"told": title, "names": [*always, *more]} for title, more in added]
-    sets, found = list(_sets(cls)), []
+    sets, found, specs = list(_sets(cls)), [], quantities(cls)
     for names in sets:
         own = [name for name in names if not all(name in other for other in sets)]
-        found.append({"told": f"given by {', '.join(own)}".replace("_", " "), "names": names})
+        implied = {each for name in own[:1] for each in specs[name].beside}
+        told = ", ".join(name for name in own if name not in implied)
+        found.append({"told": f"given by {told}".replace("_", " "), "names": names})
     return found
 
 
 def _sets(cls: Any) -> Iterator[list[str]]:
     """Yield the sets of quantities that define a part: the required ones, then those with alternatives."""
-    specs = quantities(cls)
-    optional = {name for spec in specs.values() for name in (spec.instead, *spec.excludes)}
-    first = [name for name in specs if name in required(cls) or name not in optional]
+    specs, first = quantities(cls), _always(cls)
     yield first
     for name in first:
         if other := specs[name].instead:
@@ -176,19 +191,16 @@ def _sets(cls: Any) -> Iterator[list[str]]:
                 yield [*beside, *first]
 
 
+def _always(cls: Any) -> list[str]:
+    """Return the quantities that a part has in any case: the required ones, and those with a default."""
+    defaults = {field.name: field.default for field in dataclasses.fields(cls)}
+    return [n for n in quantities(cls) if n in required(cls) or isinstance(defaults[n], float)]
+
+
 def _allowed() -> list[list[str]]:
     """Return the pairs of shape and foundation that the scripts can compute."""
-    pairs = []
-    for shape, indenter in SHAPES.items():
-        for kind, foundation in FOUNDATIONS.items():
-            arms = {"arms": RUBBER} if kind == "generalized-maxwell" else {}
-            scene = Scene(
-                indenter(**{name: START[name] for name in quantities(indenter)}),
-                foundation(**{name: START[name] for name in required(foundation)}, **arms),
-            )
-            if not lacks_scripts(scene):
-                pairs.append([shape, kind])
-    return pairs
+    laws = {shape: lacks_scripts.laws(shape, SUPPORTS[0], DRIVES[0]) for shape in SHAPES}
+    return [[shape, law] for shape in SHAPES for law in FOUNDATIONS if law in laws[shape]]
 
 
 def _exponent(unit: str) -> int:

@@ -48,9 +48,8 @@ function alternative_html(section) {
 }
 
 function arms_html() {
-  const { stiffness, relaxation_time } = MODEL.arm;
-  const rows = state.arms.map(([k, t], i) => `<div class="arm">${slider_html(`arms.${i}.0`, stiffness, k, `arm ${i + 1}: stiffness`)}`
-    + `${slider_html(`arms.${i}.1`, relaxation_time, t, `arm ${i + 1}: relaxation time`)}</div>`);
+  const rows = state.arms.map((arm, i) => `<div class="arm">${arm_sliders(state, i).map((slider, k) => (
+    slider_html(`arms.${i}.${k}`, slider, arm[k], `arm ${i + 1}: ${[measure_of(state), "relaxation time"][k]}`))).join("")}</div>`);
   return `${rows.join("")}<div class="arms"><button type="button" data-arm="add">Add an arm</button>`
     + `<button type="button" data-arm="remove"${state.arms.length < 2 ? " disabled" : ""}>Remove the last</button></div>`;
 }
@@ -65,8 +64,8 @@ function address(control) {
 function build_controls() {
   const parts = {}, focused = address(document.activeElement);
   for (const [key, slider] of sliders(state)) {
-    const [section, name] = key.split(".");
-    (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), name.replace(/_/g, " ")));
+    const [section, name] = parted(key), label = name.replace(/_/g, " ").replace("wlf.c ", "WLF C").replace("poisson", "Poisson\u2019s");
+    (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), label));
   }
   const html = ["drive", "indenter", "support", "foundation", "run"].map((section) => {
     const choosing = choice_html(section) + alternative_html(section);
@@ -90,9 +89,13 @@ function update() {
       : "These values leave the range of double precision.";
     return;
   }
-  if (key !== kept.key) kept = { key, data: curve_data(scene) };
+  const anew = key !== kept.key;
+  if (anew) kept = { key, data: curve_data(scene) };
+  Object.assign(kept, { scene, found });
+  if (!scene.arms) look(kept.data, Infinity);
   show_numbers(scene, found);
   show_layer(scene, found);
+  show_measured(scene, found);
   draw_curve(scene, found, kept.data);
   draw_contact(scene, found);
   draw_footprint(scene, found);
@@ -101,8 +104,19 @@ function update() {
   show_stability(scene, found);
   follow(scene, found);
   draw_motion();
+  if (anew) setTimeout(look_on, 0, kept);
   frames.push(performance.now() - start);
   if (frames.length > 500) frames.shift();
+}
+
+/** Milliseconds for which unstable speeds are looked for between two pictures. */
+const SLICE = 12;
+
+/** Find the unstable speeds between pictures, and draw the curve with them: many arms take seconds. */
+function look_on(now) {
+  if (now !== kept || !now.data.looking) return;
+  look(now.data, performance.now() + SLICE);
+  if (now.data.looking) setTimeout(look_on, 0, now); else draw_curve(now.scene, now.found, now.data);
 }
 
 let waiting = false;
@@ -122,9 +136,10 @@ function set_value(key, text) {
   if (first === "arms") state.arms[i][k] = text; else state.values[key] = text;
 }
 
-const slider_of = (key) => (key.startsWith("arms.")
-  ? [MODEL.arm.stiffness, MODEL.arm.relaxation_time][key.split(".")[2]]
-  : sliders(state).find(([name]) => name === key)[1]);
+function slider_of(key) {
+  const [first, rest] = parted(key), [i, k] = rest.split(".");
+  return first === "arms" ? arm_sliders(state, i)[k] : sliders(state).find(([name]) => name === key)[1];
+}
 
 /** The field and the slider of a quantity, and the text about a mistake. */
 function parts_of(control) {
@@ -167,15 +182,20 @@ function typed(box) {
 function chosen(event) {
   const { section, set } = event.target.dataset;
   if (event.target.type === "text") typed(event.target);
-  if (section) state.choices[section] = event.target.value;
   const [of, at] = section ? [section, 0] : [set, Number(event.target.value)];
   if (!of) return;
-  const own = SECTIONS[of].choices[state.choices[of]], wanted = sets_of(state, of)[at];
+  const relaxed = (key = `foundation.${measure_of(state)}`) => text_of(state, key, slider_of(key));
+  const [measure, before] = [measure_of(state), relaxed()];
+  if (section) state.choices[section] = event.target.value;
+  const own = SECTIONS[of].choices[state.choices[of]], wanted = sets_of(state, of)[at], more = optional(state, of);
   for (const key of Object.keys(state.values)) {
-    const [part, name] = key.split(".");
-    if (part === of && !wanted.includes(name)) delete state.values[key];
+    const [part, name] = parted(key);
+    if (part === of && ![...wanted, ...more].includes(name)) delete state.values[key];
   }
   for (const name of wanted) state.values[`${of}.${name}`] ??= own[name].start;
+  if (measure_of(state) !== measure) {  // arms keep their ratio to what they are given beside
+    for (const arm of state.arms) arm[0] = String(Number((arm[0] * (relaxed() / before)).toPrecision(6)));
+  }
   allowed(state);
   build_controls();
   soon();

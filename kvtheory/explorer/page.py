@@ -6,9 +6,9 @@ import tomllib
 from importlib.resources import files
 from pathlib import Path
 
-from kvtheory.explorer.controls import controls, lacks_scripts
+from kvtheory.explorer.controls import controls
 from kvtheory.export import check_path, replace_file
-from kvtheory.scene.capabilities import require
+from kvtheory.scene.capabilities import lacks_one_scene, lacks_scripts, require
 from kvtheory.scene.model import Scene
 
 SCRIPTS = (
@@ -28,13 +28,14 @@ def save_explorer(scene: Scene, path: str | Path) -> None:
 
 
 def explorer_page(scene: Scene) -> str:
-    """Return the text of the page, or raise ValueError if its scripts cannot compute the scene.
+    """Return the text of the page, or raise ValueError if its scripts cannot compute the scene, or arrays.
 
     >>> explorer_page(Scene()).startswith("<!DOCTYPE html>")
     True
     """
     from kvtheory import __version__
 
+    require(lacks_one_scene, scene, "the explorer")
     require(lacks_scripts, scene, "the explorer")
     data = {"version": __version__, "formulas": formulas(), **controls(scene)}
     parts = {

@@ -4,6 +4,12 @@ const MODEL = JSON.parse(document.getElementById("data").textContent);
 const SECTIONS = MODEL.sections;
 const original = () => structuredClone(MODEL.scene);
 
+/** Section and name of a key, such as foundation and wlf.c_1. */
+function parted(key) {
+  const at = key.indexOf(".");
+  return [key.slice(0, at), key.slice(at + 1)];
+}
+
 /** A text in the unit that is shown, as a number in SI: with the same decimals. */
 function si(text, slider) {
   const [digits, power] = String(text).trim().toLowerCase().split("e");
@@ -22,16 +28,18 @@ function mistake_in(text, slider, signed) {
 }
 
 const PREFIXES = { n: -9, u: -6, "\u00b5": -6, "\u03bc": -6, m: -3, c: -2, d: -1, "": 0, h: 2, k: 3, M: 6, G: 9, T: 12 };
-/** Units as powers of metre, kilogram and second, and their size. */
+/** Units as powers of metre, kilogram, second, kelvin and mole, and their size. */
 const UNITS = {
-  m: [[1, 0, 0], 1], g: [[0, 1, 0], 1e-3], s: [[0, 0, 1], 1], N: [[1, 1, -2], 1], Pa: [[-1, 1, -2], 1], Hz: [[0, 0, -1], 1],
-  min: [[0, 0, 1], 60], h: [[0, 0, 1], 3600], "1": [[0, 0, 0], 1],
+  m: [[1, 0, 0, 0, 0], 1], g: [[0, 1, 0, 0, 0], 1e-3], s: [[0, 0, 1, 0, 0], 1], K: [[0, 0, 0, 1, 0], 1], mol: [[0, 0, 0, 0, 1], 1],
+  N: [[1, 1, -2, 0, 0], 1], Pa: [[-1, 1, -2, 0, 0], 1], J: [[2, 1, -2, 0, 0], 1], Hz: [[0, 0, -1, 0, 0], 1],
+  min: [[0, 0, 1, 0, 0], 60], h: [[0, 0, 1, 0, 0], 3600], "1": [[0, 0, 0, 0, 0], 1],
 };
+const CELSIUS = ["degC", "\u00b0C"];
 
 /** The dimension and size of a unit such as N*s/m^2; nothing if it is unknown. */
 function unit_of(text) {
   const plain = text.trim().replace(/[\u00b9\u00b2\u00b3]/g, (c) => `^${"\u00b9\u00b2\u00b3".indexOf(c) + 1}`).replace(/\s*([*\u00b7/])\s*|\s+/g, (_, c) => c || "*");
-  let dimension = [0, 0, 0], size = 1;
+  let dimension = [0, 0, 0, 0, 0], size = 1;
   for (const [, sign, name, power] of plain.replace(/\*\*/g, "^").matchAll(/(^|[*\u00b7/])([^*\u00b7/^]*)(?:\^(-?\d+))?/g)) {
     const own = name in UNITS ? ["", name] : [name[0], name.slice(1)];
     if (!(own[0] in PREFIXES) || !(own[1] in UNITS)) return null;
@@ -49,7 +57,9 @@ function understood(text, slider, signed) {
   if (number === undefined) return ["", "a number is expected"];
   if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(number)) return ["", "does the comma separate decimals or thousands? Write a point, or no comma"];
   let value = number.replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
-  if (unit) {
+  if (CELSIUS.includes(unit) && slider.unit === "K" && !slider.difference) {
+    value = String(Number((Number(value) + 273.15).toPrecision(15)));
+  } else if (unit) {
     const given = unit_of(unit), own = unit_of(slider.unit || "1");
     if (!given) return ["", `the unit ${unit} is not known; expected ${slider.unit || "none"}`];
     if (given.dimension !== own.dimension) return ["", `${unit} does not fit; expected a unit such as ${slider.unit || "none"}`];
@@ -70,17 +80,34 @@ function asked(state, section) {
 /** Whether forces are those of a ball, and not per unit width. */
 const is_whole = (state) => MODEL.whole.includes(state.choices.indenter);
 
+/** What a scene may give beside the set that is asked, such as a temperature. */
+function optional(state, section) {
+  const sets = sets_of(state, section).flat();
+  return Object.keys(SECTIONS[section].choices[state.choices[section]]).filter((name) => !sets.includes(name));
+}
+
 /** The sliders of a state: [key, slider], in the units that its indenter has. */
 function sliders(state) {
   const whole = is_whole(state);
   return Object.keys(SECTIONS).flatMap((section) => {
     const own = SECTIONS[section].choices[state.choices[section]];
-    return asked(state, section).map((name) => [`${section}.${name}`, whole ? { ...own[name], ...own[name].whole } : own[name]]);
+    const more = optional(state, section).filter((name) => `${section}.${name}` in state.values);
+    return [...asked(state, section), ...more].map((name) => [`${section}.${name}`, whole ? { ...own[name], ...own[name].whole } : own[name]]);
   });
 }
 
 const text_of = (state, key, slider) => state.values[key] ?? slider.start;
 const has_arms = (state) => state.choices.foundation === "generalized-maxwell";
+
+/** What the relaxed foundation is given by, and every arm with it: stiffness, or modulus of a layer. */
+const measure_of = (state) => (asked(state, "foundation").includes("modulus") ? "modulus" : "stiffness");
+
+/** The sliders of arm i, which reach to either side of what the scene of the page has there. */
+function arm_sliders(state, i) {
+  const first = MODEL.scene.arms[i], own = measure_of(state), same = first && own === measure_of(MODEL.scene);
+  const { [own]: size, relaxation_time: time } = MODEL.arm;
+  return [same ? { ...size, start: first[0] } : size, first ? { ...time, start: first[1] } : time];
+}
 
 /** The first thing that is wrong with a state, or nothing. */
 function wrong_in(state) {
@@ -89,35 +116,54 @@ function wrong_in(state) {
     if (told) return `${key} = ${text_of(state, key, slider)}: ${told}`;
   }
   if (has_arms(state)) {
-    const times = state.arms.map(([, time]) => si(time, MODEL.arm.relaxation_time));
-    for (const [stiffness, time] of state.arms) {
-      const told = mistake_in(stiffness, MODEL.arm.stiffness) || mistake_in(time, MODEL.arm.relaxation_time);
+    const [size, time] = arm_sliders(state), times = state.arms.map((arm) => si(arm[1], time));
+    for (const arm of state.arms) {
+      const told = mistake_in(arm[0], size) || mistake_in(arm[1], time);
       if (told) return `foundation.arms: ${told}`;
     }
     if (new Set(times).size < times.length) return "foundation.arms: two arms have the same relaxation time";
   }
-  return "";
+  return wrong_in_measured(state.values);
+}
+
+/** What is wrong with the values of a foundation beside each other, of which each is in its range. */
+function wrong_in_measured(values) {
+  const value = (name) => Number(values[`foundation.${name}`] ?? NaN), pole = value("reference_temperature") - value("wlf.c_2");
+  for (const kind of ["frequency", "temperature"]) {
+    if (value(`highest_${kind}`) <= value(`lowest_${kind}`)) return `foundation.highest_${kind}: expected above foundation.lowest_${kind}`;
+  }
+  return value("temperature") <= pole ? `foundation.temperature: expected above T_ref \u2212 C\u2082 = ${short(pole)} K, the pole of the WLF law` : "";
+}
+
+/** a_T, by which the temperature multiplies every time of the foundation. */
+function shift_factor(v) {
+  const T = v["foundation.temperature"], T_ref = v["foundation.reference_temperature"], c_1 = v["foundation.wlf.c_1"];
+  if (T === undefined || T_ref === undefined) return 1;
+  if (c_1 !== undefined) return 10 ** (-c_1 * (T - T_ref) / (v["foundation.wlf.c_2"] + T - T_ref));
+  return Math.exp(v["foundation.activation_energy"] / MODEL.gas_constant * (T_ref - T) / T / T_ref);
 }
 
 /** The scene in SI, as the solvers take it. */
 function scene_of(state) {
   const v = {};
   for (const [key, slider] of sliders(state)) v[key] = si(text_of(state, key, slider), slider);
-  const { indenter, foundation, support } = state.choices, radius = v["indenter.radius"];
+  const { indenter, foundation, support } = state.choices, radius = v["indenter.radius"], across = v["indenter.radius_across"];
   const shape = {
     "power-law": [1, v["indenter.length"], v["indenter.exponent"]], wedge: [v["indenter.inclination"], 1, 1],
   }[indenter] || [1, radius, 2];
-  const nu = v["foundation.poisson_ratio"];
-  const h = v["foundation.thickness"], layer = v["foundation.modulus"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h;
+  const nu = v["foundation.poisson_ratio"], h = v["foundation.thickness"], a_T = shift_factor(v);
+  const stiffness = (x) => (h === undefined ? x : x * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h);
   const scene = {
-    indenter, shape, stretch: Math.sqrt((v["indenter.radius_across"] ?? radius) / radius),
-    K: v["foundation.stiffness"] ?? layer, tau: v["foundation.retardation_time"],
+    indenter, shape, stretch: across === undefined ? 1 : Math.sqrt(across / radius),
+    K: stiffness(v[`foundation.${measure_of(state)}`]), tau: v["foundation.retardation_time"] * a_T, a_T,
+    measured: Object.fromEntries(Object.entries(v).filter(([key]) => key.startsWith("foundation.")).map(([key, x]) => [parted(key)[1], x])),
     kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"], support,
   };
   if (h !== undefined) scene.layer = { thickness: h, poisson_ratio: nu };
   if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
   if (has_arms(state)) {
-    scene.arms = state.arms.map(([k, t]) => [si(k, MODEL.arm.stiffness), si(t, MODEL.arm.relaxation_time)]);
+    const [size, time] = arm_sliders(state);
+    scene.arms = state.arms.map(([k, t]) => [stiffness(si(k, size)), si(t, time) * a_T]);
   }
   if (support === "fixed") scene.depth = v["support.depth"];
   else {
@@ -136,30 +182,32 @@ function scene_of(state) {
 const force_units = (scene) => (scene.indenter === "sphere" ? ["N", 1] : ["N/mm", 1e-3]);
 
 const quoted = (text, unit) => (unit ? `"${text} ${unit}"` : text);
-const arm_units = () => [MODEL.arm.stiffness.unit, MODEL.arm.relaxation_time.unit];
-const arm_list = (state) =>
-  `[${state.arms.map((arm) => `[${arm.map((text, k) => quoted(text, arm_units()[k])).join(", ")}]`).join(", ")}]`;
+const listed = (texts) => `[${texts.join(", ")}]`;
 
-/** Sections of a state: name, and pairs of key and written value. */
+/** Sections of a state: its name, and pairs of key and written value. */
 function written(state) {
   const tables = {};
   for (const [key, slider] of sliders(state)) {
-    const [section, name] = key.split(".");
-    (tables[section] ||= []).push([name, quoted(text_of(state, key, slider), slider.unit)]);
+    const [section, name] = parted(key), [outer, inner] = name.split("."), text = quoted(text_of(state, key, slider), slider.unit);
+    const own = (tables[section] ||= {});
+    if (inner) (own[outer] ||= []).push(text); else own[name] = text;
   }
-  if (has_arms(state)) tables.foundation.push(["arms", arm_list(state)]);
-  return tables;
+  const units = arm_sliders(state).map((slider) => slider.unit);
+  if (has_arms(state)) tables.foundation.arms = state.arms.map((arm) => listed(arm.map((text, k) => quoted(text, units[k]))));
+  return Object.entries(tables).map(([section, own]) => [
+    section, Object.entries(own).map(([name, value]) => [name, Array.isArray(value) ? listed(value) : value]),
+  ]);
 }
 
 function as_toml(state) {
-  return Object.entries(written(state)).map(([section, pairs]) => {
+  return written(state).map(([section, pairs]) => {
     const chooser = SECTIONS[section].chooser ? [`${SECTIONS[section].chooser} = "${state.choices[section]}"`] : [];
     return [`[${section}]`, ...chooser, ...pairs.map(([name, value]) => `${name} = ${value}`), ""].join("\n");
   }).join("\n");
 }
 
 function as_python(state) {
-  const lines = Object.entries(written(state)).map(([section, pairs]) => {
+  const lines = written(state).map(([section, pairs]) => {
     const name = SECTIONS[section].classes[state.choices[section]];
     return `    ${section}=kv.${name}(${pairs.map(([key, value]) => `${key}=${value}`).join(", ")}),`;
   });
@@ -189,7 +237,7 @@ function from_hash(hash) {
   }
   for (const key of (parts.get("without") || "").split(" ")) delete state.values[key];
   for (const [key, text] of parts) {
-    const [section, name] = key.split("."), choices = SECTIONS[section]?.choices || {};
+    const [section, name] = parted(key), choices = SECTIONS[section]?.choices || {};
     const slider = choices[state.choices[section]]?.[name] || Object.values(choices).find((own) => name in own)?.[name];
     const unit = slider && is_whole(state) ? { ...slider, ...slider.whole } : slider;
     const [value] = slider ? understood(text, unit, key === "drive.velocity") : [];

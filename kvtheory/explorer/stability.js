@@ -118,18 +118,24 @@ function onset_of(scene, state, how) {
 
 const ROUGHLY = { per_decade: 10, count: 6 };
 
-/** At which of several speeds the steady state is unstable on the spring of the drive, and from which speed on. */
-function unstable_speeds(scene, speeds, states) {
-  if (!has_stability(scene) || !scene.drive) return { unstable: speeds.map(() => false) };
+/** At which of several speeds the steady state is unstable on the spring of the drive, and from which speed on:
+ * into `data`, one speed at a time, as many arms take seconds. */
+function* find_unstable(scene, speeds, states, data) {
+  if (!has_stability(scene) || !scene.drive) return;
   const slips = (V, state) => !onset_of({ ...scene, V }, state, ROUGHLY).stable(scene.drive.stiffness);
-  const unstable = speeds.map((V, k) => slips(V, states[k])), first = unstable.indexOf(true);
-  if (first < 1) return { unstable };
+  for (const [k, V] of speeds.entries()) {
+    data.unstable[k] = slips(V, states[k]);
+    yield;
+  }
+  const first = data.unstable.indexOf(true);
+  if (first < 1) return;
   let [low, high] = [speeds[first - 1], speeds[first]];
   for (let k = 0; k < (scene.arms ? 16 : 50); k++) {
     const middle = Math.sqrt(low * high);
     if (slips(middle, slide({ ...scene, V: middle }))) high = middle; else low = middle;
+    yield;
   }
-  return { unstable, from: high };
+  data.from = high;
 }
 
 const has_stability = (scene) =>

@@ -2,10 +2,10 @@
 
 Unknowns are logarithms. The first guess needs no help: the maximum of the measured friction gives the
 stiffness of the foundation, and the velocities its times (fact F26); many points around them are tried at
-once, as theory takes arrays, and the best ones are refined. The covariance is that of the linear theory at
-the minimum. A combination of unknowns that is uncertain by more than a factor of two is reported by its
-keys. The limits of an interval are where the sum of squares, minimized over the other unknowns, is as
-much above its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t).
+once, as theory takes arrays, and the best ones are refined, with the best of each part of the range: the
+sum of squares may have several minima, which are kept as far as the data allow them. The covariance is that
+of the linear theory at the lowest one. A combination of unknowns that is uncertain by more than a factor of
+two is reported by its keys.
 """
 
 import math
@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
+from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
-from kvtheory.fitting.least_squares import Fit, covariance, descend, slopes, updated
-from kvtheory.fitting.records import FRICTION, Data
+from kvtheory.fitting.least_squares import Fit, descend, slopes, student
+from kvtheory.fitting.records import FRICTION, Data, largest_speed
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import as_given, given
@@ -49,8 +50,14 @@ ORDER = 0.05, 1.0
 TRIED, SOME = {False: (6, 8, 10), True: (4, 5, 7)}, 16
 """Points that are tried for one, two and more unknowns (as powers of two), of steady sliding and of a time
 series, and rows of the data at most."""
-ROUNDS = {False: ((32, 6), (12, 10), (4, 15), (1, 200)), True: ((3, 6), (1, 12), (1, 40))}
+ROUNDS = {False: ((48, 6), (16, 10), (12, 15), (12, 200)), True: ((6, 6), (3, 12), (3, 40))}
 """How many of the best points are refined, and by how many steps, in each round; likewise."""
+NEIGHBOURS = 8
+"""Nearest neighbours above which a point has to be the best of its part of the range."""
+APART = 0.1
+"""Least difference of ln of an unknown between two points that are both refined."""
+LOOSE = 4.0
+"""Rise of the sum of squares over that of 95 % up to which a point is refined in the last round."""
 REWEIGHED, SAME = 3, 0.05
 """Times that columns are weighed by their scatter at most, and relative change of weights that ends it."""
 FINE, COARSE = 1e-7, 1e-3
@@ -65,13 +72,6 @@ SHAPED = "retardation_time", "order"
 """Quantities that belong to one law of the foundation."""
 FAILED = 1e3
 """Residual where theory has no answer."""
-ALIKE = 0.5
-"""Correlation of neighbouring residuals of a time series from which they are not scatter."""
-CONFIDENCE = 0.95
-"""Probability with which an interval holds the true value."""
-NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
-"""Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
-rise of the sum of squares there, and the relative change of a diagonal that keeps equations solvable."""
 
 
 @dataclass(frozen=True)
@@ -146,22 +146,12 @@ class Problem:
         return replace(self, data=parts, rough=True, memory={})
 
     def columns(self, points: Array) -> list[Array]:
-        """Return the residuals of each column measured, of unknowns in rows.
-
-        Over velocity relative to the geometric mean of data and theory, without bias; over time to
-        the root mean square.
-        """
-        found = []
-        for data, own in zip(self.data, self.theory(points), strict=True):
-            for name, values in data.measured.items():
-                scale: Any = np.sqrt(np.mean(values * values))
-                if data.time is None:
-                    scale = np.sqrt(np.abs(own[name] * values))
-                    scale = np.maximum(scale, FLOOR * np.abs(values).max())
-                found.append(
-                    np.nan_to_num((own[name] - values) * (data.weight / scale), nan=FAILED)
-                )
-        return found
+        """Return the relative residuals of each column measured, times its weights, of unknowns in rows."""
+        return [
+            np.nan_to_num(relative(data, name, own[name]) * data.weight, nan=FAILED)
+            for data, own in zip(self.data, self.theory(points), strict=True)
+            for name in data.measured
+        ]
 
     def count(self, point: Array) -> float:
         """Return the number of residuals; those relative to the floor scatter less, and count in part."""
@@ -232,10 +222,12 @@ class Problem:
                 break
         a = np.mean(self.solve(scene.replace({**still, key: first})).half_length)
         speeds = [
-            each.conditions["drive.velocity"] if each.time is None else _speeds(scene, each.time)
+            each.conditions["drive.velocity"]
+            if each.time is None
+            else largest_speed(scene, each.time)
             for each in self.data
         ]
-        V = np.abs(np.concatenate(speeds))
+        V = np.abs(np.hstack(speeds))
         moving = V[V > 0.0]
         return first, a / np.array([moving.max(), moving.min()])
 
@@ -251,118 +243,88 @@ class Problem:
         return float(np.mean(static.get(name, mu * state.load)))
 
 
-def _speeds(scene: Scene, time: Array) -> Array:
-    """Return the largest speed of the drive during a time series."""
-    drive = scene.drive
-    if drive.function is None:
-        return np.array([max(abs(V) for _, V in drive.points)])
-    return np.abs([drive.called(t) for t in time.tolist()]).max(keepdims=True)
+def relative(data: Data, name: str, found: Array) -> Array:
+    """Return the relative residuals of a column measured.
+
+    Over velocity relative to the geometric mean of data and theory, without bias; over time to the root mean
+    square.
+    """
+    values = data.measured[name]
+    scale: Any = np.sqrt(np.mean(values * values))
+    if data.time is None:
+        scale = np.maximum(np.sqrt(np.abs(found * values)), FLOOR * np.abs(values).max())
+    return np.asarray((found - values) / scale)
 
 
-def solve(problem: Problem, seed: int = 0, report: Report | None = None) -> tuple[Problem, Fit]:
-    """Return the problem with the weights of its columns, and the minimum of its sum of squares."""
+def solve(
+    problem: Problem, seed: int = 0, report: Report | None = None, *, share: float = 1.0
+) -> tuple[Problem, Fit]:
+    """Return the problem with the weights of its columns, and the minima of its sum of squares.
+
+    With a `share` of the points below 1, other minima than the lowest may be missed.
+    """
     low, high = problem.ranges.T
     least, most = problem.limits
     tried, rounds = TRIED[problem.costly], ROUNDS[problem.costly]
-    points = qmc.scale(
-        qmc.Sobol(low.size, seed=seed).random_base2(tried[min(low.size, len(tried)) - 1]), low, high
-    )
-    some = problem.some
+    unit = qmc.Sobol(low.size, seed=seed).random_base2(tried[min(low.size, len(tried)) - 1])
+    some, points = problem.some, qmc.scale(unit, low, high)
     score = np.sum(np.arctan(some.residuals(points)) ** 2, axis=1)
+    points = points[_starts(unit, score, min(rounds[0][0], 4 * low.size**2))]
 
     def descended(of: Problem, points: Array, steps: int) -> tuple[Array, Array]:
         how: Any = {"step": of.step, "costly": of.costly, "precision": PRECISION[of.rtol]}
-        return descend(of.residuals, points, least, most, steps, **how)
+        found, score = descend(of.residuals, points, least, most, steps, **how)
+        return _apart(_sorted(found, of.keys), score)
 
-    for done, (count, steps) in enumerate(rounds):
+    for done, (most_points, steps) in enumerate(rounds):
         if report:
             report((1 + done) / (len(rounds) + 2))
-        best = points[np.argsort(score)[: min(count, 4 * low.size**2)]]
-        near = some if problem.costly and done + 1 < len(rounds) else problem
-        points, score = descended(near, best, steps)
+        last = done + 1 == len(rounds)
+        if last:
+            points = points[score <= _plausible(some if problem.costly else problem, score[0])]
+        near = some if problem.costly and not last else problem
+        count = math.ceil(share * min(most_points, 4 * low.size**2))
+        points, score = descended(near, points[:count], steps)
     for _ in range(REWEIGHED):
         before, problem = problem.weights, problem.weighed(points[0])
         if np.allclose(problem.weights, before, rtol=SAME, atol=0.0):
             break
         points, score = descended(problem, points, rounds[-1][1])
-    point = _sorted(points, problem.keys)[0]
+    point = points[0]
     r = problem.residuals(point[None])[0]
     if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
         told = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
         raise ValueError(f"{problem.data[0].source}: {told}; check the scene")
     J = problem.slopes(point[None], central=True)[0]
-    return problem, Fit(point, r, J, problem.count(point))
+    return problem, Fit(point, r, J, problem.count(point), points)
 
 
-def intervals(problem: Problem, found: Fit) -> Array:
-    """Return profile-likelihood limits of ln of each unknown (Venzon and Moolgavkar 1988), or infinity."""
-    size, (low, high) = found.point.size, problem.limits
-    errors = np.maximum(np.sqrt(np.diag(found.covariance)), problem.step**2)
-    least = float(found.residuals @ found.residuals)
-    rise = (stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE) * errors) ** 2 / np.diag(
-        covariance(found.slopes)
-    )
-    own, side = np.tile(np.arange(size), 2), np.repeat([-1.0, 1.0], size)
-    wanted, limits = least + rise[own], side * np.inf
-    points = np.tile(found.point, (2 * size, 1))
-    active = np.full(2 * size, True)
-    last, last_r, last_J = (np.array([each] * 2 * size) for each in found[:3])
-    for _ in range(NEWTON):
-        at = np.flatnonzero(active)
-        if not at.size:
-            break
-        i, r = own[at], problem.residuals(points[at])
-        if problem.costly:
-            J = updated(last_J[at], r - last_r[at], points[at] - last[at])
-            last[at], last_r[at], last_J[at] = points[at], r, J
-        else:
-            J = problem.slopes(points[at])
-        rows = np.arange(at.size)
-        H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
-        stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))
-        moves = ~stuck & (np.arange(size) != i[:, None])
-        rest = H * moves[:, :, None] * moves[:, None]
-        own_rise = np.einsum("sii->si", H)
-        rest += np.eye(size) * np.where(moves & (own_rise > 0.0), RIDGE * own_rise, 1.0)[:, None]
-        others = np.stack([g, H[rows, :, i]], axis=-1) * moves[..., None]
-        inner = np.linalg.solve(rest, others)  # of the other unknowns, at a given one
-        a = H[rows, i, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 1])
-        b = g[rows, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 0])
-        total = np.einsum("sn,sn->s", r, r)
-        c = total - np.einsum("sj,sj->s", others[..., 0], inner[..., 0]) - wanted[at]
-        a = np.maximum(a, RIDGE * H[rows, i, i] + np.finfo(float).tiny)
-        move = (-b + side[at] * np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
-        step = -inner[..., 0] - inner[..., 1] * move[:, None]
-        step[rows, i] = move
-        off = np.maximum(np.abs(total - wanted[at]), np.abs(c + wanted[at] - total))
-        closed = off < CLOSE * rise[i]
-        limits[at[closed]] = points[at, i][closed]
-        step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None]
-        points[at] = np.clip(points[at] + step, low, high)
-        out = (points[at, i] <= low[i]) | (points[at, i] >= high[i])
-        active[at[closed | out]] = False
-    return limits.reshape(2, size).T
+def _starts(unit: Array, score: Array, count: int) -> list[int]:
+    """Return the places of so many points of a cube: those better than their neighbours, and the best of all.
+
+    Topographical global optimization: Törn and Viitanen (1992).
+    """
+    near = cKDTree(unit).query(unit, NEIGHBOURS + 1)[1][:, 1:]
+    lowest, order = (score[:, None] < score[near]).all(axis=1), np.argsort(score)
+    half = order[lowest[order]][: count // 2]
+    return list(dict.fromkeys([*half.tolist(), *order[: count - half.size].tolist()]))
 
 
-def standard_errors(found: Fit, limits: Array) -> Array:
-    """Return relative standard errors: linear ones, or the longer side of 95 % over Student's t."""
-    linear = np.sqrt(np.diag(found.covariance))
-    sides = np.abs(np.expm1(limits - found.point[:, None])).max(axis=1)
-    sides /= stdtrit(found.freedom, 0.5 + 0.5 * CONFIDENCE)
-    return np.where(np.isfinite(sides), np.maximum(sides, linear), linear)
+def _plausible(problem: Problem, least: float) -> float:
+    """Return the sum of squares up to which a point may be a minimum that the data allow."""
+    freedom = sum(each.size * len(each.measured) for each in problem.data) - len(problem.keys)
+    return least * (1.0 + LOOSE * student(freedom) ** 2 / max(freedom, 1))
 
 
-def alike(problem: Problem, point: Array) -> list[str]:
-    """Return a note on each column over time whose residuals are alike from row to row."""
-    names = [(data, name) for data in problem.data for name in data.measured]
-    notes = []
-    for (data, name), rows in zip(names, problem.columns(point[None]), strict=True):
-        r = rows[0] - rows[0].mean()
-        alike = float(r[1:] @ r[:-1] / max(float(r @ r), np.finfo(float).tiny))
-        if data.time is not None and alike > ALIKE and float(np.std(r)) > STEP[FINE] ** 2:
-            told = f"The residuals of {name} over time are alike from row to row (correlation {alike:.2f})"
-            notes.append(f"{told}: the model is off, and the standard errors are too small.")
-    return notes
+def _apart(points: Array, score: Array) -> tuple[Array, Array]:
+    """Return points with the best one first, without those that are near a better one."""
+    order = np.argsort(score, kind="stable")
+    near = cdist(points[order], points[order], "chebyshev") < APART
+    kept: list[int] = []
+    for i in range(order.size):
+        if not near[i, kept].any():
+            kept.append(i)
+    return points[order[kept]], score[order[kept]]
 
 
 def _sorted(points: Array, keys: Sequence[str]) -> Array:
@@ -373,9 +335,9 @@ def _sorted(points: Array, keys: Sequence[str]) -> Array:
     if arms and [keys[i].rpartition(".")[0] for i in times] == [
         keys[i].rpartition(".")[0] for i in others
     ]:
-        order = np.argsort(points[0, times])
+        order = np.argsort(points[:, times], axis=1)
         for own in (times, others):
-            points[:, own] = points[:, own][:, order]
+            points[:, own] = np.take_along_axis(points[:, own], order, axis=1)
     return points
 
 

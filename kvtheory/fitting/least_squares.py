@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 Array = NDArray[np.float64]
 Residuals = Callable[[Array], Array]
@@ -27,6 +28,8 @@ OPEN = math.log(2.0)
 """Standard error of a combination of unknowns (logarithms) from which the data do not tell it."""
 SHARE = 0.2
 """Part of an unknown in an open direction, over the largest, from which it belongs to it."""
+CONFIDENCE = 0.95
+"""Probability with which an interval holds the true value."""
 
 
 def slopes(
@@ -99,6 +102,11 @@ def descend(
     return points, cost
 
 
+def student(freedom: float) -> float:
+    """Return Student's t within which 95 % of the values are, at so many degrees of freedom, at least 1."""
+    return float(stdtrit(max(freedom, 1.0), 0.5 + 0.5 * CONFIDENCE))
+
+
 def covariance(slopes: Array) -> Array:
     """Return (J^T J)^-1, huge in directions of the unknowns that have no effect."""
     _, s, V = np.linalg.svd(slopes, full_matrices=False)
@@ -106,12 +114,16 @@ def covariance(slopes: Array) -> Array:
 
 
 class Fit(NamedTuple):
-    """The best unknowns, the residuals there, their slopes, and the effective number of residuals."""
+    """The best unknowns, the residuals there, their slopes, and the effective number of residuals.
+
+    `minima` are the unknowns of all minima that were found, in rows, the best one first.
+    """
 
     point: Array
     residuals: Array
     slopes: Array
     effective: float
+    minima: Array
 
     @property
     def freedom(self) -> float:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.fitting.records import plausible
 from kvtheory.fitting.spectrum import Array, Moduli
 from kvtheory.scene.columns import SPELLINGS, Reader, Table
 
@@ -38,6 +39,8 @@ DOUBTFUL = "Hz", "1/s", "s^-1"
 """Units that do: of an angular frequency, or of a frequency."""
 AGREE = 1e-3
 """Relative difference up to which a frequency and an angular frequency of one row are the same."""
+DIFFER = 0.1
+"""Relative difference from which a tan delta contradicts both moduli, beyond digits and rounding."""
 SPREAD, GAP = 2.0, 1.0
 """Largest spread of the temperatures of one sweep, and smallest gap to the next one, in K."""
 FEWEST = 4
@@ -75,13 +78,13 @@ def read(data: Any, modulus: str | None = None) -> Measured:
     dynamic = bool(set(FREQUENCIES) & set(table.columns))
     x = _angular_frequency(table) if dynamic else table.si("time", "s")[0]
     name = "time" if not dynamic else _first(table, FREQUENCIES)
-    table.require(name, x > 0.0, "is not above 0")
+    table.require(name, plausible(table, name, x) > 0.0, "is not above 0")
     rows, kind = _rows(table, dynamic, modulus)
     if "tan delta" in table and any(each in table for each in LOSS):
         notes.append("The loss modulus is used, and not tan delta.")
     temperature = np.full(x.size, np.nan)
     if "temperature" in table:
-        temperature = table.si("temperature", "K")[0]
+        temperature = plausible(table, "temperature", table.si("temperature", "K")[0])
         table.require("temperature", temperature > 0.0, "is not above absolute zero")
     sweeps = []
     for each in _by_temperature(table, temperature):
@@ -136,15 +139,22 @@ def _rows(table: Table, dynamic: bool, modulus: str | None) -> tuple[list[Array]
         kinds.add(kind)
         least = 0.0 if name in LOSS else np.nextafter(0.0, 1.0)
         table.require(name, values >= least, "is negative" if least == 0.0 else "is not above 0")
-        rows.append(values)
+        rows.append(plausible(table, name, values))
     if len(kinds) > 1:
         raise table.error(names[1], f"is not of the same kind as {names[0]}")
-    if dynamic and len(names) == 1:
-        loss = table.number("tan delta")
+    if dynamic and "tan delta" in table:
+        loss = plausible(table, "tan delta", table.number("tan delta"))
         table.require("tan delta", loss >= 0.0, "is negative")
         rows.append(rows[0] * loss)
     if dynamic and not rows[1].any():
         raise table.error(names[-1], "is zero throughout: without loss there is nothing to fit")
+    if len(rows) > 2:
+        seen = rows[1] > 0.0
+        ratio = float(np.median(rows[2][seen] / rows[1][seen]))
+        if abs(ratio - 1.0) > DIFFER:
+            several = f"is {ratio:.3g} times {names[1]} over {names[0]} (median of the rows)"
+            raise table.error("tan delta", f"{several}; leave out the column that is wrong")
+        del rows[2]
     return rows, kinds.pop()
 
 

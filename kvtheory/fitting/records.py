@@ -28,7 +28,7 @@ FEWEST_BINS, MOST_BINS, SPLITS = 64, 256, 16
 VISIBLE = 3.0
 """Standard errors from which the two halves of a bin differ visibly."""
 LARGEST = 1e30
-"""Largest number that is accepted as a measured one; squares of larger ones overflow."""
+"""Largest number, and one over the smallest, that is accepted as a measured one: squares do not overflow."""
 SAME_DRIVE = 0.05
 """Median difference of velocities from those of the scene, over the largest, up to which they agree."""
 
@@ -148,9 +148,23 @@ def read(data: Any, scene: Scene) -> Data:
     found = Data(table.source, conditions, measured, tuple(notes))
     if "time" in table:
         return _over_time(table, found, scene).averaged
-    if not np.any(conditions["drive.velocity"]):
+    if not np.any(V := conditions["drive.velocity"]):
         raise table.error("drive.velocity", "is zero throughout; friction needs sliding")
-    return found.thinned
+    if against := _against(table, measured, V):
+        notes.append(f"In {against} of {V.size} rows friction and velocity have opposite signs.")
+    return found._replace(notes=tuple(notes)).thinned
+
+
+def _against(table: Table, measured: Mapping[str, Array], V: Array) -> int:
+    """Return in how many rows friction has not the sign of the velocity; raise if it has in none."""
+    against = 0
+    for name in measured.keys() & set(FRICTION):
+        signs = np.sign(measured[name] * V)
+        if signs.min() < 0.0 and signs.max() <= 0.0:
+            told = "has the opposite sign of the velocity throughout"
+            raise table.error(name, f"{told}; expected friction with the sign of the velocity")
+        against = max(against, int(np.count_nonzero(signs < 0.0)))
+    return against
 
 
 def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Array]]:
@@ -187,18 +201,36 @@ def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Arra
 
 def _measured(table: Table, name: str, scene: Scene) -> Array:
     """Return a measured quantity in SI."""
-    plausible = np.abs(table.columns[name].values) < LARGEST
-    table.require(name, plausible, f"is not plausible; expected less than {LARGEST:g}")
     if name == "friction_coefficient":
-        return table.number(name)
+        return plausible(table, name, table.number(name))
     force = "N/m" if scene.indenter.per_width else "N"
-    values = table.si(name, "m" if name.endswith("depth") else force)[0]
+    values = plausible(table, name, table.si(name, "m" if name.endswith("depth") else force)[0])
     return -values if name.startswith("-") else values
+
+
+def plausible(table: Table, name: str, values: Array) -> Array:
+    """Return the values of a column in SI, or raise at the first one of a size that nothing measured has."""
+    size = np.abs(values)
+    good = (size == 0.0) | ((size > 1.0 / LARGEST) & (size < LARGEST))
+    told = f"is not plausible; expected a size from {1.0 / LARGEST:g} to {LARGEST:g} in SI units"
+    table.require(name, good, told)
+    return values
+
+
+def largest_speed(scene: Scene, time: Array) -> float:
+    """Return the largest speed of the drive during a time series."""
+    drive = scene.drive
+    if drive.function is None:
+        return max(abs(V) for _, V in drive.points)
+    return max(abs(drive.called(t)) for t in time.tolist())
 
 
 def _over_time(table: Table, data: Data, scene: Scene) -> Data:
     """Return a time series from t = 0 on; the drive must be that of the scene."""
-    time, drive = table.si("time", "s")[0], scene.drive
+    time, drive = plausible(table, "time", table.si("time", "s")[0]), scene.drive
+    if not largest_speed(scene, time) > 0.0:
+        told = "`drive` of the scene is at rest throughout; friction needs sliding"
+        raise ValueError(f"{table.source}: {told}")
     table.require("time", np.append(True, np.diff(time) > 0.0), "does not follow the time before")
     if "drive.velocity" in table and drive.function is None:
         V = table.si("drive.velocity", "m/s")[0]
@@ -212,5 +244,7 @@ def _over_time(table: Table, data: Data, scene: Scene) -> Data:
         raise table.error("time", "is before t = 0, where sliding begins, throughout")
     if first:
         notes.append(f"{first} rows before t = 0, where sliding begins, are not used.")
+    if drive.function is None:
+        _against(table, data.measured, np.interp(time, *np.array(drive.points).T))
     measured = {name: values[first:] for name, values in data.measured.items()}
     return data._replace(measured=measured, notes=tuple(notes), time=time[first:])

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import curve_fit, minimize_scalar
 
 from kvtheory.fitting.moduli import Sweep
+from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli
 from kvtheory.scene.columns import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT
@@ -89,14 +90,15 @@ class Shifted(NamedTuple):
 def read_factors(data: Any) -> tuple[Array, Array]:
     """Return temperatures in K and log10 a_T of a file; one of them is the reference, with a_T = 1."""
     table = SHIFTS.read(data)
-    T = table.si("temperature", "K")[0]
+    T = plausible(table, "temperature", table.si("temperature", "K")[0])
     if "log10 a_T" in table:
         log_shift = table.number("log10 a_T")
     else:
         a_T = table.number("a_T")
         table.require("a_T", a_T > 0.0, "is not above 0")
         log_shift = np.log10(a_T)
-    order = np.argsort(T)
+    name, most = ("log10 a_T" if "log10 a_T" in table else "a_T"), math.log10(LARGEST)
+    order, small = np.argsort(T), np.abs(log_shift) <= most
     T, log_shift = T[order], log_shift[order]
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
@@ -106,6 +108,7 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     if np.abs(log_shift).min() > 1e-6:
         told = "holds no temperature with a_T = 1, the reference"
         raise ValueError(f"{table.source}: {told}")
+    table.require(name, small, f"is not plausible; expected log10 a_T from {-most:g} to {most:g}")
     return T, log_shift
 
 

@@ -34,7 +34,8 @@ HTML_VERDICTS = {
 """Colours of text and background, and the verdict in a sentence."""
 EXPLANATIONS = """<h2>Possible explanations</h2>
 <div class="wide"><table>
-<thead><tr><th>fault</th><th>explains</th><th>enough</th><th>description</th></tr></thead><tbody>
+<thead><tr><th>fault</th><th class="number">explains</th><th>enough</th><th>description</th></tr></thead>
+<tbody>
 {}
 </tbody></table></div>"""
 ALLOWANCES = (

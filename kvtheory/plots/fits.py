@@ -63,8 +63,11 @@ def _sweeps(ax: Any, fit: FoundationFit) -> None:
         for row, mark in zip(sweep.moduli.values, MARKS, strict=False):
             y = row * factor * fit.data["factor"]
             ax.loglog(sweep.moduli.x * x_factor, y, mark, color=colour, markersize=2.5)
-    low, high = (sweeps[i].temperature - ZERO_CELSIUS for i in (0, -1))
-    title = f"measured at {low:.3g} to {high:.3g} °C (light)"  # a legend would hide data
+    for name, mark in zip(names, MARKS, strict=False):
+        ax.plot([], [], mark, color=BLACK, markersize=2.5, label=name)
+    ax.legend()
+    low, high = (round(sweeps[i].temperature - ZERO_CELSIUS, 1) + 0.0 for i in (0, -1))
+    title = f"measured at {low:g} to {high:g} °C (light)"
     ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title=title)
 
 
@@ -135,23 +138,26 @@ def _shifts(ax: Any, fit: FoundationFit) -> None:
 def draw_friction_fit(fit: FrictionFit) -> Picture:
     """Return the picture: measured and fitted values over velocity or time, and the residuals."""
     rows = [
-        (data, name, fitted[name])
-        for data, fitted in zip(fit.data["sets"], fit.data["fitted"], strict=True)
+        (data, name, fitted[name], 100.0 * residuals[name])
+        for data, fitted, residuals in zip(
+            *(fit.data[each] for each in ("sets", "fitted", "residuals")), strict=True
+        )
         for name in data.measured
     ]
     figure = Picture(WIDTH, (HEIGHT + 0.4) * len(rows))
     axes = figure.subplots(len(rows), 2, squeeze=False)
-    for (over, rest), (data, name, fitted) in zip(axes, rows, strict=True):
-        (_over_velocity if data.time is None else _over_time)(fit, data, name, fitted, over, rest)
+    for (over, rest), (data, name, fitted, off) in zip(axes, rows, strict=True):
+        if data.time is None:
+            _over_velocity(fit, data, name, off, over, rest)
+        else:
+            _over_time(fit, data, name, fitted, off, over, rest)
         rest.axhline(0.0, color=BLACK, linewidth=0.8)
+        rest.set_title(f"residuals, RMS {math.sqrt(float((off * off).mean())):.3g} %")
     axes[0, 0].set_title(f"data and fit of {fit.model}")
-    axes[0, 1].set_title(f"residuals, RMS {fit.misfit:.2%}")
     return figure
 
 
-def _over_velocity(
-    fit: FrictionFit, data: Any, name: str, fitted: Any, over: Any, rest: Any
-) -> None:
+def _over_velocity(fit: FrictionFit, data: Any, name: str, off: Any, over: Any, rest: Any) -> None:
     """Draw rows with equal conditions but the velocity as a curve."""
     V = np.abs(data.conditions["drive.velocity"])
     others = {key: values for key, values in data.conditions.items() if key != "drive.velocity"}
@@ -175,22 +181,21 @@ def _over_velocity(
             state = fit.data["solve"](fit.scene.replace(where))
             line = np.broadcast_to(getattr(state, name), curve.shape)
             over.plot(curve * x_factor, line * factor, color=colour, linewidth=1.0)
-        with np.errstate(all="ignore"):
-            off = (fitted[own] / data.measured[name][own] - 1.0) * 100.0
-        rest.plot(V[own] * x_factor, off, "o", color=colour, markersize=3)
+        rest.plot(V[own] * x_factor, off[own], "o", color=colour, markersize=3)
     over.set(xscale="log", xlabel=x_label, ylabel=label)
-    rest.set(xscale="log", xlabel=x_label, ylabel="fit minus data [%]")
+    rest.set(xscale="log", xlabel=x_label, ylabel="fit minus data\n[% of geometric mean]")
     if len(sets) > 1:
         over.legend()
 
 
-def _over_time(fit: FrictionFit, data: Any, name: str, fitted: Any, over: Any, rest: Any) -> None:
+def _over_time(
+    fit: FrictionFit, data: Any, name: str, fitted: Any, off: Any, over: Any, rest: Any
+) -> None:
     measured = data.measured[name]
     label, factor = style.label(name, fit.data["units"][name])
     x_label, x_factor = LABELS["time"]
     over.plot(data.time * x_factor, measured * factor, "o", color=BLUE, markersize=2, alpha=0.5)
     over.plot(data.time * x_factor, fitted * factor, color=BLACK, linewidth=1.0)
-    off = 100.0 * (fitted - measured) / np.sqrt(np.mean(measured**2))
     rest.plot(data.time * x_factor, off, "o", color=BLUE, markersize=2, alpha=0.5)
     over.set(xlabel=x_label, ylabel=label)
     rest.set(xlabel=x_label, ylabel="fit minus data [% of its RMS]")

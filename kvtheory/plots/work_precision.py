@@ -19,9 +19,9 @@ LEAST = 1e-17
 """Smaller errors are drawn at this value."""
 GREY, OCHRE, SKY = "#777777", "#b8860b", "#56b4e9"
 LOOKS = {
-    "asymptote": (BLACK, "D"), "slow manifold": (BLACK, "D"),
-    "exact": (BLUE, "o"), "exact, 10 000 at once": (BLUE, "s"), "quadrature": (OCHRE, "o"),
-    "brentq over quad": (RED, "^"),
+    "asymptote": (BLACK, "v"), "slow manifold": (BLACK, "D"),
+    "exact": (PURPLE, "o"), "exact, 10 000 at once": (PURPLE, "s"), "quadrature": (OCHRE, "o"),
+    "brentq over quad": (RED, "o"),
     "continuum, compiled": (BLUE, "o"), "continuum, interpreted": (SKY, "o"),
     "two states, RK45": (RED, "^"), "two states, DOP853": (RED, "v"), "two states, Radau": (OCHRE, "^"),
     "two states, BDF": (OCHRE, "v"), "two states, LSODA": (PURPLE, "^"), "two states, CVODE": (PURPLE, "v"),
@@ -30,7 +30,7 @@ LOOKS = {
     "elements, semi-implicit": (GREEN, "s"), "elements, exponential": (GREEN, "D"),
     "elements, edge-corrected": (GREEN, "o"), "elements in C, paper": (BLACK, "s"),
 }  # fmt: skip
-"""Colour and marker of each method."""
+"""Colour and marker of each method, which no other has."""
 SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “success”"}
 """Short forms of the reasons that are too long for the rail."""
 

@@ -136,13 +136,15 @@ class Parameter(NamedTuple):
     """A fitted quantity of a scene, in SI, and its standard error.
 
     `interval` is that of 95 % confidence, by the profile of the sum of squares; a limit that the data do not
-    give is 0 or infinite. The standard error is that of linear theory at the minimum, or the longer side of
-    the interval over Student's t where that is larger.
+    give is 0 or infinite. Where the sum of squares has a second minimum that the data allow as well, the
+    set of 95 % may have more pieces, `other_intervals`. The standard error is that of linear theory at the
+    minimum, or the longer side of the interval over Student's t where that is larger.
     """
 
     value: float
     standard_error: float
     interval: tuple[float, float]
+    other_intervals: tuple[tuple[float, float], ...] = ()
 
 
 class WeighedModel(NamedTuple):
@@ -162,8 +164,9 @@ class FrictionFit(_Fit):
     `parameters` maps keys of the scene to `value` and `standard_error`, in SI; `correlations` is the matrix
     of the correlations of their logarithms, in the same order. `not_identifiable` lists the keys that the
     data cannot tell, or cannot tell apart: a combination of them is uncertain by more than a factor of two.
-    `misfit` is the root mean square of the relative residuals. `models` are the foundations that were
-    weighed. `scene` is the scene with the fitted values.
+    `misfit` is the root mean square of the residuals, over velocity relative to the geometric mean of the
+    measured and the fitted value, over time to the root mean square of what is measured. `models` are the
+    foundations that were weighed. `scene` is the scene with the fitted values.
     """
 
     heading = "# A scene whose quantities were fitted to measured friction"
@@ -177,7 +180,7 @@ class FrictionFit(_Fit):
     notes: tuple[str, ...] = ()
     scene: Scene = field(default_factory=Scene, repr=False)
     data: Any = field(default=None, repr=False, compare=False)
-    """Conditions, measured and fitted quantities by name, and units."""
+    """Conditions, measured and fitted quantities and relative residuals by name, and units."""
 
     @property
     def remarks(self) -> list[str]:
@@ -199,9 +202,9 @@ class FrictionFit(_Fit):
                 f"{error:.2g}",
                 specs[key].unit,
                 f"{error / value:.2g}",
-                f"{low:.4g} to {high:.4g}",
+                " or ".join(f"{low:.4g} to {high:.4g}" for low, high in (own, *others)),
             )
-            for key, (value, error, (low, high)) in self.parameters.items()
+            for key, (value, error, own, others) in self.parameters.items()
         ]
         heads = "quantity", "value", "standard error", "unit", "relative", "95 % interval"
         lines = aligned(heads, rows)

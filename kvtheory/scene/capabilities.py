@@ -185,7 +185,8 @@ IN_MOTION = (
 def lacks_one_scene(scene: Scene) -> str:
     """Return why a function for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
-    return f"is for one scene, not for arrays ({keys}); use `sweep`, or one value" if keys else ""
+    told = "use `sweep`, or give one value of each (--set KEY=VALUE)"
+    return f"is for one scene, not for arrays ({keys}); {told}" if keys else ""
 
 
 def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:

@@ -116,7 +116,7 @@ MEANT = {
 """Names by their symbols and synonyms, which similarity of spelling would not find."""
 
 
-MOST_LISTED = 50
+MOST_LISTED = 20
 """Most names that a message lists."""
 
 

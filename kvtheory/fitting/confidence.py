@@ -1,0 +1,128 @@
+"""The values of fitted unknowns that the data allow: the profile of the sum of squares over each of them.
+
+Allowed are values at which the sum of squares, minimized over the other unknowns, is at most as much above
+its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t). Each minimum that
+is low enough lies in an interval of them; intervals that overlap are one, the others are pieces apart.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.fitting.friction import Problem
+from kvtheory.fitting.least_squares import Fit, covariance, student, updated
+
+Array = NDArray[np.float64]
+Places = NDArray[np.int_]
+
+NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
+"""Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
+rise of the sum of squares there, and the relative change of a diagonal that keeps equations solvable."""
+
+
+def intervals(problem: Problem, found: Fit) -> list[list[tuple[float, float]]]:
+    """Return the pieces of 95 % of ln of each unknown, that of the best fit first; limits may be infinite."""
+    errors = np.maximum(np.sqrt(np.diag(found.covariance)), problem.step**2)
+    least = float(found.residuals @ found.residuals)
+    linear = np.diag(covariance(found.slopes))
+    rise = (student(found.freedom) * errors) ** 2 / linear
+    sums = np.sum(problem.residuals(found.minima) ** 2, axis=1)
+    sums[0] = least
+    place, own = np.nonzero(sums[:, None] <= least + rise)
+    limits = _limits(problem, found, place, own, least, rise)
+    return [_joined(limits[own == i], float(best)) for i, best in enumerate(found.point)]
+
+
+def others(
+    problem: Problem, found: Fit, limits: Sequence[Sequence[tuple[float, float]]]
+) -> list[str]:
+    """Return a note on each minimum in other pieces than the best fit: its values, and how good it is."""
+    specs, notes, told = problem.scene.replaceable, [], set()
+    sums = np.sum(problem.residuals(found.minima) ** 2, axis=1)
+    for point, total in zip(found.minima, sums, strict=True):
+        place = tuple(
+            next((k for k, (low, high) in enumerate(pieces) if low <= y <= high), 0)
+            for y, pieces in zip(point.tolist(), limits, strict=True)
+        )
+        if any(place) and place not in told:
+            told.add(place)
+            values = ", ".join(
+                f"{key} = {value:.3g} {specs[key].unit}".removesuffix(" 1")
+                for key, value in zip(problem.keys, np.exp(point), strict=True)
+            )
+            worse = f"with a sum of squares {total / sums[0]:.3g} times the least"
+            notes.append(f"The data allow another fit, {worse}: {values}.")
+    return notes
+
+
+def _joined(spans: Array, best: float) -> list[tuple[float, float]]:
+    """Return intervals of which those that overlap are joined, the one that holds a value first."""
+    whole: list[tuple[float, float]] = []
+    for low, high in sorted(map(tuple, spans.tolist())):
+        if whole and low <= whole[-1][1]:
+            whole[-1] = whole[-1][0], max(whole[-1][1], high)
+        else:
+            whole.append((low, high))
+    return sorted(whole, key=lambda span: not span[0] <= best <= span[1])
+
+
+def _limits(
+    problem: Problem, found: Fit, place: Places, own: Places, least: float, rise: Array
+) -> Array:
+    """Return the limits of unknowns `own` around the minima at `place`, or infinity.
+
+    Venzon and Moolgavkar (1988).
+    """
+    size, (low, high) = found.point.size, problem.limits
+    pairs = place.size
+    place, own, side = np.tile(place, 2), np.tile(own, 2), np.repeat([-1.0, 1.0], pairs)
+    wanted, limits = least + rise[own], side * np.inf
+    points = found.minima[place]
+    active = np.full(2 * pairs, True)
+    if problem.costly:
+        last, last_r = points.copy(), problem.residuals(found.minima)[place]
+        last_J = problem.slopes(found.minima)[place]
+    for _ in range(NEWTON):
+        at = np.flatnonzero(active)
+        if not at.size:
+            break
+        i, r = own[at], problem.residuals(points[at])
+        if problem.costly:
+            J = updated(last_J[at], r - last_r[at], points[at] - last[at])
+            last[at], last_r[at], last_J[at] = points[at], r, J
+        else:
+            J = problem.slopes(points[at])
+        rows = np.arange(at.size)
+        H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
+        stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))
+        moves = ~stuck & (np.arange(size) != i[:, None])
+        rest = H * moves[:, :, None] * moves[:, None]
+        own_rise = np.einsum("sii->si", H)
+        rest += np.eye(size) * np.where(moves & (own_rise > 0.0), RIDGE * own_rise, 1.0)[:, None]
+        others = np.stack([g, H[rows, :, i]], axis=-1) * moves[..., None]
+        inner = np.linalg.solve(rest, others)  # of the other unknowns, at a given one
+        a = H[rows, i, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 1])
+        b = g[rows, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 0])
+        total = np.einsum("sn,sn->s", r, r)
+        c = total - np.einsum("sj,sj->s", others[..., 0], inner[..., 0]) - wanted[at]
+        a = np.maximum(a, RIDGE * H[rows, i, i] + np.finfo(float).tiny)
+        move = (-b + side[at] * np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
+        step = -inner[..., 0] - inner[..., 1] * move[:, None]
+        step[rows, i] = move
+        off = np.maximum(np.abs(total - wanted[at]), np.abs(c + wanted[at] - total))
+        closed = off < CLOSE * rise[i]
+        limits[at[closed]] = points[at, i][closed]
+        step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None]
+        points[at] = np.clip(points[at] + step, low, high)
+        out = (points[at, i] <= low[i]) | (points[at, i] >= high[i])
+        active[at[closed | out]] = False
+    return limits.reshape(2, pairs).T
+
+
+def standard_errors(found: Fit, limits: Sequence[Sequence[tuple[float, float]]]) -> Array:
+    """Return relative standard errors: linear ones, or the longer side of 95 % over Student's t."""
+    linear = np.sqrt(np.diag(found.covariance))
+    nearest = np.array([pieces[0] for pieces in limits])
+    sides = np.abs(np.expm1(nearest - found.point[:, None])).max(axis=1) / student(found.freedom)
+    return np.where(np.isfinite(sides), np.maximum(sides, linear), linear)
