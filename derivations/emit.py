@@ -172,8 +172,11 @@ FORMS += (
     *(
         Form(f"springpot_{name}", "F17-springpot", moment, (_rest,),
              f"the moment {str(moment)[0]} of a springpot of order 1 - nu_v, times nu_v", times=_rest)
-        for moment, name in _NAMES.items()
+        for moment, name in list(_NAMES.items())[:3]
     ),
+    Form("springpot_twist", "F17-springpot", sym.moment_twist, (_rest,),
+         "the moment E of a springpot of order 1 - nu_v, times nu_v/(1 - nu_v)",
+         times=_rest / (1 - _rest)),
 )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
     """Raise unless a file of this name can be written, judging by its name and directory.
 
     `ValueError` if the suffix is none of these, in upper or lower case, or xarray is missing; `OSError` if
-    there is no such directory, or the name is that of a directory.
+    there is no such directory, if it is read-only, or if the name is that of a directory.
     """
     if path.suffix.lower() not in suffixes:
         expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))
@@ -59,6 +60,8 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
         xarray()
     if not path.parent.is_dir():
         raise OSError(f'"{path}": there is no directory "{path.parent}"')
+    if not os.access(path.parent, os.W_OK):
+        raise OSError(f'"{path}" cannot be written: the directory "{path.parent}" is read-only')
     if path.is_dir():
         raise OSError(f'"{path}" is a directory; expected the name of a file')
 
@@ -71,7 +74,10 @@ def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
 def replace_files(writers: Mapping[Path, Callable[[Path], Any]]) -> None:
     """Write several files as `replace_file` does: all of them or, if one cannot be written, none."""
     parts = {
-        path: path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}") for path in writers
+        path: path.with_name(
+            f".{path.stem}.{uuid4().hex[:12]}.part{path.suffix}"
+        )  # one for each call
+        for path in writers
     }
     path = Path()
     try:

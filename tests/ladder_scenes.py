@@ -74,13 +74,13 @@ def steady_case(rng, ball=False):
 
 
 def shape_case(rng):
-    """Draw another shape under a given depth or load, over four decades of drive number."""
+    """Draw another shape under a given depth or load, over eight decades of drive number."""
     shape = (
         kv.Circle(1.0),
         kv.Wedge(inclination=float(rng.uniform(0.05, 0.5))),
         kv.PowerLaw(length=1.0, exponent=float(rng.uniform(1.5, 4.0))),
     )[rng.integers(3)]
-    V = 10 ** rng.uniform(-2, 2)
+    V = 10 ** rng.uniform(-4, 4)
     support = (kv.Fixed(0.01), kv.DeadWeight(mass=1e-3, gravity=1.0))[rng.integers(2)]
     scene = kv.Scene(shape, kv.Foundation(1.0, 1.0), support, kv.Drive(0.1 * V))
     names = ("depth", "load", "friction_force", "friction_coefficient")
@@ -213,7 +213,9 @@ def _in_si(case, found):
 
 def cheaper_would_do(case, model):
     """Whether a cheaper rung than the one that answered was within the tolerance after all."""
-    if case.kind == "steady" and model != "asymptote":
+    if case.kind in ("steady", "other shape") and model != "asymptote":
+        if case.scene.indenter.shape == "circle":
+            return False
         regimes = ("low", "high") if case.scene.drive.velocity else ("low",)
         return any(
             true_error(case, asymptote.values(case.scene, regime, case.names), "asymptote")

@@ -250,3 +250,20 @@ def test_a_processor_that_flushes_subnormal_numbers_changes_nothing():
         for name, (value, error) in values.items():
             other, stated = there[scene][name]
             assert abs(other - value) <= (error + stated) * abs(value), (scene, name)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_whether_the_trailing_edge_is_at_a_corner_is_judged_on_its_own_side(side):
+    """A wedge to the left; to the right all but one, whose edge is beyond the range of double precision."""
+    n, L = 1.001, 0.01
+
+    def height(x):
+        return -0.1 * x if x < 0.0 else 0.1 * L / n * (x / L) ** n
+
+    def slope(x):
+        return -0.1 if x < 0.0 else 0.1 * (x / L) ** (n - 1.0)
+
+    state = at_depth(Profile(height, slope, kinks=(0.0,)), 1.0, 1.0, side, 1e-4)
+    error = state.certificate.relative_error["trailing_edge"]
+    assert state.trailing_edge == 0.0
+    assert error == math.inf if side > 0.0 else error < 1e-14

@@ -239,3 +239,10 @@ def test_the_bound_of_kelvin_voigt_is_not_idle():
     scene = of(kv.Parabola(0.01), "dead-weight", kv.GeneralizedMaxwell(1e10, arms=[[1e13, 1e-5]]))
     proved = reported(scene, 0.01).lines[1].velocity_proved
     assert 0.002 < errors(scene, regimes.lines(scene)[1], proved) < 0.01
+
+
+def test_what_leaves_double_precision_names_a_key():
+    soft = kv.FractionalKelvinVoigt(1e10, 0.1, 1e-6)
+    support = kv.Suspended(mass=1000.0, stiffness=3e7)
+    with pytest.raises(ValueError, match=r"double precision: .*check foundation\.order = 1e-06"):
+        kv.asymptotes(kv.Scene(foundation=soft, support=support))

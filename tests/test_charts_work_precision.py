@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.charts import methods
+from kvtheory.charts import methods, naive
 from kvtheory.charts.collection import chosen, measure
 from kvtheory.charts.methods import transient_methods
 from kvtheory.charts.problems import (
@@ -292,3 +292,21 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
 
     measure([job, job], quick=True, progress=lambda *report: reports.append(report))
     assert reports == [(0.25, "half"), (0.75, "half")]
+
+
+def test_a_run_that_is_not_finite_has_not_converged():
+    one = problem("table-1")
+    right = one.reference()
+    nothing = Curves(*(np.full_like(each, math.nan) for each in right.solution))
+    assert one.assess(nothing, right, 1e-6)[1] == "not converged"
+    assert one.assess(right.solution, right, 1e-6)[1] == ""
+
+
+def test_the_evaluations_of_all_pieces_are_counted():
+    def solve(law, ends, y, s, method, rtol):
+        return np.ones((2, s.size + 1)), 7
+
+    pieces = [(0.0, 1.0, 0.5), (1.0, 2.0, 0.0)]
+    law_of = lambda number: None  # noqa: E731
+    _, count = naive.without_memory(pieces, np.array([0.5, 1.5]), law_of, "any", 1e-6, solve)
+    assert count == 14

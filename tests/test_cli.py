@@ -6,9 +6,11 @@ import shlex
 import subprocess
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -119,6 +121,8 @@ load = ["1 N", "2 N"]
 [drive]
 velocity = "1 mm/s:1 m/s:2:log"
 """
+CASES = [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
+"""Radius, stiffness of the first arm, load and velocity of both scenes."""
 
 
 def test_a_scene_of_arrays_is_many_scenes(place):
@@ -128,8 +132,7 @@ def test_a_scene_of_arrays_is_many_scenes(place):
     path.write_text(kv.to_toml(scene), encoding="utf-8")
     assert kv.load_scene(path) == scene
     forces = printed("steady", "many.toml")["friction_force"]
-    cases = [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
-    for force, (radius, glassy, load, velocity) in zip(forces, cases, strict=True):
+    for force, (radius, glassy, load, velocity) in zip(forces, CASES, strict=True):
         rubber = kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)])
         one = kv.Scene(kv.Sphere(radius), rubber, kv.DeadWeight(load=load), kv.Drive(velocity))
         assert force == kv.steady(one).friction_force
@@ -140,15 +143,48 @@ def test_a_scene_of_arrays_is_many_scenes(place):
     assert table.read_text("utf-8").startswith(",".join([*keys, "drive.velocity [m/s],depth [m]"]))
 
 
+def test_a_check_shows_the_numbers_of_many_scenes_in_their_shape(place):
+    path, ones = place / "many.toml", []
+    path.write_text(ARRAYS, encoding="utf-8")
+    for radius, glassy, load, velocity in CASES:
+        rubber = kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)])
+        one = kv.Scene(kv.Sphere(radius), rubber, kv.DeadWeight(load=load), kv.Drive(velocity))
+        (place / "one.toml").write_text(kv.to_toml(one), encoding="utf-8")
+        ones.append(printed("scene", "one.toml"))
+    found = printed("scene", "many.toml")
+    for name, both in {name: [one[name] for one in ones] for name in ones[0]}.items():
+        assert np.array_equal(found[name], both) or found[name] == both[0] == both[1], name
+    lines = dict(
+        line.split("  ", 1)
+        for line in run("scene", "many.toml").stdout.splitlines()
+        if "  " in line
+    )
+    assert lines["radius"].strip() == "0.01 … 0.02"
+    assert "2 scenes; sphere" in run("scene", "many.toml").stdout
+    law = ["temperature", "reference_temperature"]
+    thermal = [f"foundation.{key}=20 degC" for key in law] + [
+        "foundation.activation_energy=80 kJ/mol"
+    ]
+    thermal[0] = 'foundation.temperature=["20 degC", "30 degC"]'
+    warm = printed("scene", *(part for each in thermal for part in ("--set", each)))
+    assert warm["shift_factor"] == pytest.approx([1.0, 0.33868], rel=1e-5)
+
+
 def test_commands_take_ranges_and_refuse_them_over_time():
     many = ("--set", "drive.velocity=1 mm/s:1 m/s:50:log")
     lines = run("steady", *many).stdout.splitlines()
     assert "21 of 50 scenes; --json prints all" in lines
     assert [line.split()[0] for line in lines[3:24:10]] == ["0.001", "0.0294705", "1"]
+    few = run("steady", "--set", "drive.velocity=1 mm/s:1 m/s:31:log").stdout.splitlines()
+    assert [line.split()[0] for line in few[3:35:30]] == ["0.001", "1"]
+    assert not any("of 31 scenes" in line for line in few)
+    pair = "stability", "--set", "drive.velocity=91 mm/s", "--set", "drive.stiffness=1 MN/m^2"
+    rates = [line.split()[:2] for line in run(*pair).stdout.splitlines()[-5:-2]]
+    assert [frequency for _, frequency in rates] == ["4.85237", "0", "0"]
     stable = run("stability", *many, "--set", "drive.stiffness=1 MN/m^2").stdout
     assert stable.splitlines()[2].startswith("drive.velocity [m/s]  stable  critical_stiffness")
     assert "V = 1 … 1000 mm/s" in run("asymptotes", *many).stdout
-    for command in ("transient", "elements", "compare", "scene"):
+    for command in ("transient", "elements", "compare"):
         refused([command, *many], ["arrays (drive.velocity); use `sweep`"])
 
 
@@ -377,6 +413,30 @@ def test_names_with_signs_are_names_and_capital_endings_are_endings(place, stem)
     assert Path(f"{stem}-map.CSV").read_bytes().startswith(b"# kvtheory sweep")
 
 
+def test_a_read_only_directory_is_refused_before_the_work_by_the_name_of_the_file(
+    place, monkeypatch
+):
+    monkeypatch.setattr(os, "access", lambda path, mode: mode != os.W_OK)
+    for command in (["transient", *SHORT], ["sweep", *OVER]):
+        told = refused([*command, "-o", "a.csv"], ['"a.csv" cannot be written', "read-only"])
+        assert ".part" not in told
+
+
+def test_threads_may_write_one_file(place):
+    state = kv.steady(over={"drive.velocity": np.geomspace(0.01, 1.0, 50)})
+    with ThreadPoolExecutor(10) as pool:
+        list(pool.map(lambda _: state.to_csv("a.csv"), range(50)))
+    assert [path.name for path in place.iterdir()] == ["a.csv"]
+
+
+def test_an_epoch_that_is_no_time_costs_one_message(place, monkeypatch):
+    for epoch in ("x", "9" * 30):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+        refused(["steady", "--plot", "a.svg"], ["SOURCE_DATE_EPOCH", epoch[:20], "whole number"])
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1")
+    run("steady", "--plot", "a.svg")
+
+
 # Streams
 
 
@@ -426,3 +486,25 @@ def test_warnings_read_as_messages():
     run("cite")
     shown = warnings.formatwarning("compiled anew", RuntimeWarning, "x.py", 1)
     assert shown == "kvtheory: warning: compiled anew\n"
+
+
+INTERRUPTED = """
+import builtins, sys
+import kvtheory.__main__ as entry
+assert "numpy" not in sys.modules and "typing" not in sys.modules  # whose imports could be interrupted
+genuine = builtins.__import__
+def stopped(name, *rest, **how):
+    if name == "numpy":
+        raise KeyboardInterrupt
+    return genuine(name, *rest, **how)
+builtins.__import__ = stopped
+entry.command()
+"""
+
+
+def test_an_interrupt_during_the_imports_is_a_message_too():
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", INTERRUPTED], capture_output=True, text=True, check=False,
+        env={"PATH": os.defpath, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "kvtheory: interrupted\n")

@@ -387,6 +387,12 @@ def test_bad_arguments(options, words):
         assert word in str(error.value)
 
 
+def test_a_ball_of_too_many_strips_is_refused_before_it_is_made():
+    plate = kv.Sphere(3e15, radius_across=9e29)
+    with pytest.raises(ValueError, match=r"give `per_length`, expected .* 8 to 4898 elements"):
+        kv.elements(kv.Scene(plate, support=kv.DeadWeight(mass=1.0)), at=0.0)
+
+
 def test_the_papers_step_needs_motion():
     with pytest.raises(ValueError, match="infinite for a drive at rest: give a `time_step`"):
         kv.elements(sliding(0.0), scheme="paper")

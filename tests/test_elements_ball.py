@@ -143,3 +143,16 @@ def test_every_scheme_carries_a_ball_on_a_spring(scheme):
     rough, fine = (max(errors(run, truth, scene).values()) for run in runs[:2])
     assert fine < 0.15
     assert math.log2(rough / fine) > min(SCHEMES[scheme].row.order_in_time, 2) - 0.3
+
+
+def test_strips_are_weighed_by_the_contact_halfway_through_a_step():
+    """A sinking ball; edge-corrected weights end at its rim."""
+    scene = ball(GRIPS["dead-weight"])
+    model = Model.of(scene, 1e-4, parts=True)
+    c, h = model.constants, 2e-4
+    row = ElementRow(c, model.path(scene))
+    rate = 0.1 * c.depth / h
+    row.step(IndenterState(0.0, c.depth, rate), h)
+    rim = c.surface.stretch * kernels.extent(c.surface, c.depth + 0.5 * h * rate, 1.0)
+    expected = kernels.weigh(np.empty_like(row.stored.weights), c.across, rim)
+    np.testing.assert_array_equal(row.stored.weights, expected)

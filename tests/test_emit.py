@@ -121,6 +121,8 @@ def of_support(form):
 
 def of_places(form):
     for values in product(*(PLACES[symbol] for symbol in form.arguments)):
+        if form.name == "springpot_twist" and values == (1.0,):
+            continue  # of the order 0, over which it is taken
         yield dict(zip(form.arguments, values, strict=True)), None
 
 

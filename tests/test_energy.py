@@ -203,3 +203,25 @@ def test_the_maxima_lie_within_the_run():
     given = BaseMotion.constant(2.9076177602310533, 0.48166010429977285)
     motion = solve(given, 2.0784278908362998e-05, 0.0, given.end, 9.170774506742931e-05)
     assert force_maxima(motion) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("foundation", [None, kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)])])
+def test_times_and_places_are_read_as_everywhere(foundation):
+    own = {} if foundation is None else {"foundation": foundation}
+    run = kv.transient(kv.Scene(**own, run=kv.Run(5e-3)), certify=False)
+    assert run.energy("2 ms").work == run.energy(0.002).work > 0.0
+    for several in ("1 ms,2 ms", ["1 ms", 0.002], "1 ms:2 ms:2", np.array([0.001, 0.002])):
+        assert run.energy(several).work.tolist() == run.energy([0.001, 0.002]).work.tolist()
+    assert run.pressure("-1 mm", "2 ms") == run.pressure(-1e-3, 0.002) > 0.0
+    for far in (np.inf, -np.inf, 1e200):
+        assert run.surface(far, "2 ms") == run.pressure(far, "2 ms") == 0.0
+    for time in ([0.001, 0.002], "1 ms,2 ms"):
+        with pytest.raises(kv.SceneError, match=r"`time` = .*expected one time"):
+            run.surface(0.0, time)
+    for call in (run.energy, lambda time: run.pressure(0.0, time)):
+        with pytest.raises(kv.SceneError, match=r"`time` = .*masked"):
+            call(np.ma.masked_array(0.001, mask=True))
+        with pytest.raises(ValueError, match=r"`time` must lie in \[0, 0.005\] s"):
+            call("6 ms")
+    with pytest.raises(kv.SceneError, match=r"`x` = nan: holds what is not a number"):
+        run.surface(np.nan, 0.0)

@@ -152,6 +152,7 @@ CALLS = [
     (kv.transient, {"at": ["1 mm"]}, ["wrong dimension"]),
     (kv.transient, {"at": ["-1 ms"]}, ["out of range"]),
     (kv.transient, {"at": ["300 ms"]}, ["after the end"]),
+    (kv.transient, {"at": "300 ms:400 ms:30"}, ['`at` = "0.3 s": is after the end', "so are 29 more"]),
     (kv.transient, {"at": []}, ["empty"]),
     (kv.transient, {"at": [math.nan]}, ["out of range"]),
     *((kv.transient, {"rtol": each}, ["rtol"]) for each in (0.0, 1.0, math.nan, 1e-20)),

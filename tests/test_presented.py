@@ -174,3 +174,11 @@ def test_a_comparison_shows_itself(tmp_path):
         assert head.startswith('time [s],"depth, data [m]","depth, theory [m]","depth, allowed')
         assert len(rows) == 50
         assert found.as_dict().keys().isdisjoint({"series", "theory", "allowed", "units"})
+
+
+@pytest.mark.parametrize(("at", "title"), [
+    (["1 ms", "5 ms", "10 ms"], "Transient by continuum, 3 times up to 10 ms"),
+    (["2 ms"], "Transient by continuum, 1 times up to 2 ms"),
+])  # fmt: skip
+def test_the_title_of_a_series_tells_its_last_time(at, title):
+    assert str(kv.transient(at=at, certify=False)).splitlines()[0] == title

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum.prony import trajectory
+from kvtheory.models.continuum.prony import solved_scene, trajectory
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 
@@ -391,3 +391,18 @@ def test_compiled_kernels_give_the_same_numbers(monkeypatch):
     assert [each.compiled for each in found] == [False, True]
     assert apart(*found, scene) < 1e-12
     assert found[0].steps == found[1].steps
+
+
+def test_a_history_of_many_points_has_steps_for_each_and_is_compiled_at_once(monkeypatch):
+    corners = [(1e-4 * i, 0.05 + 0.001 * (i % 3)) for i in range(13)]
+    scene = kv.Scene(
+        foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]),
+        drive=kv.Drive(history=corners),
+        run=kv.Run(1.2e-3),
+    )
+    monkeypatch.setattr(solved_scene, "STEP_LIMIT", 0)
+    assert kv.transient(scene, at=[1.2e-3], certify=False).steps > 0
+    monkeypatch.setattr(trajectory.Tally, "steps", 0)
+    monkeypatch.setattr(trajectory.compilation, "available", lambda: True)
+    assert not trajectory.worthwhile()
+    assert trajectory.worthwhile(coming=trajectory.WORTHWHILE)

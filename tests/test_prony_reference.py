@@ -4,6 +4,7 @@ import functools
 import itertools
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from kvtheory.models.continuum.prony import evaluation as e_
 from kvtheory.models.continuum.prony.energy import volume
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
-from tests import SCENES
+from tests import SCENES, prony_reference
 from tests.prony_reference import DEPTH, LOAD, QUANTITIES, STIFFNESS, TABLE
+from tests.spring_random import of_unit_scales
 
 CASES = {case["name"]: case for case in json.loads(TABLE.read_text())}
 ALL = SCENES > 200
@@ -70,6 +72,66 @@ def test_values_agree_with_an_independent_program(name, rtol):
         assert largest <= 1e-8 + error
         assert largest <= certified[quantity] + 2.0 * error + 1e-12
         assert certified[quantity] <= 1e-6
+
+
+@pytest.mark.parametrize(
+    ("name", "tight"), [("reversal, fixed", 1e-9), ("spring and damper", 1e-6), ("hop", 1e-6)]
+)
+def test_pressure_surface_and_hops_are_certified(name, tight):
+    """Against a solution with a far smaller tolerance, in the contact and on the ground that it left."""
+    case = CASES[name]
+    scene, times = scene_of(case), np.array(case["time"])[[1, 3]]
+    found, truth = kv.transient(scene, at=times, rtol=1e-4), solved(name, tight)
+    claimed, at_rest = found.certificate.relative_error, StaticState.of(scene)
+    glassy = 1.0 + sum(arm.stiffness for arm in scene.foundation.arms) / STIFFNESS
+    for time in times.tolist():
+        state = truth.solution.series([time])
+        x = at_rest.half_length * np.linspace(-2.0, 2.0, 13)
+        off = np.abs(found.surface(x, time) - truth.surface(x, time)).max() / at_rest.depth
+        assert off <= claimed["surface"] < 1e-2
+        if np.isfinite(state["leading_edge"][0]):
+            edges = np.array([state["leading_edge"][0], state["trailing_edge"][0]])
+            x = edges @ [np.linspace(0.05, 0.95, 7), np.linspace(0.95, 0.05, 7)]
+            off = np.abs(found.pressure(x, time) - truth.pressure(x, time)).max()
+            assert off / at_rest.pressure <= claimed["pressure"] < 0.02 * glassy
+    here, there = (
+        np.array([event.time for event in each.events if event.kind in ("take-off", "landing")])
+        for each in (found, truth)
+    )
+    assert here.size == there.size == (2 if name == "hop" else 0)
+    if name == "hop":
+        off = np.abs(here - there).max() / scene.foundation.retardation_time
+        assert 0.0 < off <= claimed["jump_time"] < 1e-2
+    else:
+        assert claimed["jump_time"] == 0.0
+
+
+@pytest.mark.parametrize("fixed", [True, False])
+def test_pressure_and_surface_of_the_material_itself(fixed):
+    """A start and a reversal; the other program has both at any point of the material."""
+    V, turn, end, arms = 2.0, 0.3, 0.5, [(3.0, 0.2)]
+    drive = kv.Drive(history=[(0.0, V), (turn, V), (turn, -V), (end, -V)])
+    rubber = kv.GeneralizedMaxwell(0.75, arms=[(0.75 * k, T) for k, T in arms])
+    scene = replace(of_unit_scales(0.5, math.inf if fixed else 0.0, drive, end), foundation=rubber)
+    found = kv.transient(scene, rtol=1e-6)
+    pieces = [(0.0, 0.0, V, 0.0), (turn, V * turn, -V, 0.0)]
+    solver = prony_reference.Solver(arms, None if fixed else 0.5, 0.0, pieces, end, None, 0.1)
+    d, *_, left, right, _ = solver.run([end])[0]
+    ground, Y = solver.ground, V * (2.0 * turn - end)
+    x = np.concatenate([np.linspace(left, right, 9)[1:-1], np.linspace(right, right + 1.0, 7)[1:]])
+    pressed, u = np.zeros(x.size), d - x * x
+    for n, X in enumerate(x - Y):
+        j = int(np.searchsorted(ground.a, X)) - 1
+        held = ground.read(np.array([j]), np.array([[X]]))[:, 0]
+        if ground.i <= j < ground.k:
+            pressed[n] = u[n] + held.sum()
+        else:
+            u[n] = ground.u @ held
+    claimed = found.certificate.relative_error
+    assert pressed.max() > 0.5
+    assert u[-6:].max() > 0.05
+    assert np.abs(found.pressure(x, end) / 0.75 - pressed).max() <= claimed["pressure"] < 1e-3
+    assert np.abs(found.surface(x, end) - u).max() <= claimed["surface"] < 1e-4
 
 
 @pytest.mark.parametrize(("name", "rtol"), ROUGH_CASES + FINE_CASES)

@@ -1,5 +1,6 @@
 """Stability of steady sliding on a Prony series, against quadrature of its definition, and elements."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -248,3 +249,12 @@ def test_the_critical_velocity_is_where_the_stiffness_is_critical():
     found = kv.stability(rubber(ZENER, 0.05), quantity="critical_velocity")
     there = kv.stability(rubber(ZENER, found.critical_velocity), quantity=QUICK)
     assert there.critical_stiffness == pytest.approx(1e6, rel=1e-9)
+    assert found.certificate.relative_error["critical_velocity"] < 1e-12
+
+
+def test_a_critical_velocity_that_cannot_be_refined_has_no_certificate():
+    """Of a spring so soft that it is first unstable at the friction maximum, with no crossing just below."""
+    found = kv.stability(rubber(ZENER, 0.05, 1e-2), quantity="critical_velocity")
+    top = kv.stability(rubber(ZENER, 0.05, 1e-4), quantity="critical_velocity")
+    assert found.critical_velocity == pytest.approx(top.critical_velocity, rel=1e-7)
+    assert found.certificate.relative_error["critical_velocity"] == math.inf

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from kvtheory.scene.units import EXAMPLES, to_si
 from tests import REFUSALS
 
+FIVE_OVER_PI = 1.591549430918953357689
 EXACT = {
     "m": {"5 µm": 5e-06, "5 μm": 5e-06, "5um": 5e-06, "300 µm": 3e-4, "10 mm": 0.01, "1e-2 m": 0.01,
           ".5 m": 0.5},
@@ -21,6 +22,8 @@ EXACT = {
          "10 N / mm ^ 3", "10 N/(mm mm^2)"), 1e10),
     "kg/m": {"1 kg/mm": 1000.0}, "N/m^2": {"30 MPa": 3e7}, "s": {"100 ms": 0.1}, "1": {"3": 3.0},
     "m/s^2": {"9.80665 m/s^2": 9.80665},
+    "1/s": {"1.5 Hz": 1.5, "90 /min": 1.5, "90 rpm": 1.5, "1.5 cycle/s": 1.5, "1.5 turn/s": 1.5,
+            "540 deg/s": 1.5, "10 rad/s": FIVE_OVER_PI},
 }  # fmt: skip
 
 
@@ -63,6 +66,7 @@ def test_takes_pint_quantities_and_plain_si_numbers():
     assert to_si(registry.Quantity(5, "µm"), "m") == 5e-06
     assert to_si(registry.Quantity(10, "GN/m^3"), "N/m^3") == 1e10
     assert to_si(registry.Quantity(Decimal("0.1"), "kg/mm"), "kg/m") == 100.0
+    assert to_si(registry.Quantity(10, "rad/s"), "1/s") == FIVE_OVER_PI
     assert to_si(registry.Quantity(2.5), "1") == 2.5
     assert to_si(np.float32(0.5), "m") == 0.5
     assert to_si(3, "m") == 3.0

@@ -31,6 +31,28 @@ def test_a_waveform_is_followed_and_comes_back_from_its_file(name, tmp_path):
     assert bumpy.depth == pytest.approx(found.depth, abs=2e-3 * found.depth[0])
 
 
+@pytest.mark.parametrize("given", ["60 rpm", "360 deg/s", "1 cycle/s", f"{2 * math.pi!r} rad/s"])
+def test_a_frequency_counts_cycles_wherever_it_is_read(given, tmp_path):
+    one, crest = pytest.approx(1.0, rel=1e-15), 0.1 * math.sin(0.25 * math.pi)
+    assert kv.Sine(amplitude=0.1, frequency=given).frequency == one
+    path = tmp_path / "scene.toml"
+    wave = f'waveform = "sine"\namplitude = "0.1 m/s"\nfrequency = "{given}"'
+    path.write_text(kv.to_toml(kv.Scene()).replace('velocity = "0.1 m/s"', wave))
+    scene = kv.load_scene(path)
+    assert scene.drive.waveform.frequency == one
+    assert kv.transient(scene, at=0.125).velocity == pytest.approx(crest)
+    bumpy = kv.elements(scene, at=0.125, per_length="50 /mm", certify=False)
+    assert bumpy.velocity == pytest.approx(crest)
+    changed = kv.load_scene(path, [f"drive.frequency={given}"]).drive.waveform
+    assert changed.frequency == one
+    over = {"drive.frequency": f"{given}:{given}:2"}
+    assert scene.replace(over).drive.waveform.frequency == pytest.approx(1.0)
+    swept = kv.sweep(scene, over=over, at=0.125, quantities=["velocity"])
+    assert swept.axes[0].values["drive.frequency"] == pytest.approx(1.0)
+    measured = {"lowest_frequency": given, "highest_frequency": "2 Hz"}
+    assert kv.Foundation(1e10, 0.1, **measured).lowest_frequency == one
+
+
 def test_a_triangle_is_its_history():
     wave = kv.Triangle(amplitude=0.1, frequency=5.0, mean=0.02)
     corners = wave.points(0.2)

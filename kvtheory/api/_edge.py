@@ -9,7 +9,7 @@ import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
 from kvtheory.scene.foundations import beyond, extrapolates, thick_layer
-from kvtheory.scene.mistakes import SceneError, problem
+from kvtheory.scene.mistakes import mistake
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
 
@@ -29,12 +29,12 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
 
 
 def times_of(scene: Scene, at: list[float] | None) -> Any:
-    """Return the times in s, or None; those after the end of the run raise SceneError."""
-    late = f"is after the end of the run, run.duration = {scene.run.duration} s"
-    if found := [
-        problem("`at`", f"{time} s", late) for time in at or () if time > scene.run.duration
-    ]:
-        raise SceneError(found)
+    """Return the times in s, or None; those after the end of the run raise one SceneError."""
+    late = [time for time in at or () if time > scene.run.duration]
+    if late:
+        told = f"is after the end of the run, run.duration = {scene.run.duration} s"
+        told += f"; so are {len(late) - 1} more" * (len(late) > 1)
+        raise mistake("`at`", f"{late[0]} s", told)
     return at
 
 

@@ -21,7 +21,10 @@ def chart() -> None:
 
 
 @chart.command(example="kvtheory chart failures -o failures.html")
-@click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
+@click.option(
+    "--only", metavar="KEY,...", callback=console.names,
+    help="Entries to compute; default: all of them.",
+)  # fmt: skip
 @click.option(
     "-o", "--output", type=OutputFile(".html"),
     help="Write the atlas as one self-contained FILE.html.",
@@ -83,7 +86,7 @@ def stability(output: Path, quick: bool) -> None:
 )
 @console.scene_options
 @click.option(
-    "--standard", metavar="NAME,...",
+    "--standard", metavar="NAME,...", callback=console.names,
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip

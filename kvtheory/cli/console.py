@@ -12,14 +12,15 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
 
 LARGE_ERROR = 0.05
 """Relative to the static state: visible in any plot, and beyond the scatter of a good measurement."""
-ROWS = 20
-"""Approximate number of rows printed of a long table."""
+WHOLE, ROWS = 40, 20
+"""Most rows of a table that is printed whole; approximate number of rows printed of a longer one."""
 START_TIME = "kvtheory.begun"
 """Start time of a command, in the meta of its context."""
 
@@ -135,6 +136,14 @@ def split(text: str) -> list[str]:
     return [item.strip() for item in text.split(",") if item.strip()]
 
 
+def names(context: click.Context, option: click.Parameter, value: Any) -> Any:
+    """Refuse an option of comma-separated names that is given and names nothing; a callback."""
+    given = context.get_parameter_source(option.name or "") is ParameterSource.COMMANDLINE
+    if given and not all(map(split, value if isinstance(value, tuple) else [value])):
+        raise click.BadParameter("expected at least one name", context, option)
+    return value
+
+
 def text(value: Any, unit: str) -> str:
     """Return an SI value with the unit of the tables; a value that does not exist is a dash."""
     from kvtheory.results.presented import with_unit
@@ -168,7 +177,7 @@ def print_json(result: Any) -> None:
 
 
 def print_series(result: Any, *, whole: bool, remedy: str) -> None:
-    """Print a time series: every row, or about twenty; above it a large error, with its remedy.
+    """Print a time series: every row, or of many about twenty; above it a large error, with its remedy.
 
     Quantities that `solve` was not asked for are left out.
     """
@@ -196,7 +205,7 @@ def print_error(about: str, result: Any) -> None:
 
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
-    """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
+    """Print some quantities of many scenes: a row for each, or of many about twenty with both ends."""
     import numpy as np  # not needed for help texts
 
     held = {name: (getattr(result, name), unit) for name, unit in units.items()}
@@ -216,12 +225,12 @@ def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
 def _print_columns(
     columns: Mapping[str, tuple[Any, str]], count: int, *, whole: bool = False
 ) -> int:
-    """Print the rows of columns, or about twenty with both ends; return how many."""
+    """Print the rows of columns, or of many about twenty with both ends; return how many."""
     from kvtheory.results import SHOWN_UNITS
     from kvtheory.results.presented import in_shown_unit
 
     rows = range(count)
-    if count and not whole:
+    if count > WHOLE and not whole:
         rows = sorted({round(i * (count - 1) / ROWS) for i in range(ROWS + 1)})  # type: ignore[assignment]
     heads = [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, (_, unit) in columns.items()]
     print_table(

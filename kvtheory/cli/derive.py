@@ -43,7 +43,7 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
     help="Default: all; pdf where a LaTeX engine is found.",
 )  # fmt: skip
 @click.option(
-    "--only", default="", metavar="eq27,F3,...",
+    "--only", default="", metavar="eq27,F3,...", callback=console.names,
     help="Labels of the derivations to print, such as eq27, 27 or F3.",
 )  # fmt: skip
 @click.option("--closure", is_flag=True, help="Add all derivations that these depend on, in order.")

@@ -6,6 +6,7 @@ import sys
 import traceback
 import warnings
 from contextlib import suppress
+from datetime import UTC, datetime
 from importlib.resources import files
 from typing import Any
 
@@ -47,6 +48,7 @@ class Command(click.Command):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, and turn its errors into messages: bad input is status 2, never 1."""
         try:
+            check_epoch()
             check_outputs(ctx)
             return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit, BrokenPipeError):
@@ -69,6 +71,16 @@ class Command(click.Command):
         except Exception:
             report = f"internal error, please report it:\n{traceback.format_exc()}"
             raise Failure(report, INTERNAL_ERROR) from None
+
+
+def check_epoch() -> None:
+    """Raise `ValueError` for a SOURCE_DATE_EPOCH with which NumPy or matplotlib would fail."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "0")
+    try:
+        datetime.fromtimestamp(int(epoch), tz=UTC)
+    except (ValueError, OverflowError, OSError):
+        told = "expected a whole number of seconds since 1970"
+        raise ValueError(f'environment variable SOURCE_DATE_EPOCH = "{epoch}": {told}') from None
 
 
 class Group(click.Group):

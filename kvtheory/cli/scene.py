@@ -42,11 +42,14 @@ def scene(
 
     A check lists every mistake, or prints the quantities and the dimensionless numbers.
     """
+    import numpy as np  # not needed for help texts
+
     from kvtheory.api import steady
     from kvtheory.reference_problems import problem_text, problems
+    from kvtheory.results import record
+    from kvtheory.results.presented import value_range
     from kvtheory.scene import Drive, load_scene, template
     from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
-    from kvtheory.scene.static_state import StaticState
 
     given = bool(scene or overrides or as_json)
     if (problem and (given or support)) or (support and given):
@@ -74,7 +77,7 @@ def scene(
         key.replace(".", "_") if key in AMBIGUOUS else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
     }
-    if math.isfinite(foundation.damping):
+    if np.isfinite(foundation.damping).all():
         quantities["damping"] = foundation.damping
     if foundation.temperature is not None:
         quantities["shift_factor"] = foundation.shift_factor
@@ -84,7 +87,7 @@ def scene(
         }
         if not foundation.arms:
             quantities["shifted_retardation_time"] = foundation.retardation_time
-    numbers = {} if lacks_quadratic(checked) else StaticState.of(checked).named()
+    numbers = {} if lacks_quadratic(checked) else _dimensionless(checked)
     quantities |= numbers
     notes: tuple[str, ...] = ()
     if foundation.modulus is not None:  # whether the layer is thin for the contact at rest
@@ -94,12 +97,15 @@ def scene(
         "support": checked.support.kind,
     }  # fmt: skip
     if as_json:
-        console.print_json({**kinds, **quantities, "notes": notes})
+        console.print_json(record({**kinds, **quantities, "notes": notes}))
         return
+    count = f"{math.prod(checked.shape):,} scenes; " if checked.shape else ""
     click.echo(
-        "Valid: {shape} indenter, {foundation} foundation, {support} support.\n".format(**kinds)
+        f"Valid: {count}{{shape}} indenter, {{foundation}} foundation, {{support}} support.\n".format(
+            **kinds
+        )
     )
-    rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
+    rows = [(name, value_range(value, ".6g")) for name, value in quantities.items()]
     console.print_table(("quantity", "value in SI"), rows)
     if not lacks_ball(checked) and checked.drive.ends:
         _print_equivalent_line(checked)
@@ -107,6 +113,19 @@ def scene(
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
     for note in notes:
         click.echo(f"\n{note}")
+
+
+def _dimensionless(scene: Any) -> dict[str, Any]:
+    """Return the static state of a scene and its dimensionless numbers, or arrays of them."""
+    import numpy as np
+
+    from kvtheory.scene.static_state import StaticState
+
+    if not scene.shape:
+        return StaticState.of(scene).named()
+    flat = scene.flat()
+    each = [StaticState.of(flat.rows(i)).named() for i in range(math.prod(scene.shape))]
+    return {name: np.reshape([one[name] for one in each], scene.shape) for name in each[0]}
 
 
 def _write_problem(name: str | None, folder: Path) -> None:

@@ -86,11 +86,12 @@ def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
     click.echo(f"Steady sliding, {kind} support: {verdict}\n")
     key = "critical_velocity"  # not V* of `asymptotes`, which has the same name
     console.print_quantities(found, units, {key: QUANTITIES[key].words})
-    if found.rates.size:  # the time constant of a growing motion is negative
+    if found.rates.size:  # of a pair one; the time constant of a growing motion is negative
         errors = found.certificate.relative_error["rates"]
         rows = [
             (f"{real:.6g}", f"{imaginary / math.tau:.6g}", f"{1e3 * time:.6g}", console.error_text(error))
             for (real, imaginary), time, error in zip(found.rates, found.time_constants, errors, strict=True)
+            if imaginary >= 0.0
         ]  # fmt: skip
         heads = "rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"
         click.echo()

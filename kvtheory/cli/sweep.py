@@ -37,7 +37,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     help="FILE.csv or FILE.nc; until all is done, FILE.part keeps finished blocks. The same command resumes.",
 )  # fmt: skip
 @click.option(
-    "--quantity", "quantities", multiple=True, metavar="NAME,...",
+    "--quantity", "quantities", multiple=True, metavar="NAME,...", callback=console.names,
     help="What to write; default: all steady quantities, and with a spring whether steady sliding is "
     "stable. Of a transient: friction_force.max (.min, .end, .time_of_max), peak_to_steady_friction, "
     "settling_time, hops, events; with a spring stick_slip_settles, stick_slip_amplitude, "

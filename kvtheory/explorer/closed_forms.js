@@ -282,9 +282,9 @@ function springpot_bulge(nu_v) {
   return nu_v / ((nu_v + 2) * (2 * nu_v + 2));
 }
 
-/** the moment E of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot. */
+/** the moment E of a springpot of order 1 - nu_v, times nu_v/(1 - nu_v); theorem F17-springpot. */
 function springpot_twist(nu_v) {
-  return (1 - nu_v) / (4 * (nu_v + 1) * (nu_v + 3));
+  return 1 / (4 * (nu_v + 1) * (nu_v + 3));
 }
 
 /** l where the asymptotes of mu meet; theorem F19-crossing. */

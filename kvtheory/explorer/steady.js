@@ -152,7 +152,7 @@ function springpot(scene) {
       const p = part(c);
       return {
         P: 0.5 * K + p * springpot_ahead(nu), Q: 0.5 * K + p * springpot_behind(nu),
-        D: K / 12 + p * springpot_bulge(nu), E: p * springpot_twist(nu),
+        D: K / 12 + p * springpot_bulge(nu), E: alpha * p * springpot_twist(nu),
         end: K + p * nu, end_slope: -alpha * p * nu,
       };
     },

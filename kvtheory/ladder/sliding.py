@@ -8,6 +8,7 @@ from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.models.steady import asymptote_bounds
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.scene.capabilities import (
+    lacks_asymptotes,
     lacks_closed_form,
     lacks_kelvin_voigt,
     lacks_quadratic,
@@ -24,10 +25,11 @@ BEST = {
 }  # fmt: skip
 """Smallest certified error of each method; none is run for a smaller tolerance."""
 
+CLOSED = "steady sliding of a parabola, power law, wedge or ball"
 PROVED = (
     "asymptotes against the closed forms at both ends of proved bounds of the steady half length, between "
-    "which these are monotonic (derivations scaled-load, error-L1, F20-balance, F20-error-L1), relative to "
-    "the truth"
+    "which these are monotonic, or a product of such (derivations scaled-load, error-L1, F19-balance, "
+    "F19-monotonic, F20-balance, F20-error-L1), relative to the truth"
 )
 
 
@@ -35,14 +37,14 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
     """Return the rungs in order of cost; `steady` runs the last two."""
     exact, quadrature = (partial(_steady, steady, name) for name in ("exact", "quadrature"))
     return (
-        Rung("asymptote", "steady sliding of a parabola or ball, V far from V*", _asymptote),
-        Rung("exact", "steady sliding of a parabola, power law, wedge or ball", exact),
+        Rung("asymptote", f"{CLOSED}, V far from V*", _asymptote),
+        Rung("exact", CLOSED, exact),
         Rung("quadrature", "steady sliding of any shape", quadrature),
     )
 
 
 def _asymptote(scene: Scene, request: Request) -> Offer:
-    need(lacks_quadratic(scene) or lacks_kelvin_voigt(scene))
+    need(lacks_asymptotes(scene))
     bounds, names = asymptote_bounds.enclosure_of(scene), request.quantities
     regime, error = asymptote_bounds.choose(bounds, names, request.rtol)
 

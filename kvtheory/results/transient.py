@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from kvtheory.results.certificate import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
+from kvtheory.scene.arguments import checked, instant, instants, positions
 
 
 class Event(NamedTuple):
@@ -63,11 +64,13 @@ class Transient(TimeSeries):
     compiled: bool
     solution: Any = field(repr=False, compare=False)
 
-    def pressure(self, x: Any, time: float) -> Any:
+    @checked(x=positions, time=instant)
+    def pressure(self, x: Any, time: Any) -> Any:
         """Return the contact pressure in Pa at the positions `x` (m) and one `time` (s)."""
         return self.solution.pressure(x, time)
 
-    def surface(self, x: Any, time: float) -> Any:
+    @checked(x=positions, time=instant)
+    def surface(self, x: Any, time: Any) -> Any:
         """Return the compression u of the foundation in m at the positions `x` (m) and one `time` (s).
 
         Under the indenter u = depth - x^2/2R; outside it relaxes from what the indenter left (fact F8).
@@ -81,8 +84,9 @@ class Transient(TimeSeries):
         """
         return self.solution.surface(x, time)
 
+    @checked(time=instants)
     def energy(self, time: Any) -> Any:
-        """Return the energy balance at the times (s): a `Ledger` of values or arrays in J/m (fact F14).
+        """Return the energy balance at one or several times (s): a `Ledger` in J/m (fact F14).
 
         The work of the drive, int F_x V dt, and the energy stored at rest equal the sum of the kinetic
         energy, the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, the stored

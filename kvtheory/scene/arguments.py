@@ -18,10 +18,13 @@ from kvtheory.progress import listening
 from kvtheory.scene.drives import TIME
 from kvtheory.scene.mistakes import SHORT, Problems, SceneError, nearest, problem, shown
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, convert, listed, split
+from kvtheory.scene.quantities import Quantity, convert, converted, listed, split
 from kvtheory.scene.units import bare, to_si
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+POSITION = Quantity("m", "position", -math.inf, True)
+FAR = 1e60
+"""A distance in m beyond every contact, whose square is still a number."""
 Kind = Callable[[Any], Any]
 """Reads a value, or raises `ValueError` saying what is expected."""
 
@@ -109,6 +112,31 @@ def times(value: Any) -> list[float]:
         problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
     problems.report()
     return found
+
+
+def instants(value: Any) -> Any:
+    """Read a time in s, or an array of them."""
+    several = isinstance(value, str) and "," in value
+    return listed(value, TIME) if several else converted(value, TIME)
+
+
+def instant(value: Any) -> float:
+    """Read one time in s."""
+    found = instants(value)
+    if np.ndim(found):
+        raise ValueError("expected one time")
+    return float(found)
+
+
+def positions(value: Any) -> Any:
+    """Read positions in m, one or several; infinite ones are far away."""
+    values, written = bare(value)
+    array = np.asarray(values)
+    if written is not None or array.dtype.kind not in "fiu":
+        return converted(value, POSITION)
+    if np.isnan(array).any():
+        raise ValueError("holds what is not a number")
+    return np.clip(array.astype(float), -FAR, FAR)
 
 
 def count(value: Any) -> int:

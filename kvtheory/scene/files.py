@@ -4,6 +4,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,15 @@ from kvtheory.scene.mistakes import (
     shown,
 )
 from kvtheory.scene.model import SECTIONS, SUPPORTS, Drive, Scene, inconsistencies
-from kvtheory.scene.quantities import as_given, given, missing, quantities, required
+from kvtheory.scene.quantities import (
+    Quantity,
+    as_given,
+    converted,
+    given,
+    missing,
+    quantities,
+    required,
+)
 from kvtheory.scene.tables import read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -321,6 +330,13 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
         problems.add(f"{section}.{key}", table[key], told)
     values = {key: _unitless(table[key]) for key in valid if key in table}
     values |= dict.fromkeys(needed)
+    if not per_width:
+        for name, spec in {
+            **quantities(cls),
+            **(quantities(Drive) if section == "drive" else {}),
+        }.items():
+            if spec.per_width and values.get(name) is not None:
+                values[name] = _of_ball(problems, f"{section}.{name}", values[name], spec)
     made = None
     if cls is Drive and "file" in values:
         path = Path(str(values.pop("file")))
@@ -333,6 +349,9 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     spring = {key: values.pop(key) for key in SPRING if waveform and key in values}
     with found.catching(section, table):
         made = cls(**values)
+    for key, array in {} if made is None else made.arrays().items():
+        if not array.size:
+            found.add(f"{section}.{key}", [], "is empty; expected at least one value")
     if waveform:
         with found.catching(section, table):
             made = Drive(velocity=0.0 if made is None else None, waveform=made, **spring)
@@ -346,6 +365,17 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     ]
     problems.report()
     return made
+
+
+def _of_ball(problems: Problems, key: str, value: Any, spec: Quantity) -> Any:
+    """Return a value of a ball; one that is not even per unit width is a mistake, and 1 in its place."""
+    with suppress(ValueError):
+        converted(value, spec)
+        return value  # `inconsistencies` says that a ball has a total instead
+    with problems.catching(key, value):
+        converted(value, spec.fitting(False))
+        return value
+    return 1.0
 
 
 def _hint(section: str, key: str, valid: list[str]) -> str:

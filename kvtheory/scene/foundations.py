@@ -36,6 +36,8 @@ THIN = 0.1
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
 OF_LAYER = 'pairs of modulus and relaxation time, such as ["30 MPa", "10 ms"]'
+LOWEST_ORDER = 1e-8
+"""Lowest order of a springpot: its loss, which is proportional to it, would drown in rounding."""
 DISTINCT = 1e-6
 """Relative difference of relaxation times below which two arms count as the same."""
 TIMES = "retardation_time", "relaxation_time"
@@ -391,8 +393,9 @@ class GeneralizedMaxwell(_Relaxed):
 
 @dataclass(frozen=True, eq=False)
 class FractionalKelvinVoigt(_Relaxed):
-    """A spring in parallel with a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)], 0 < alpha <= 1.
+    """A spring in parallel with a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)].
 
+    The order alpha is from `LOWEST_ORDER`, below which the springpot is a spring to eight digits, to 1.
     With `order` alpha = 1 it is the Kelvin-Voigt foundation. Below 1 its damping is infinite: the
     springpot relaxes too slowly for C = int (G - K) dt to converge.
 
@@ -405,8 +408,9 @@ class FractionalKelvinVoigt(_Relaxed):
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
     order: Value = quantity(
-        "1", "alpha, order of the springpot", default=None, needed=True, maximum=1.0
-    )
+        "1", "alpha, order of the springpot", default=None, needed=True,
+        minimum=LOWEST_ORDER, exclusive=False, maximum=1.0,
+    )  # fmt: skip
 
     @property
     def damping(self) -> Value:

@@ -134,7 +134,7 @@ def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
 
 
 FAR = 10.0
-"""Powers of ten from Table 1 beyond which a message names a value as suspicious."""
+"""Powers of ten from Table 1 from which a value is named as suspicious, or half of those of the farthest."""
 
 
 def out_of_range(scene: Scene, why: str = "") -> str:
@@ -144,11 +144,18 @@ def out_of_range(scene: Scene, why: str = "") -> str:
         usual |= Scene.table1(support).values()
     units = {key: spec.unit.removeprefix("1") for key, spec in scene.replaceable.items()}
     shift = {"a_T of foundation.temperature": scene.foundation.shift_factor}
-    far = [
-        f"{key} = {size:g} {units.get(key, '')}".strip()
-        for key, value in {**scene.values(), **shift, "run.duration": scene.run.duration}.items()
-        for size in {float(abs(each)) for each in (np.min(value), np.max(value))}
-        if 0.0 < size < math.inf and abs(math.log10(size / usual.get(key, 1.0))) > FAR
-    ]
-    told = ", ".join(dict.fromkeys(far)) or "its values"
-    return f"the scene leaves the range of double precision: {why and f'{why}; '}check {told}"
+    values = {**scene.values(), **shift, "run.duration": scene.run.duration}
+    far = {
+        f"{key} = {size:g} {units.get(key, '')}".strip(): abs(
+            math.log10(size / usual.get(key, 1.0))
+        )
+        for key, value in values.items()
+        for size in (float(abs(each)) for each in (np.min(value), np.max(value)))
+        if 0.0 < size < math.inf
+    }
+    least = min(FAR, 0.5 * max(far.values()))
+    told = ", ".join(text for text, distance in far.items() if distance >= least > 0.0)
+    return (
+        "the scene leaves the range of double precision: "
+        f"{why and f'{why}; '}check {told or 'its values'}"
+    )

@@ -9,7 +9,7 @@ import math
 import re
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from numbers import Real
 from typing import Any
 
@@ -39,6 +39,9 @@ temperatures have the unit "delta K": "20 degC" is not a difference."""
 
 WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
 """For each unit of a quantity per unit width, the unit of the total quantity of a ball."""
+
+FREQUENCY = "1/s"
+"""The unit of a frequency, in cycles per second; an angle over time is read as well."""
 
 _METRES = {"km": 3, "m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 _SECONDS = {"s": 0, "ms": -3, "us": -6, "µs": -6, "μs": -6}
@@ -203,22 +206,38 @@ def _factor(written: str, unit: str) -> Fraction:
     if unit == "delta K" and TEMPERATURES.get(written, (1, 0))[1]:  # a scale with another zero
         told = f'"{written}" is the unit of a temperature, not of a difference'
         raise ValueError(f"{told}; expected {expected(unit)}")
-    registry, si = _registry(), unit.removeprefix("delta ")
     try:
-        quantity = registry.Quantity(Fraction(1), written)
-        fits = quantity.check(registry.Quantity(Fraction(1), si).dimensionality)
-        factor = Fraction(quantity.to(si).magnitude) if fits else None
-        if fits and registry.Quantity(Fraction(0), written).to(si).magnitude:
-            raise ValueError("a unit with another zero")
+        factor, angle = _in_root_units(written, unit.removeprefix("delta "))
     except Exception:  # pint raises many kinds, not all of them documented
         known = {example.split(" ", 1)[1].lower(): example for example in EXAMPLES[unit]}
         near = difflib.get_close_matches(written.lower(), known, n=1, cutoff=0.5)
         hint = f', did you mean "{known[near[0]].split(" ", 1)[1]}"?' if near else ""
         told = f'"{written}" is not a known unit{hint}; expected {expected(unit)}'
         raise ValueError(told) from None
+    if angle:
+        raise ValueError(
+            f'the unit "{written}" holds an angle or a count; expected {expected(unit)}'
+        )
     if factor is None:
         raise ValueError(f'the unit "{written}" has the wrong dimension; expected {expected(unit)}')
     return factor
+
+
+def _in_root_units(written: str, unit: str) -> tuple[Fraction | None, bool]:
+    """Return the factor of a unit to one of SI, or None, and whether they differ by an angle or a count.
+
+    For pint an angle has no dimension; its root unit is the radian. A frequency counts cycles, so that one of
+    an angle over time is divided by that of a full turn.
+    """
+    make = partial(_registry().Quantity, Fraction(1))
+    si, given = make(unit).to_root_units(), make(written).to_root_units()
+    if unit == FREQUENCY and given.units != si.units:
+        given = (given / make("turn")).to_root_units()
+    if given.units != si.units:
+        return None, given.dimensionality == si.dimensionality
+    if _registry().Quantity(Fraction(0), written).to_root_units().magnitude:
+        raise ValueError("a unit with another zero")
+    return Fraction(given.magnitude / si.magnitude), False
 
 
 @cache

@@ -63,7 +63,7 @@ CYCLE = {
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 CELL = 21
 """Bytes of a number in a CSV, with its comma or end of line."""
-GB = 1e9
+SIZES = {"GB": 1e9, "MB": 1e6, "kB": 1e3}
 
 
 class Column(NamedTuple):
@@ -302,5 +302,15 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None) -> None:
         limits[f'free beside "{path}"; choose fewer points'] = shutil.disk_usage(path.parent).free
     for where, limit in limits.items():
         if needed > limit:
-            told = f"{plan.points:,} points need about {needed / GB:,.1f} GB"
-            raise ValueError(f"{told}; there are {limit / GB:,.1f} GB {where}")
+            told = f"{plan.points:,} points need about {_size(needed)}"
+            raise ValueError(f"{told}; there are {_size(limit)} {where}")
+
+
+def _size(count: float) -> str:
+    """Return a number of bytes in words.
+
+    >>> _size(2.5e9), _size(40960.0), _size(0.0)
+    ('2.5 GB', '41 kB', '0 kB')
+    """
+    unit, scale = next(((u, s) for u, s in SIZES.items() if count >= s), ("kB", 1e3))
+    return f"{count / scale:,.1f} {unit}" if unit == "GB" else f"{count / scale:.0f} {unit}"

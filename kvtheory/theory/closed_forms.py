@@ -297,5 +297,5 @@ def springpot_bulge(nu_v: Value) -> Value:
 
 
 def springpot_twist(nu_v: Value) -> Value:
-    """Return the moment E of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot."""
-    return (1 - nu_v) / (4 * (nu_v + 1) * (nu_v + 3))
+    """Return the moment E of a springpot of order 1 - nu_v, times nu_v/(1 - nu_v); theorem F17-springpot."""
+    return 1 / (4 * (nu_v + 1) * (nu_v + 3))

@@ -204,6 +204,7 @@ class Fractional:
                 cf.springpot_twist,
             )
             known += [known[1] * moment(1.0 - order) for moment in moments]
+            known[-1] *= order  # not 1 - (1 - order), which loses the digits of a low one
         self.known = known
         """1/Gamma(n - alpha) for n = 1 to 4, and the moments P, Q, D, E over K (tau/c)^alpha."""
 

@@ -83,10 +83,14 @@ class Model:
         depth = c.depth if scene.held else sunk_depth(c)
         low, high = span(c.surface, depth)
         dx = spacing or (high - low) / SAMPLES[c.surface.ball]
-        if not FEWEST <= (high - low) / dx <= MOST:
+        # Of a ball, the strips increase with the elements along it.
+        most = math.isqrt(int(2.0 * PER_STRIP * MOST)) if c.surface.ball else MOST
+        if not FEWEST <= (high - low) / dx <= most:
             raise ValueError(
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
-                f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
+                f"{most / (high - low):.3g} 1/m, so that {FEWEST} to {most} elements carry the indenter"
+                + " along its middle"
+                * c.surface.ball
             )
         dy = coarser * (1.0 + 0.5 * shift) * strip_width(c.surface, depth, dx)
         c = c._replace(parts=parts, shift=shift, spacing=coarser * dx, across=dy, depth=depth)

@@ -51,12 +51,17 @@ STRIDE, PEAK_RTOL = 1e-6, 1e-6
 between two nodes; the error of its value is of second order."""
 MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
 """Safety factor on the differences of both rules, rounding, and error from which a result is refused."""
+OF_WORK = "friction_force", "friction_coefficient", "dissipated_in_contact"
+CANCELLED = 3.6e-15
+"""Rounding, over the order of a springpot, of its work: most of it returns if the order is low."""
 JUMP = 1e-6
 """Pressure at the trailing edge, over that of the depth, from which it is a jump."""
 
 
 class Arms:
     """Maxwell arms: K_i e^(-X/l_i), over K, with m the impulse of each arm up to X."""
+
+    noise = 0.0
 
     def __init__(self, stiffness: Array, length: Array) -> None:
         self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
@@ -85,6 +90,7 @@ class Springpot:
 
     def __init__(self, length: float, order: float) -> None:
         self.scale, self.rest = length**order / gamma(2.0 - order), 1.0 - order
+        self.noise = CANCELLED / order
 
     def amount(self, X: Array) -> Array:
         """Return m = l^alpha X^(1 - alpha)/Gamma(2 - alpha)."""
@@ -233,7 +239,7 @@ class Contact:
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
         rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
         rest = held if abs(rest - held) > JUMP * self.depth else rest
-        return work + 0.5 * rest * rest, lost, self.load_error
+        return work + 0.5 * rest * rest, lost, self.load_error + self.memory.noise
 
     def quantities(self) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
@@ -246,7 +252,7 @@ class Contact:
         if x not in (0.0, self.back):
             near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
             edge = float(np.abs(self.pressure).max() * STRIDE / (near - far))
-        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
+        own = dict.fromkeys(OF_LINE, self.load_error) | dict.fromkeys(OF_WORK, error)
         own["trailing_edge"] += FLOOR * edge
         powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(self) | {"trailing_edge": edge}
         return dict(zip(OF_LINE, values, strict=True)), own, powers

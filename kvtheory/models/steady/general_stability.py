@@ -422,10 +422,12 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
             min(np.flatnonzero(each.row == side), key=lambda i: abs(distance[i]), default=-1)
             for side in range(3)
         ]
-        off = distance[nearest] if distance.size else np.zeros(3)
-        rise = (off[2] - off[0]) / (2.0 * NEARBY)
-        if min(nearest) < 0 or rise == 0.0:
+        if (
+            min(nearest) < 0
+        ):  # as where a very soft spring is first unstable, at the friction maximum
             return 10.0**onset, np.inf
+        off = distance[nearest]
+        rise = (off[2] - off[0]) / (2.0 * NEARBY)
         miss, doubt = off[1] / rise, each.error[nearest[1]] / abs(rise)
         onset -= miss
         if abs(miss) <= CONVERGING:

@@ -24,7 +24,12 @@ from kvtheory.models.continuum.prony.contact import DEPTHS, FREE, PEELING, STIFF
 from kvtheory.models.continuum.prony.energy import ledger
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
-from kvtheory.models.continuum.solved_scene import ScaledMotion, end_of, scaled_drive
+from kvtheory.models.continuum.solved_scene import (
+    STEPS_A_PIECE,
+    ScaledMotion,
+    end_of,
+    scaled_drive,
+)
 from kvtheory.progress import Progress
 from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
@@ -47,8 +52,12 @@ LESS_TIGHT = 10.0
 """First over second tolerance where a solution with the one over `TIGHTER` fails."""
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with at most {1 / LESS_TIGHT:g} times the tolerance and "
-    "other step sizes, plus a bound of rounding"
+    "other step sizes, plus a bound of rounding; `jump_time` is the error of the time of a take-off or "
+    "landing, relative to the retardation time; `pressure` holds inside the contact, `surface` for the whole "
+    "foundation"
 )
+ANYWHERE = "pressure", "surface", "jump_time"
+"""Errors besides those of the series."""
 FIRST = StepControl(longest=math.inf)
 SECOND = COMPARISON._replace(longest=math.inf)
 
@@ -157,6 +166,7 @@ def transient(
     """
     units = own_units(scene)
     drive = scaled_drive(scene, units)
+    limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     foundation, spring = scene.foundation, None
     arms = [
         (arm.stiffness / foundation.stiffness, arm.relaxation_time / units.time)
@@ -174,7 +184,7 @@ def transient(
 
         return solve(
             drive, arms, (units.inertia_number, units.support_number), drive.end, tolerance,
-            spring=spring, control=control, progress=report, max_steps=max_steps or STEP_LIMIT,
+            spring=spring, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     rtol = min(rtol, LOOSEST)
@@ -213,7 +223,7 @@ def certificate(
     """
     here = fine.scaled_series(fine.motion.states(s), s)
     if other is None:
-        errors = dict.fromkeys(here, math.inf)
+        errors = dict.fromkeys([*here, *ANYWHERE], math.inf)
         return Certificate("estimated", why, {"time": 0.0, **errors}, AT_REST)
     there = fine.scaled_series(other.states(s), s)
     run = other.run
@@ -233,8 +243,53 @@ def certificate(
         least += float(np.max(np.abs(np.nan_to_num(values)), initial=0.0))
         errors[name] = max(MARGIN * apart, FLOOR * rtol * least) + rounding
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}
+    everywhere, jump_time = _anywhere(fine, other, rtol, scene.drive.tolerance)
+    for name, error in everywhere.items():
+        errors[name] = error + rounding
+    errors["jump_time"] = jump_time * (own["time"] / measures["time"])
     velocity = float(np.max(np.abs(here["velocity"]), initial=0.0)) * own["velocity"]
     errors["velocity"] = scene.drive.tolerance * (1.0 + velocity / measures["velocity"])
     if fine.units.fixed:
         errors |= {"depth": 0.0, "depth_rate": 0.0}
     return Certificate("estimated", STATEMENT, errors, AT_REST)
+
+
+def _anywhere(
+    fine: SolvedPronyScene, other: Trajectory, rtol: float, tolerance: float
+) -> tuple[dict[str, float], float]:
+    """Return the scaled errors of pressure and surface, and that of the times of take-offs and landings.
+
+    An element at xi was compressed by d - (xi + Y(s') - Y(s))^2 in contact, so that the errors of depth and
+    way over the whole run bound that of its history; an edge that is off by as much as an error of the way
+    leaves or meets the ground where u differs by no more. On free ground u is a mean of its history, with
+    weights that are positive and at most one in sum, and the pressure is G(0) u + int G'(s - s') u ds': its
+    error is at most 2 G(0) - G(oo) times that of u.
+    """
+    motion = fine.motion
+    s = motion.natural
+    here, there = (each.states(s, peaks=False) for each in (motion, other))
+
+    def error(column: int) -> float:
+        apart = np.nanmax(np.abs(here[column] - there[column]), initial=0.0)
+        largest = np.nanmax(np.abs(here[column]), initial=0.0)
+        return float(max(MARGIN * apart, FLOOR * rtol * (1.0 + largest)))
+
+    arm = float(np.nanmax(np.abs(here[[e_.LEFT, e_.RIGHT]]), initial=1.0))
+    way = tolerance * (1.0 + fine.drive.highest_speed) * fine.drive.end
+    way += 0.0 if fine.units.rigid_drive else 2.0 * error(e_.TRAVEL)
+    way += max(error(e_.LEFT), error(e_.RIGHT))
+    surface = (0.0 if fine.units.fixed else error(e_.DEPTH)) + 2.0 * arm * way
+    pressure = (1.0 + 2.0 * float(np.sum(motion.run.arms[:, STIFFNESS]))) * surface
+    hops, others = (_hops(each) for each in (motion, other))
+    jump = 0.0
+    if len(hops) != len(others):
+        jump = fine.drive.end
+    elif hops.size:
+        jump = max(MARGIN * float(np.max(np.abs(hops - others))), FLOOR * rtol * fine.drive.end)
+    return {"pressure": pressure, "surface": surface}, jump
+
+
+def _hops(motion: Trajectory) -> Array:
+    """Return the scaled times of take-offs and landings."""
+    flies = motion.steps["sides"]["state"][:, 0] == FREE
+    return np.asarray(motion.steps["start"][1:][flies[1:] != flies[:-1]], dtype=float)

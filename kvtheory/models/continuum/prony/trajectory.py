@@ -56,11 +56,12 @@ def kernel() -> Any:
     )
 
 
-def worthwhile() -> bool:
-    """Return whether to use compiled kernels from now on."""
-    if Tally.steps < min(LOADABLE, WORTHWHILE) or not compilation.available():
+def worthwhile(coming: int = 0) -> bool:
+    """Return whether to use compiled kernels from now on; about `coming` more steps are certain."""
+    steps = Tally.steps + coming
+    if steps < min(LOADABLE, WORTHWHILE) or not compilation.available():
         return False
-    return Tally.steps >= WORTHWHILE or compilation.on_disk(kernel())
+    return steps >= WORTHWHILE or compilation.on_disk(kernel())
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ def solve(
     >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
     0.417162
     """
-    arrays = worthwhile() if fast is None else fast
+    arrays = worthwhile(len(drive.pieces)) if fast is None else fast
     run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
     while status != walk.DONE:
