@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import kvtheory as kv
+from kvtheory.checks.faults import parameters_of
 from kvtheory.checks.hypotheses import scaled_scene
 from tests.faulty_simulator import simulate
 
@@ -36,7 +37,8 @@ SYMBOLS = {"tau": "foundation.retardation_time", "K": "foundation.stiffness", "R
 RULES = {"pull": "tension allowed at the trailing edge", "stale": "contact lost while rising",
          "dropped": "contact lost while rising", "frozen": "no relaxation of the free surface",
          "unrelaxed": "no relaxation of the free surface",
-         "forgetful": "memory forgotten where sliding reverses"}  # fmt: skip
+         "forgetful": "memory forgotten where sliding reverses",
+         "cleared": "memory forgotten where sliding reverses"}  # fmt: skip
 """The name of the fault of each wrong rule of the simulator."""
 
 
@@ -115,7 +117,7 @@ def plants():
     """Return every plant."""
     wrong = {
         "Table 1": ("pull", "dropped", "unrelaxed"),
-        "reversal": ("pull", "stale", "frozen", "unrelaxed", "forgetful"),
+        "reversal": ("pull", "stale", "frozen", "unrelaxed", "forgetful", "cleared"),
         "suspended": ("pull", "dropped"),
         "spring, to and fro": ("forgetful", "stale", "frozen"),
     }
@@ -129,7 +131,7 @@ def quick():
     alike = {"tau x 0.9", "K x 1.2", "R x 0.9", "M x 0.9", "g x 1.2", "V x 1.2", "time in s for ms"}
     # Where the base keeps its velocity, stale contacts do less than the elements at an edge.
     more = {
-        "reversal": {"rule: frozen", "rule: stale", "rule: forgetful"},
+        "reversal": {"rule: frozen", "rule: stale", "rule: forgetful", "rule: cleared"},
         "spring": {"k_x x 0.9", "M_x x 1.2", "c_x x 1.2", "rigid drive"},
         "spring, to and fro": {"rule: forgetful"},
     }
@@ -156,3 +158,142 @@ def disturbed(exact, seed, level, digits=None):
         return {"time": series["time"][kept], **written}
     noisy = {n: series[n] * (1.0 + level * rng.standard_normal(series[n].size)) for n in FEW[1:]}
     return {"time": series["time"], **noisy}
+
+
+LEVELS = 1e-6, 1e-4, 1e-2
+"""Noise of the series of random scenes, relative to each value."""
+KINDS = {"line": {}, "suspended": {}, "reversal": {}, "spring": {}}
+
+
+def random_scene(rng, kind):
+    """Return a cylinder of random size, load and foundation, as fast as its foundation relaxes or slower."""
+    R, K, tau = 10.0 ** rng.uniform([-2.3, 9.0, -1.7], [-1.5, 10.5, -0.3])
+    M = 10.0 ** rng.uniform(2.0, 3.5)
+    rest = kv.steady(
+        kv.Scene(kv.Parabola(R), kv.Foundation(K, tau), kv.DeadWeight(M), kv.Drive(0.0))
+    )
+    a, depth = float(rest.half_length), float(rest.depth)
+    V = a / tau * 10.0 ** rng.uniform(-0.7, 0.5)
+    T = float(rng.uniform(0.7, 1.5)) * max(tau, 3.0 * a / V)
+    k = M * 9.80665 / depth
+    support, drive = kv.DeadWeight(M), kv.Drive(V)
+    if kind == "suspended":
+        support = kv.Suspended(mass=M, stiffness=k * float(rng.uniform(0.3, 3.0)))
+    if kind == "reversal":
+        drive = kv.Drive(history=[(0.0, V), (0.4 * T, V), (0.4 * T, -0.6 * V), (T, -0.6 * V)])
+    if kind == "spring":
+        k_x = 0.1 * k * float(rng.uniform(1.0, 10.0))
+        drive = kv.Drive(V, stiffness=k_x, damping=0.3 * (k_x * M) ** 0.5)
+    return kv.Scene(kv.Parabola(R), kv.Foundation(K, tau), support, drive, kv.Run(T))
+
+
+def columns(scene, rows=241):
+    """Return theory of a scene, which here is somebody else's simulator, at uneven times from rest on."""
+    end = scene.run.duration
+    at = np.unique([*np.linspace(0.0, end, rows - 80), *(end * np.geomspace(1e-4, 0.1, 80))])
+    found = kv.transient(scene, at=at, rtol=1e-9, certify=False)
+    names = *FEW[1:], "leading_edge", *(() if scene.drive.rigid else ("spring_force",))
+    still = kv.steady(scene, over={"drive.velocity": 0.0})
+    rest = {FEW[1]: still.depth, FEW[2]: still.load, "leading_edge": -still.half_length}
+    moving = {n: np.array([float(rest.get(n, 0.0)), *getattr(found, n)]) for n in names}
+    return {"time": np.array([-1e-3 * end, *at]), **moving}
+
+
+def late(series, delay, names):
+    """Return a series with columns that are late by a time, before which they are at rest."""
+    at = np.maximum(series["time"] - delay, series["time"][0])
+    return {**series, **{n: np.interp(at, series["time"], series[n]) for n in names}}
+
+
+def filtered(series, constant, names):
+    """Return a series with columns behind a low pass, exact for straight lines between the samples."""
+    time, moved = series["time"], {}
+    for name in names:
+        x, y = series[name], [series[name][0]]
+        for k, h in enumerate(np.diff(time)):
+            slope, kept = (x[k + 1] - x[k]) / h, np.exp(-h / constant)
+            y.append(x[k + 1] - slope * constant + kept * (y[-1] - x[k] + slope * constant))
+        moved[name] = np.array(y)
+    return {**series, **moved}
+
+
+FORCES = "normal_force", "friction_force"
+EDITS = {
+    "sign of friction_force": lambda s, _f: {**s, FORCES[1]: -s[FORCES[1]]},
+    "unit of normal_force": lambda s, _f: {**s, FORCES[0]: 1e3 * s[FORCES[0]]},
+    "unit of depth": lambda s, _f: {**s, "depth": 0.1 * s["depth"]},
+    "scale of normal_force": lambda s, f: {**s, FORCES[0]: f * s[FORCES[0]]},
+    "scale of friction_force": lambda s, f: {**s, FORCES[1]: f * s[FORCES[1]]},
+    "offset of normal_force": lambda s, f: {**s, FORCES[0]: s[FORCES[0]] + (f - 1.0) * s[FORCES[0]][0]},
+    "offset of depth": lambda s, f: {**s, "depth": s["depth"] + (f - 1.0) * s["depth"][0]},
+    "drift of friction_force": lambda s, f: {**s, FORCES[1]: s[FORCES[1]] + (f - 1.0) * s[FORCES[0]][0]
+                                             * s["time"] / s["time"][-1]},
+    "dry friction of friction_force": lambda s, f: {**s, FORCES[1]: s[FORCES[1]] - (f - 1.0)
+                                                    * np.sign(s["leading_edge"]) * s[FORCES[0]]},
+    "delay of both forces": lambda s, f: late(s, abs(f - 1.0) * 0.2 * s["time"][-1], FORCES),
+    "low pass of both forces": lambda s, f: filtered(s, abs(f - 1.0) * 0.2 * s["time"][-1], FORCES),
+    "time offset": lambda s, f: {**s, "time": s["time"] + (f - 1.0) * 0.3 * s["time"][-1]},
+    "unit of time": lambda s, _f: {**s, "time": 1e3 * s["time"]},
+}  # fmt: skip
+"""Columns that are changed on their way, with a factor by how much."""
+WRONG = {
+    "line": (*SYMBOLS, "inertia"), "suspended": ("k_s", "tau", "K"), "reversal": ("tau", "V"),
+    "spring": ("k_x", "M_x", "c_x", "M_z", "inertia along z"),
+}  # fmt: skip
+RULED = {"line": ("pull", "dropped"), "reversal": ("stale", "forgetful", "cleared", "frozen")}
+"""The parameters and contact rules that are wrong in each kind of scene."""
+
+
+def random_faults(seed):
+    """Yield scene, sound series, wrong series without noise, and the right name: each kind of fault once."""
+    rng = np.random.default_rng(seed)
+    for kind in KINDS:
+        for symbol in WRONG[kind]:
+            scene = random_scene(rng, kind)
+            powers = {p.symbol: p.powers for p in parameters_of(scene)}
+            if symbol in powers:
+                wrong = scaled_scene(
+                    scene, powers[symbol], float(rng.choice([0.8, 0.95, 1.1, 1.3]))
+                )
+                yield scene, columns(scene), columns(wrong), f"wrong {symbol}"
+        for name in EDITS if kind in ("line", "reversal") else ():
+            scene = random_scene(rng, kind)
+            sound = columns(scene)
+            yield scene, sound, EDITS[name](sound, float(rng.choice([0.9, 1.05, 1.2]))), name
+        for rule in RULED.get(kind, ()):
+            scene = random_scene(rng, kind)
+            a = float(kv.steady(scene, over={"drive.velocity": 0.0}).half_length)
+            stable = scene.support.mass / (
+                3.0 * scene.foundation.damping * a
+            )  # of an explicit scheme
+            how = {"per_length": 200.0 / a, "time_step": min(scene.run.duration / 1500.0, stable)}
+            sound, wrong = (simulate(scene, **how, rule=each) for each in ("peel", rule))
+            names = (*FEW, "leading_edge")
+            yield scene, sound, {n: wrong[n] for n in names}, RULES[rule]
+
+
+def judged(scene, sound, wrong, name, level, seed):
+    """Return how a fault was judged, its effect, and the comparison.
+
+    It is "first", "tied", "unseen", "unnamed", "not all" or "wrongly" asserted. The effect is the largest
+    root mean square of a column's change, relative to the column's largest value.
+    """
+    rng, effect = np.random.default_rng(seed), 0.0
+    for each in (n for n in wrong if n in sound and n != "leading_edge"):
+        if wrong[each].size == sound[each].size:
+            off = np.nan_to_num(wrong[each] - sound[each])
+            effect = max(
+                effect, float(np.sqrt(np.mean(off * off)) / np.nanmax(np.abs(sound[each])))
+            )
+    noisy = {n: x * (1.0 + level * rng.standard_normal(x.size)) if n != "time" else x
+             for n, x in wrong.items() if n != "leading_edge"}  # fmt: skip
+    found = kv.compare(scene, noisy)
+    if found.verdict != "disagrees":
+        return "unseen", effect, found
+    if not found.explanations:
+        return "unnamed", effect, found
+    first, *rest = found.explanations
+    tied = {e.name for e in rest if e.enough and first.enough} | {f"wrong {n}" for n in first.alike}
+    if first.name == name:
+        return "first", effect, found
+    return ("tied" if name in tied else "wrongly" if first.enough else "not all"), effect, found

@@ -44,10 +44,12 @@ def forgetful(g, p, u, decay, touched):
 
 RULES = {
     **{"forgetful": forgetful, "peel": peel, "pull": pull, "stale": stale, "dropped": peel},
+    "cleared": peel,
     **{"frozen": flagged, "unrelaxed": stale},
 }
-"""`dropped` tests elements at rest in x, so that the whole contact is lost while the indenter rises. The last
-two leave the free surface as it is: the one with flags, the other by u <- max(g, u)."""
+"""`dropped` tests elements at rest in x, so that the contact is lost while the indenter rises. `cleared`
+forgets the free surface where sliding reverses. The last two leave the free surface as it is: the one with
+flags, the other by u <- max(g, u)."""
 
 
 def drive(scene):
@@ -110,7 +112,8 @@ def simulate(scene, per_length=200e3, time_step=None, rule="peel"):
         t, (Y, depth, rate, along, along_rate) = n * h, state
         near = slice(*np.searchsorted(X, [-reach - Y, reach - Y]))
         sliding, x, f = contact(t, state, 1.0, near)
-        forward = sliding > 0 if sliding else forward
+        turned, forward = forward, sliding > 0 if sliding else forward
+        turned = turned != forward
         edges = (x[0], x[-1])[:: 1 if forward else -1] if x.size else (math.nan, math.nan)
         forces = f.sum(), -(x @ f) / R
         held_by = () if rigid else (sliding, spring.stiffness * along + spring.damping * along_rate)
@@ -136,7 +139,8 @@ def simulate(scene, per_length=200e3, time_step=None, rule="peel"):
             touched = flagged(g, p, u, 1.0, touched)
             u = np.where(touched, g, u)
         else:
-            u = np.maximum(g, u * math.exp(-h / tau))
+            left = 0.0 if rule == "cleared" and turned else math.exp(-h / tau)
+            u = np.maximum(g, u * left)
     names = (
         *("time", "velocity", "depth", "depth_rate", "normal_force", "friction_force"),
         *("leading_edge", "trailing_edge", "peak_pressure"),

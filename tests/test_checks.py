@@ -134,3 +134,87 @@ def test_the_simulation_of_mistakes_is_right_without_one(foundation, ball):
     for name in ("depth", "normal_force", "friction_force"):
         off = np.abs(found[name][rows, 0] - exact[name]) / theory.scales[name]
         assert np.quantile(off, 0.9) < 0.02, name
+
+
+def check(found, name):
+    """Return the check of a comparison with this name."""
+    return next(each for each in found.checks if each.name == name)
+
+
+def uneven(times, **given):
+    """Return theory at uneven times."""
+    scene = kv.Scene(run=kv.Run(times[-1]), **given)
+    found = kv.transient(scene, at=times, certify=False)
+    return scene, {n: getattr(found, n) for n in ("time", "depth", "normal_force")}
+
+
+def test_sampling_is_judged_within_the_transient_of_a_long_uneven_run():
+    scene, data = uneven(np.array([*np.linspace(0.0, 0.2, 60), *np.linspace(0.25, 20.0, 40)]))
+    found = kv.compare(scene, data)
+    slow = abs(Theory(scene, METHODS).rates.slow)
+    inside = np.count_nonzero((data["time"] > 0.0) & (data["time"] <= 3.0 * slow))
+    assert inside == 10
+    assert check(found, "sampling").measured == pytest.approx(3.0 * slow / inside)
+    assert check(found, "sampling").allowed == pytest.approx(slow)
+    assert found.verdict == "agrees"
+
+
+def test_a_jump_is_not_judged_where_no_sample_follows_it_at_once():
+    scene, data = uneven(np.array([0.03, 0.04, *np.linspace(0.06, 0.27, 8)]))
+    found = check(kv.compare(scene, data), "jump at t = 0+")
+    assert (found.ok, found.measured, found.allowed) == (None, None, None)
+    assert "no sample in the fast time constant, 0.744 ms" in found.note
+
+
+def test_the_papers_step_is_known_where_the_elements_are():
+    """Its step follows from the spacing: without it a check more cannot be made."""
+    scene, data = uneven(np.linspace(0.0, 0.2, 101))
+    for given, known in (({}, False), ({"per_length": "200 /mm"}, True)):
+        found = kv.compare(scene, data, scheme="paper", **given)
+        number = check(found, "stability number")
+        made = sum(each.ok is not None for each in found.checks)
+        assert f"All {made} checks that could be made passed" in found.diagnosis
+        assert made == 9 + 2 * known
+        if known:
+            extent = np.abs(found.theory["trailing_edge"] - found.theory["leading_edge"]).max()
+            assert number.measured == pytest.approx(1e-4 * 1e9 * extent / 1e3, rel=1e-3)
+            assert number.allowed == pytest.approx(2.785, rel=1e-3)
+        else:
+            assert number.note == "not made: the time step is not known"
+
+
+def test_what_is_allowed_covers_true_differences_and_is_not_much_more():
+    """Coarse elements against theory, at uneven times: dense after the start, where the motion is fast."""
+    scene = kv.Scene(drive=kv.Drive("1 m/s"), run=kv.Run(0.05))
+    times = np.unique([*np.geomspace(1e-5, 0.05, 100), *np.linspace(0.0, 0.05, 60)])
+    data = kv.elements(scene, at=times, certify=False, per_length="10 /mm", scheme="paper")
+    case = make_case(Theory(scene, METHODS), read(data), None, 1.0, COARSEST)
+    for name, most in (("depth", 300.0), ("normal_force", 10.0), ("friction_force", 10.0)):
+        off, allowed = np.abs(getattr(data, name) - case.now[name]), case.allowed(name)
+        assert np.all(off <= allowed)
+        assert off @ off < allowed @ allowed < most**2 * (off @ off)
+    depth, friction = case.now["depth"], case.now["friction_force"]
+    carried = 1.5 * case.allowed("depth") * friction / depth  # friction grows as depth^(3/2)
+    assert np.all((case.allowed("friction_force") >= carried)[friction > 0.0])
+
+
+def test_a_ball_at_a_given_depth_that_goes_back_is_compared():
+    """It meets its own trace, which needs elements."""
+    drive = kv.Drive(waveform=kv.Triangle(mean=0.0, amplitude=0.1, frequency=20.0))
+    scene = kv.Scene(kv.Sphere(0.01), support=kv.Fixed(1.767e-4), drive=drive, run=kv.Run(0.04))
+    times = np.linspace(0.0, 0.04, 61)
+    data = kv.elements(scene, per_length="30 /mm", at=times, certify=False)
+    columns = {n: getattr(data, n) for n in ("time", "normal_force", "friction_force")}
+    found = kv.compare(scene, columns, per_length="30 /mm")
+    assert found.verdict == "agrees"
+    back = found.theory["friction_force"]
+    assert back.min() < -0.2 * back.max() < 0.0
+    for name in ("normal force, RMS", "friction force, RMS"):
+        assert 0.0 <= check(found, name).measured < check(found, name).allowed < 0.3
+
+
+def test_the_time_is_written_below_the_last_row_of_curves():
+    _, data = uneven(np.linspace(0.0, 0.2, 101))
+    axes = [ax for ax in kv.compare(data=data).plot().axes if ax.lines]
+    labels = [ax.get_xlabel() for ax in axes]
+    assert labels == ["", "", "time $t$ [ms]", "time $t$ [ms]"]

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -9,18 +10,34 @@ import pytest
 import kvtheory as kv
 from figures.engines import RUNS, hunt_crossley
 from kvtheory.api._compare import METHODS
-from kvtheory.checks.hypotheses import scaled_scene
+from kvtheory.checks.comparing import _ranked
+from kvtheory.checks.comparison_case import COARSEST, make_case
+from kvtheory.checks.faults import time_units
+from kvtheory.checks.hypotheses import Hypothesis, Trial, bench, fixed, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.checks.trial_elements import Rule, steady, steady_changes
+from kvtheory.fitting.series import read
 from tests import SCENES as MANY
 from tests import engine
-from tests.confusion import SCENES, plants, quick, series
+from tests.confusion import (
+    FORCES,
+    LEVELS,
+    SCENES,
+    filtered,
+    judged,
+    plants,
+    quick,
+    random_faults,
+    series,
+)
 from tests.test_compare import BALL, SPRINGS, exact, failed
 
 RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv.Run(0.008))
 STICK_SLIP, STABLE = SPRINGS["stick-slip"], SPRINGS["stable"]
 TABLE_1 = SCENES["Table 1"]
 MEASURED = "time", "depth", "normal_force", "friction_force"
+COLUMNS_ONLY = 7, 16
+"""Which of the random faults change columns: cheap ones."""
 
 
 @cache
@@ -176,6 +193,15 @@ def test_a_unit_of_the_time_is_named_where_so_long_a_run_is_not_simulated():
     assert found.series["time"][-1] == pytest.approx(8.0)
 
 
+def test_no_unit_of_the_time_is_tried_that_leaves_no_motion():
+    """Any unit that is large or small enough fits data that are constant."""
+    rows = bench(
+        make_case(Theory(TABLE_1, METHODS), read(exact(TABLE_1, 101)), None, 1.0, COARSEST)
+    )
+    tried = {round(each.factor, 12) for each in time_units(rows)}
+    assert tried == {0.1, 10.0}
+
+
 def test_what_cannot_be_told_apart_is_said():
     given = kv.Scene.table1("fixed")
     data = series(given, {"foundation.retardation_time": 1.2})
@@ -312,9 +338,6 @@ def test_the_faults_of_engines_are_named(name, fault, expected):
     assert expected in [first.name, *tied], found.diagnosis
 
 
-FORCES = "normal_force", "friction_force"
-
-
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
@@ -376,7 +399,9 @@ def test_the_trials_of_steady_sliding_agree_with_exact_steady_sliding(name):
     for curve, expected in (("depth", exact.depth), ("normal_force", exact.load),
                             ("friction_force", exact.friction_force)):  # fmt: skip
         np.testing.assert_allclose(found[curve], expected, rtol=0.02)
-    late, early = steady_changes(methods, [Rule(hunt=1.0), Rule(start=0.8)], np.array([-0.1, 0.1]))
+    late, early = steady_changes(
+        methods, [Rule(hunt_crossley=1.0), Rule(start=0.8)], np.array([-0.1, 0.1])
+    )
     assert late["friction_force"][0] == -late["friction_force"][1]
     assert not any(values.any() for values in early.values())
 
@@ -421,3 +446,99 @@ def test_edges_of_few_digits_are_not_taken_for_few_elements():
     }
     rounded = {n: x if n == "time" else [float(f"{v:.2g}") for v in x] for n, x in rows.items()}
     assert failed(kv.compare(given, rounded)) == []
+
+
+@pytest.mark.parametrize("share", [0.03, -0.05, 0.3])
+def test_an_offset_is_named_however_exact_the_data(share):
+    """Where each row is off by ten thousand times what is allowed, a fit still has a slope."""
+    data, rng = exact(TABLE_1, 201), np.random.default_rng(0)
+    noisy = {n: data[n] * (1.0 + 1e-6 * rng.standard_normal(201)) for n in MEASURED[1:]}
+    off = share * TABLE_1.support.weight
+    noisy["normal_force"] += off
+    found = kv.compare(TABLE_1, {"time": data["time"], **noisy}, per_length="2e6 /mm")
+    first = first_of(found, "offset of normal_force")
+    assert first.enough
+    assert first.factor == pytest.approx(off, rel=1e-3)
+
+
+@pytest.mark.parametrize("noise", [0.0, 5e-3])
+def test_tension_under_a_fixed_indenter_is_no_low_pass(noise):
+    """Both forces are constant: F_z = (4/3) K a delta, F_x = K tau V (2/3) a^3/R^2 of a stuck contact."""
+    R, depth, K, tau, V = 0.01, 3e-4, 1e10, 0.1, 0.07
+    scene = kv.Scene(
+        kv.Parabola(R), kv.Foundation(K, tau), kv.Fixed(depth), kv.Drive(V), kv.Run(0.2)
+    )
+    a, rng = np.sqrt(2.0 * R * depth), np.random.default_rng(0)
+    F_z, F_x = (
+        F * (1.0 + noise * rng.standard_normal(201))
+        for F in (4.0 / 3.0 * K * a * depth, K * tau * V * 2.0 * a**3 / (3.0 * R * R))
+    )
+    time = np.linspace(0.0, 0.2, 201)
+    found = kv.compare(scene, {"time": time, "normal_force": F_z, "friction_force": F_x})
+    first_of(found, "tension allowed at the trailing edge")
+    for each in found.explanations:  # no time constant is longer than the data
+        assert "low pass" not in each.name or (each.factor <= 0.2 and not each.enough)
+
+
+def test_a_filter_goes_after_a_cause_in_the_model_that_is_enough():
+    """And one that is alone is named, with its time constant."""
+    data = exact(TABLE_1, 401)
+    slow = filtered(data, 3e-3, FORCES)
+    first = first_of(kv.compare(TABLE_1, slow), "low pass of both forces")
+    assert first.factor == pytest.approx(3e-3, rel=0.05)
+    rows = bench(make_case(Theory(TABLE_1, METHODS), read(slow), None, 1.0, COARSEST))
+    others = [Trial(fixed(name, "", None), score, enough) for name, score, enough in
+              (("model", 0.2, True), ("half", 0.05, False))]  # fmt: skip
+    last = Trial(Hypothesis("filter", "", lambda _x: None, last=True), 0.1, True)
+    for trials, expected in (
+        ([last, *others], ["half", "model", "filter"]),
+        ([last, others[1]], ["half", "filter"]),
+    ):
+        assert [each.name for each in _ranked(rows, trials)] == expected
+
+
+@pytest.mark.parametrize(
+    ("powers", "name"),
+    [({"support.mass": 1.0}, "wrong M_z"),
+     ({"support.mass": 1.0, "support.gravity": -1.0}, "wrong inertia along z")],
+    ids=["mass", "inertia"],
+)  # fmt: skip
+def test_a_wrong_inertia_along_z_is_named_where_one_mass_moves_in_both_directions(powers, name):
+    drive = kv.Drive("91 mm/s", stiffness="20 MN/m^2", damping="2 kN*s/m^2")
+    scene = kv.Scene(drive=drive, run=kv.Run(0.1))
+    wrong = scaled_scene(scene, {**powers, "drive.mass": 0.0}, 1.5)
+    assert wrong.drive_mass == scene.drive_mass
+    first = first_of(kv.compare(scene, exact(wrong, 201)), name)
+    assert first.factor == pytest.approx(1.5, rel=1e-2)
+
+
+def test_the_step_of_a_ball_that_nobody_gave_is_not_told_from_a_fault():
+    """An honest run of first order by few elements: neither rows nor the user tell its step."""
+    scene = kv.Scene(
+        kv.Sphere(0.0306), kv.Foundation(3.38e9, 0.0103), kv.DeadWeight(4.56), kv.Drive(4.17), kv.Run(0.0204)
+    )  # fmt: skip
+    how = {"per_length": "5710 /m", "scheme": "explicit-euler"}
+    run = kv.elements(scene, at=np.linspace(0.0, 0.0204, 61), certify=False, **how)
+    data = {name: getattr(run, name) for name in MEASURED}
+    assert kv.compare(scene, data, **how).verdict == "agrees"
+    found = kv.compare(scene, data)
+    assert (found.verdict, failed(found)) == ("cannot tell", ["known time step"])
+    assert "may be the error of a sound method, not a fault" in found.diagnosis
+    assert not found.explanations
+
+
+def test_faults_in_random_scenes_are_named_and_none_is_asserted_wrongly():
+    """Columns that were changed on their way, in the gate; all kinds, in five scenes each, on request."""
+    every = MANY >= 1000
+    drawn = [each for seed in range(5) for each in random_faults(seed)] if every else [
+        *islice(random_faults(0), *COLUMNS_ONLY)
+    ]  # fmt: skip
+    shown = []
+    for k, (scene, sound, wrong, name) in enumerate(drawn):
+        level = LEVELS[k % 3]
+        how, effect, found = judged(scene, sound, wrong, name, level, k)
+        assert how != "wrongly", (name, found.diagnosis)
+        if effect > max(0.02, 5.0 * level):
+            shown.append(how in ("first", "tied"))
+    assert len(shown) >= 7
+    assert np.mean(shown) >= (0.9 if every else 1.0)

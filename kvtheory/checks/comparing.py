@@ -10,7 +10,7 @@ import numpy as np
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
 from kvtheory.checks.checklist import PHASE, SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNSTABLE, Case, make_case
+from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNKNOWN, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Pair, Trial, bench, scaled_scene
 from kvtheory.checks.theory import Theory
@@ -35,7 +35,7 @@ OF_TIME = {"delays and filters", "units of the time"}
 EXACT, BUDGET = 0.999, 8.0
 """Part of the difference that ends the search; and processor time in s after which no family is begun."""
 REFINED, FLEXIBLE = 3, 0.1
-"""Most remote starts that are followed; and the part by which a fault with an unknown must fit better than
+"""Number of distant guesses tried; and the part by which a fault with an unknown must fit better than
 one without. A parameter must fit the better, the further it is from its value."""
 NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
@@ -48,6 +48,8 @@ SCATTER = "scatter"
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",
+    UNKNOWN: "The differences may be the error of a sound method, not a fault: a time step "
+    f"{case_of.LONGER:g} times as long as assumed allows them, and these data do not show theirs",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
@@ -71,22 +73,22 @@ def _untested(case: Case) -> str:
         ("the damper" if "tau" in powers else "the relaxation times", "high-velocity", times),
         *([] if scene.held else [("the inertia", "heavy-mass", powers["inertia"])]),
     ]
-    told = [f"{what}, as {LARGER:g} times as much would not show ({problem})"
+    untested = [f"{what}, as {LARGER:g} times as much would not show ({problem})"
             for what, problem, by in parts
             if not rows.shows(rows.against(scaled_scene(scene, by, LARGER)))]  # fmt: skip
     memory, one_way = "the memory of the free surface", scene.drive.constant and scene.drive.rigid
     if one_way and motion.highest_speed:
-        told.append(f"{memory}, as the sliding never reverses (reversal)")
+        untested.append(f"{memory}, as the sliding never reverses (reversal)")
     elif one_way or not rows.shows(_without_memory(rows)):
-        told.append(f"{memory}, as its absence would not show (reversal)")
+        untested.append(f"{memory}, as its absence would not show (reversal)")
     if scene.held:
-        told.append("the inertia, as the indenter is fixed (paper-dead-weight)")
+        untested.append("the inertia, as the indenter is fixed (paper-dead-weight)")
     elif not np.isnan(case.now["leading_edge"]).any():
-        told.append("a flight and a landing (take-off)")
+        untested.append("a flight and a landing (take-off)")
     if missing := [name.replace("_", " ") for name in NEEDED if name not in case.columns]:
-        told.append(f"the {' and the '.join(missing)}, which the data do not hold")
+        untested.append(f"the {' and the '.join(missing)}, which the data do not hold")
     problems = "(in brackets, the reference problem that does)"
-    return f" Not tested {problems}: {'; '.join(told)}." if told else ""
+    return f" Not tested {problems}: {'; '.join(untested)}." if untested else ""
 
 
 def _without_memory(rows: Bench) -> Pair:
@@ -110,8 +112,8 @@ def compare(
             found = compare(theory, replace(series, columns=times), per_length, scheme, tolerance)
             return _off_by(power, found, series)
         until = f"up to t = {series.time[-1]:.6g} s, where the data end ({error})"
-        told = f"{series.source}: the theory cannot be computed {until}; is the unit of the time right?"
-        raise ArithmeticError(told) from None
+        message = f"{series.source}: the theory cannot be computed {until}; is the unit of the time right?"
+        raise ArithmeticError(message) from None
     checks = judge(case)
     others = {check.name for check in checks if check.ok is False} - {COARSE}
     if others and case.resolution.spacing_read == SAWTOOTH:  # noise is not of elements alone
@@ -120,12 +122,24 @@ def compare(
     elif others and case.resolution.spacing_read:  # the edges may be wrong themselves
         case = replace(case, resolution=case.resolution._replace(spacing_read=""))
         checks = judge(case)
+    case, checks = _undecided(case, checks)
     text, explanations = diagnose(case, checks)
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
         verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
     )  # fmt: skip
+
+
+def _undecided(case: Case, checks: tuple[Check, ...]) -> tuple[Case, tuple[Check, ...]]:
+    """Return what longer steps allow, and that they are not known, if nothing tells these from a fault."""
+    failed = [each for each in checks if each.ok is False and each.name not in INCONCLUSIVE]
+    ratios = [each.measured / each.allowed for each in failed if each.measured and each.allowed]
+    longer = case_of.with_longer_steps(case) if ratios and max(ratios) <= case_of.LONGER else None
+    if longer is None or verdict(found := judge(longer)) == "disagrees":
+        return case, checks
+    unit = "time step, over the one assumed, with which all other checks pass"
+    return longer, (*found, Check(UNKNOWN, case_of.LONGER, 1.0, False, "F15", unit))
 
 
 def _off_by(power: int, found: Comparison, series: Series) -> Comparison:
@@ -190,11 +204,17 @@ def diagnose(
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
     tried, skipped = explanations(case, families)
     seen = case_of.symptoms(case, failed) if families is FAMILIES else ()
-    found = sorted([*seen, *tried], key=lambda each: -each.rank)
+    found = sorted([*seen, *tried], key=_order)
     named = [each for each in found if each.rank >= NAMED]
     text = _words(case, failed, named)
     text += f" Not tried for want of time: {', '.join(skipped)}." if skipped else ""
     return text, tuple((named or found)[:SHOWN])
+
+
+def _order(each: Explanation) -> float:
+    """Order by rank; a fault that is not enough goes before no symptom that is likely."""
+    tried_in_vain = not each.enough and each.explained is not None
+    return -min(each.rank, case_of.LIKELY) if tried_in_vain else -each.rank
 
 
 def explanations(case: Case, families: Families = FAMILIES) -> tuple[list[Explanation], list[str]]:
@@ -234,8 +254,12 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
         if cut_off and np.abs(rows.ratios(trial.hypothesis.pair(0.0))).max() <= 1.0:
             return 0.0  # a difference within the resolution proves no other fault
         far = abs(trial.value) if trial.hypothesis.powers else 0.0
-        return trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
+        left = trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
+        return max(left, after) if trial.hypothesis.last else left
 
+    others = (unlikely(each) for each in trials if each.enough and not each.hypothesis.last)
+    after = min(others, default=0.0)
+    trials = sorted(trials, key=lambda trial: trial.hypothesis.last)  # that of others goes first
     ordered, found = sorted(trials, key=unlikely), dict[str, Explanation]()
     best = next((trial for trial in ordered if trial.hypothesis.powers), None)
     for trial in ordered:
@@ -257,12 +281,11 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     if not named:
         return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
-    symbol, text, also = first.name.removeprefix(WRONG), _sentence(first.text), ""
-    if first.enough:
-        alike = {WRONG + name for name in first.alike} | {*first.alike}
-        others = [each.text for each in rest if each.enough and each.name not in alike]
-        also = f" Also possible: {'; '.join(others)}." if others else ""
-    else:
+    symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
+    alike = {WRONG + name for name in first.alike} | {*first.alike}
+    others = [each.text for each in rest if each.enough and each.name not in alike]
+    also = f" Also possible: {'; '.join(others)}." if others else ""
+    if not first.enough:
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
         text = f"Closest, but not all{part}: {first.text}"
     if first.alike:

@@ -44,9 +44,14 @@ QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
+FEW_ROWS, LONGER = 32, 8.0
+"""Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
+assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
+one."""
 SAWTOOTH = "the sawtooth"
 """What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
+UNKNOWN = "known time step"
 """The names of the checks."""
 NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
 """Noise over the load that is negligible; and the largest allowed that is not of elements."""
@@ -138,6 +143,17 @@ def make_case(
         seen, read = jump / fine.spacing, "the edges" if loud < QUIET * jump else ""
     wider = min(seen, max(largest, MARGIN))
     return of(fine._replace(spacing=wider * fine.spacing, spacing_read=read))
+
+
+def with_longer_steps(case: Case) -> Case | None:
+    """Return the case of a simulation with longer steps, if the data may be of such a one."""
+    fine, ball = case.resolution, not case.theory.scene.indenter.per_width
+    shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
+    if fine.spacing_known or fine.step_known or (shown and not ball):
+        return None
+    coarse = fine._replace(time_step=LONGER * fine.time_step)
+    budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
+    return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
 
 def _coarser(case: Case) -> float:

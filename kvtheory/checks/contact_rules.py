@@ -64,7 +64,7 @@ MISTAKES = (
     Mistake("Hunt-Crossley damping",
             "the damping grows with the compression, p = K u (1 + c u') with c = {:.3g} tau/delta_0, as in "
             "the law of Hunt and Crossley: that of Kelvin and Voigt is constant, p = K u + C u' (Eq. 5)",
-            [Rule(hunt=c, decay=FORGETFUL) for c in DAMPERS], "Kelvin-Voigt", DAMPERS),
+            [Rule(hunt_crossley=c, decay=FORGETFUL) for c in DAMPERS], "Kelvin-Voigt", DAMPERS),
     Mistake("sign of the slope in friction",
             "friction is computed from a pressure with the wrong sign of h' V (Eqs. 7 and 15)",
             [Rule(friction=-1.0)], "Kelvin-Voigt"),
@@ -73,7 +73,7 @@ MISTAKES = (
             "point: it is the integral of p h' (Eq. 15)", [Rule(central=True)]),
     Mistake("tension allowed at the trailing edge",
             "the foundation stays attached where it would pull (no peeling): an element must detach where "
-            "its pressure vanishes (Eqs. 23, 24 and 33)", [Rule(pulls=True)]),
+            "its pressure vanishes (Eqs. 23, 24 and 33)", [Rule(tension=True)]),
     Mistake("contact lost while rising",
             "elements lose contact where the indenter rises, for the surface of the last step is taken for "
             "the present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
@@ -89,7 +89,7 @@ MISTAKES = (
     Mistake("memory forgotten where sliding reverses",
             "the indenter meets an undeformed foundation where it re-enters ground that it left: the "
             "surface there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
-            [Rule(decay=FORGETFUL)], "comes back"),
+            [Rule(decay=FORGETFUL), Rule(clears=True)], "comes back"),
     Mistake("wrong time of the free surface",
             "the free surface relaxes {:.3g} times as fast as exp(-t/tau) (Eq. 20)",
             [Rule(decay=factor) for factor in TIMES], "Kelvin-Voigt", TIMES, 1.0),

@@ -5,7 +5,7 @@ lever arm, or wrong times.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -43,6 +43,10 @@ PARAMETERS = (
     Parameter("g", {"support.gravity": 1.0}),
     Parameter("inertia", {"support.mass": 1.0, "support.gravity": -1.0},
               " as inertia alone (Eq. 17), the weight being right"),
+    Parameter("M_z", {"support.mass": 1.0, "drive.mass": 0.0},
+              " (what moves along z, the mass along x being right)"),
+    Parameter("inertia along z", {"support.mass": 1.0, "support.gravity": -1.0, "drive.mass": 0.0},
+              " (Eq. 17), the weight and the mass along x being right"),
     Parameter("k_s", {"support.stiffness": 1.0}),
     Parameter("delta", {"support.depth": 1.0}),
     Parameter("V", {VELOCITY: 1.0}),
@@ -60,8 +64,10 @@ USUAL = {"s": ("ms", 1e3), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "N/m^3": ("GN
 def parameters_of(scene: Scene) -> Iterator[Parameter]:
     """Yield the parameters of a scene, those of each arm among them."""
     values, arms = scene.values(), range(len(scene.foundation.arms))
+    shared = scene.drive.mass is None
     for each in PARAMETERS:
-        if all(values.get(key) or key == VELOCITY for key in each.powers):
+        known = all(values.get(key) or key == VELOCITY for key in each.powers)
+        if known and (shared or each.powers.get("drive.mass") != 0.0):  # else it is M or inertia
             yield each
     for symbol, name in (("K", "stiffness"), ("tau", "relaxation_time")):
         keys = [f"foundation.arms[{i}].{name}" for i in arms]
@@ -101,14 +107,14 @@ NOTHING = 1e-6
 """Largest value, relative to the scale of a column, that counts as zero."""
 FRICTION = "friction_coefficient", "friction_force", "spring_force"
 MADE_BY = "; in theory it comes from the sliding term -h' V of the rate, and from the damper (Eqs. 5 and 7)"
-"""Columns with friction, and what theory has it from."""
+"""Columns that contain friction, and its origin."""
 CUT_OFF = "digits cut off"
 """The name of a fault within the resolution of the data: where it is enough, nothing else is asserted."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 TIME_UNIT = "time: off by a power of ten, 10^{}; check the unit"
 LONGEST = 30.0
-"""Longest motion on a spring computed to try a unit, in durations of the run or of the data."""
+"""Longest motion that is computed to try a unit of the time, in durations of the run or of the data."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 """Initial guesses for an offset of the time, in both directions, in spans of the data."""
 HUNDREDTH = 0.01
@@ -117,7 +123,7 @@ FORCES = "normal_force", "friction_force"
 """Columns that may be late or filtered, together or alone."""
 SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
 """Columns whose sign follows that of the velocity."""
-DELAYS, SMALL = (0.05, 0.3, 2.0, 10.0), 1e-6
+DELAYS, SMALL = (0.05, 0.2, 0.5, 1.2, 3.0, 8.0, 20.0), 1e-6
 """Initial guesses for a delay or time constant, in hundredths of the span; and a step, relative to it."""
 ONSET = 0.1
 """Change of a force, relative to its range, from which the drive has started."""
@@ -303,19 +309,24 @@ def _scaled(bench: Bench, name: str, factor: float) -> Array:
 
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:
-    """Multiply the times by powers of ten; a cycle on a spring is not computed for too long."""
+    """Multiply the times by powers of ten that leave some motion.
+
+    Much later all is steady sliding, and much sooner the start: any such unit fits data that are constant.
+    """
     scene, end = bench.theory.scene, float(bench.time[-1])
-    longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
-    for power in (power for power in DECADES if end * 10.0**power <= longest):
+    ends = scene.run.duration, end
+    shortest, longest = min(ends) / LONGEST, LONGEST * max(ends)
+    for power in (power for power in DECADES if shortest <= end * 10.0**power <= longest):
         pair = bench.against(scene, bench.time * 10.0**power)
         yield fixed("unit of time", TIME_UNIT.format(-power), pair, 10.0**-power)
 
 
 def delays(bench: Bench) -> Iterator[Hypothesis]:
     """Fit an offset of the time from several starts, and the delay or a filter of forces."""
-    end, unit = float(bench.time[-1]), HUNDREDTH * float(bench.time[-1] - bench.time[0])
+    end, span = float(bench.time[-1]), float(bench.time[-1] - bench.time[0])
     if not bench.theory.scene.drive.rigid and end > LONGEST * bench.theory.scene.run.duration:
         return
+    unit = HUNDREDTH * span
     values = bench.columns[next(name for name in MEASURED if name in bench.columns)]
     change = np.abs(values - values[0])
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
@@ -323,6 +334,10 @@ def delays(bench: Bench) -> Iterator[Hypothesis]:
     starts += [share / HUNDREDTH for part in SHIFTS for share in (part, -part)]
     text = "the times are off by {1:.6g} ms: in the data the drive starts at that time"
     yield Hypothesis("time offset", text, bench.late, starts, unit)
+
+    def shorter(make: Callable[..., Pair], names: Sequence[str]) -> Callable[[float], Pair | None]:
+        return lambda time: make(time, names) if time <= span else None  # no longer one shows
+
     kinds: Any = (
         ("delay", "late by {1:.4g} ms, while the rest agrees", bench.late),
         ("low pass", "filtered by a low pass, its time constant {1:.4g} ms", partial(_filtered, bench)),
@@ -331,8 +346,8 @@ def delays(bench: Bench) -> Iterator[Hypothesis]:
         for kind, words, make in kinds if set(names) <= set(bench.names) else ():
             if kind != "delay" or len(bench.names) > len(names):  # else it is an offset of the time
                 yield Hypothesis(
-                    f"{kind} of {title}", f"{title.replace('_', ' ')}: {words}",
-                    partial(make, names=names), np.log(DELAYS).tolist(), unit, log=True,
+                    f"{kind} of {title}", f"{title.replace('_', ' ')}: {words}", shorter(make, names),
+                    np.log(DELAYS).tolist(), unit, log=True, last=True,
                 )  # fmt: skip
 
 

@@ -19,8 +19,9 @@ Pair = tuple[Curves, Curves]
 
 ROWS = 160
 """Rows of the data on which faults are tried: half spread evenly, half right after the start."""
-LARGEST = 1e3
-"""Largest difference of a value that counts, in units of its allowance."""
+LARGEST, FARTHER, HUGE = 1e3, 10.0, 1e100
+"""Largest difference of a value that counts, in allowances; or this multiple of those that the data have, if
+that is larger, so that a fit has a slope however far it begins; but never more than the last one."""
 SHARE_OF_VALUES = 0.98
 """Share of the values that a fault must bring within their allowance; the rest are at jumps."""
 LEFT_OVER = 1.5
@@ -37,7 +38,7 @@ PROMISING = 0.03
 NO_EFFECT = 1e-6
 """Slope, relative to that of the best parameter, below which another has no effect."""
 LATE_START = 3.0
-"""End of the data over their span from which the times must be off."""
+"""Last time over span that proves an offset."""
 DENSE, SOON, AFTER = 1200, 60, 1e-4
 """Instants of interpolated theory: even, and after changes of the drive, the first so soon over the span."""
 POWER_OF_TEN = 0.02
@@ -63,6 +64,7 @@ class Hypothesis(NamedTuple):
         None  # of the scene's quantities that scale with the number
     )
     factor: float | None = None  # reported without an unknown
+    last: bool = False  # named after any other fault that is enough, as it fits nearly anything
 
     def number(self, x: float) -> float | None:
         """Return what is reported for the unknown."""
@@ -114,12 +116,19 @@ class Bench(Case):
         """Return the differences of the curves; zero where one side does not exist."""
         return np.nan_to_num(np.array([pair[0][name] - pair[1][name] for name in self.names]))
 
+    @cached_property
+    def largest(self) -> float:
+        """The largest difference that counts: exact data are far from theory in units of their allowances."""
+        off = np.minimum(np.abs(self._gaps((self.columns, self.now))) / sum(self._units), HUGE)
+        usual = float(np.quantile(off, SHARE_OF_VALUES, axis=1).max())
+        return min(max(LARGEST, FARTHER * usual), HUGE)
+
     def ratios(self, pair: Pair | None) -> Array:
         """Return the differences relative to the range of theory and what is allowed outside it."""
         band, limit = self._units
         if pair is None:
-            return np.full(limit.shape, LARGEST)
-        return np.clip(self._gaps(pair) / (band + limit), -LARGEST, LARGEST)
+            return np.full(limit.shape, self.largest)
+        return np.clip(self._gaps(pair) / (band + limit), -self.largest, self.largest)
 
     @cached_property
     def start(self) -> float:

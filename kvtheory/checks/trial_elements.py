@@ -27,12 +27,12 @@ class Rule(NamedTuple):
     depth_rate: float = 1.0  # factor on delta' in the compression rate
     slide_rate: float = 1.0  # factor on -h' V there
     decay: float = 1.0  # the free surface decays as exp(-decay t/tau); infinite: no memory
-    pulls: bool = False  # an element sticks, and pulls, until it is back at z = 0
+    tension: bool = False  # elements may pull, until they are back at z = 0
     stale: float = (
         0.0  # part of the pressure of receding elements that the equation of motion misses
     )
     drops: float = 0.0  # part of the whole force that it misses while the indenter rises
-    hunt: float = 0.0  # damping is this times C u/delta_0, as in the law of Hunt and Crossley
+    hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
     front: float = 1.0  # weight of elements before the lowest point
@@ -41,6 +41,7 @@ class Rule(NamedTuple):
     flat: bool = False  # every strip of a ball is as deep as the middle one
     start: float = 1.0  # initial depth over the static depth
     loaded: bool = False  # arms bear load at the start
+    clears: bool = False  # the free surface is forgotten at the instant at which sliding reverses
     freezes: bool = False  # arms do not relax once the indenter has left them
     damper: float = 0.0  # a damper on the indenter, in units of C times the contact
 
@@ -66,11 +67,12 @@ POINTS, HALVINGS = 24, 24
 """Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
 SHALLOWEST, DEEPEST = 1e-3, 4.0
 """Ends of that interval, in static depths."""
-STEADY = "slide_rate", "pulls", "hunt", "friction", "central", "front", "back", "lost", "flat"
+STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "front", "back", "lost",
+          "flat")  # fmt: skip
 EVEN = "depth", "normal_force", "peak_pressure"
-"""What of a rule shows in steady sliding; and the curves that do not change sign with the velocity."""
+"""Fields of a rule that affect steady sliding; and the curves that do not change sign with the velocity."""
 SLOWEST, TINY = 1e-9, 1e-300
-"""Lowest speed on arms, in a_0/tau; and a force in N that divides where there is none."""
+"""Lowest speed on arms, in a_0/tau; and the divisor if the force vanishes."""
 IMPLICIT = 0.52
 """Weight of the end of a step; slightly more than the trapezoidal rule, for damping."""
 
@@ -143,7 +145,7 @@ class Elements:
         rubbed = (
             p + (1.0 - rule.friction) * damping * slope * speed
         )  # from which friction is computed
-        p, rubbed = (np.where(on & ((q > 0.0) | (rule.pulls > 0.0)), q, 0.0) for q in (p, rubbed))
+        p, rubbed = (np.where(on & ((q > 0.0) | (rule.tension > 0.0)), q, 0.0) for q in (p, rubbed))
         inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
         area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
         reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
@@ -167,11 +169,12 @@ class Elements:
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
         """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
         free = np.where(forgets | sticks, 0.0, np.exp(-age) * old) if h else old
         on = np.where(sticks, g > 0.0, np.where(old == 0.0, touching, g >= free))
-        size = np.where(rule.hunt > 0.0, rule.hunt * g / StaticState.of(self.scene).depth, 1.0)
+        factor = rule.hunt_crossley * g / StaticState.of(self.scene).depth
+        size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
         damping = foundation.damping * size
         p = foundation.stiffness * g + damping * rise
         surface = np.where(on, np.maximum(g, 0.0), free)
@@ -180,7 +183,7 @@ class Elements:
     def _arms(self, h: float, near: slice, g: Any, rise: Any, _touching: Any) -> Any:
         """Return the same on arms, strained at a constant rate during the step."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.pulls > 0.0, np.isinf(rule.decay)
+        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
         moduli, times = _moduli_and_times(self.scene)
         kept = np.exp(-h / times)
         gain = moduli * ((1.0 - kept) * times / h if h else 1.0)
@@ -205,6 +208,17 @@ class Elements:
         """Accept the state at the end of a step."""
         self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
         self.seen[near] = time
+
+    def direction(self, forward: Any, speed: Array, depth: Array, moved: Array) -> Array:
+        """Return which indenters slide forward; of one that has turned, a rule may clear the free surface."""
+        now = np.where(speed == 0.0, forward, speed > 0.0)
+        clears = (self.rule.clears > 0.0) & (now != forward)[:, None, None]
+        if clears.any():
+            x = self.places + moved[:, None, None]
+            g = depth[:, None, None] - self.heights - x * x / (2.0 * self.scene.indenter.radius)  # type: ignore[union-attr]
+            free = clears & (self.surface > np.maximum(g, 0.0))
+            self.surface[free], self.stress[:, free] = 0.0, 0.0
+        return now
 
     def relax(self, time: float, near: slice) -> None:
         """Relax the columns near the indenter from the time they were last in use to this one."""
@@ -307,7 +321,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if k_x:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
-        forward = np.where(speed == 0.0, forward, speed > 0.0)
+        forward = elements.direction(forward, speed, depth, base - along)
         edges = np.where(forward, (found.left, found.right), (found.right, found.left))
         spring = k_x * along + drive.damping * along_rate if k_x else found.friction
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
