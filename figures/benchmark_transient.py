@@ -19,7 +19,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from kvtheory.models.continuum import compiled
+from kvtheory.compilation import available
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.model import Scene
@@ -77,7 +77,7 @@ METHODS: dict[str, tuple[Callable[[float], Any], Callable[[Any], Any]]] = {
 def measured() -> dict[str, list[tuple[float, float]]]:
     """Return, for each method, the error and the least time at each tolerance."""
     truth = peer("Radau", True, 1e-12).sol
-    names = [name for name in METHODS if "compiled" not in name or compiled.available()]
+    names = [name for name in METHODS if "compiled" not in name or available()]
     jobs = [(name, rtol) for name in names for rtol in TOLERANCES]
     errors, seconds = {}, dict.fromkeys(jobs, math.inf)
     for name, rtol in jobs:  # not timed: the first calls import and compile

@@ -2,7 +2,6 @@
 
 import csv
 import math
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -227,8 +226,8 @@ def test_a_start_ends_in_steady_sliding_and_the_certificate_covers(scene, scheme
     run = kv.elements(
         scene, per_length=1e3 * density, scheme=scheme, at=[0.9983 * end, end], certify=certify
     )
-    if row.compiled_advance.cache_info().currsize:  # one layout of all arguments: one compilation
-        assert len(row.compiled_advance().signatures) == 1
+    if row.KERNEL.compiled:  # one layout of all arguments: one compilation
+        assert len(row.KERNEL.compiled.signatures) == 1
     expected = {column: float(getattr(state, name)) for column, name in STEADY.items()}
     if not scene.drive.rigid:
         expected |= {
@@ -299,8 +298,8 @@ BOTH_WAYS = {
 def test_compiled_kernels_give_what_interpreted_ones_give(name, monkeypatch):
     pytest.importorskip("numba")
     (scene, scheme), found = BOTH_WAYS[name], []
-    for enough in (sys.maxsize, -1):
-        monkeypatch.setattr(row, "WORTHWHILE", enough)
+    for compiles in (False, True):
+        monkeypatch.setattr(row.KERNEL, "worthwhile", lambda *_, compiles=compiles: compiles)
         options = {"scheme": scheme, "per_length": "30 /mm", "certify": False}
         found.append(kv.elements(scene, at=[0.0, 0.003, 0.011, 0.02], **options))
     slow, fast = found

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory import compilation
 from kvtheory.models.continuum.prony import solved_scene, trajectory
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
@@ -110,9 +111,38 @@ def test_a_long_slide_on_slow_arms_ends_in_steady_sliding():
     assert np.abs(books.balance / (books.stored_at_rest + books.work)).max() < 1e-5
 
 
+def test_what_is_dissipated_is_the_power_of_the_arm_over_time():
+    """That power, int s^2/(K_1 tau_1) dx with s = p - K u, from pressures and surfaces at many instants."""
+    K, K_1, tau = 4e9, 3e10, 0.01
+    drive = kv.Drive(history=[(0.0, 0.05), (0.01, 0.05), (0.01, -0.05), (0.02, -0.05)])
+    scene = kv.Scene(
+        foundation=kv.GeneralizedMaxwell(K, [[K_1, tau]]), drive=drive, run=kv.Run(0.02)
+    )
+    nodes, weights = (np.polynomial.legendre.leggauss(8) + np.array([[1.0], [0.0]])) / 2.0
+    times = np.concatenate([0.01 * nodes, 0.01 + 0.01 * nodes])
+    found = kv.transient(scene, at=times, rtol=1e-7, certify=False)
+    inside, outside = [], []
+    for k, time in enumerate(times):
+        low, high = sorted([found.leading_edge[k], found.trailing_edge[k]])
+        x = np.linspace(low, high, 61)[1:-1]
+        within = found.pressure(x, time) - K * found.surface(x, time)
+        free = np.append(np.linspace(low - 3e-3, low, 121), np.linspace(high, high + 3e-3, 121))
+        beyond = -K * np.where((free < low) | (free > high), found.surface(free, time), 0.0)
+        assert not beyond[[0, -1]].any()  # all of what is compressed
+        inside.append((within**2).sum() * (high - low) / 60.0)
+        outside.append((beyond**2).sum() * 2.5e-5)
+    books = found.energy([0.0, 0.02])
+    for name, squares in (("contact", inside), ("surface", outside)):
+        expected = 0.01 * np.append(weights, weights) @ squares / (K_1 * tau)
+        none, measured = getattr(books, f"dissipated_{name}")
+        assert none == 0.0
+        assert measured == pytest.approx(expected, rel=0.02), name
+    assert np.abs(books.balance).max() < 1e-8 * books.work[1]
+
+
 def test_small_disturbances_decay_at_the_rates_of_f24(monkeypatch):
     """A while after a small change of the velocity four rates are left, whose recurrence the depth obeys."""
-    monkeypatch.setattr(trajectory, "WORTHWHILE", 0)
+    monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_: compilation.available())
     arms, V, held = (
         [(3e10, 0.01), (5e9, 0.2)],
         0.2,
@@ -297,19 +327,6 @@ def test_many_arms_are_interpreted_at_once():
     assert calls[1] < 3.0 * calls[0]
 
 
-def test_compiled_kernels_are_loaded_soon_and_compiled_late(monkeypatch):
-    monkeypatch.undo()
-    monkeypatch.setattr(trajectory.compilation, "available", lambda: True)
-    monkeypatch.setattr(trajectory, "kernel", lambda: None)
-    for steps, on_disk, wanted in (
-        (trajectory.LOADABLE - 1, True, False), (trajectory.LOADABLE, True, True),
-        (trajectory.WORTHWHILE - 1, False, False), (trajectory.WORTHWHILE, False, True),
-    ):  # fmt: skip
-        monkeypatch.setattr(trajectory.Tally, "steps", steps)
-        monkeypatch.setattr(trajectory.compilation, "on_disk", lambda _, found=on_disk: found)
-        assert trajectory.worthwhile() is wanted
-
-
 def test_hops_agree_with_elements():
     """The indenter leaves the foundation, flies, lands on relaxing ground, and leaves it again."""
     scene = sliding([(3e11, 0.01)], 0.3, 0.026)
@@ -385,15 +402,15 @@ def test_compiled_kernels_give_the_same_numbers(monkeypatch):
     pytest.importorskip("numba")
     scene = sliding([(5e10, 0.1), (2e10, 3e-3)], kv.Drive(velocity=0.05, stiffness=1e8))
     found = []
-    for enough in (10**9, 0):
-        monkeypatch.setattr(trajectory, "WORTHWHILE", enough)
+    for fast in (False, True):
+        monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_, fast=fast: fast)
         found.append(kv.transient(scene, at=[0.01, 0.06]))
     assert [each.compiled for each in found] == [False, True]
     assert apart(*found, scene) < 1e-12
     assert found[0].steps == found[1].steps
 
 
-def test_a_history_of_many_points_has_steps_for_each_and_is_compiled_at_once(monkeypatch):
+def test_a_history_of_many_points_has_steps_for_each(monkeypatch):
     corners = [(1e-4 * i, 0.05 + 0.001 * (i % 3)) for i in range(13)]
     scene = kv.Scene(
         foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]),
@@ -402,7 +419,3 @@ def test_a_history_of_many_points_has_steps_for_each_and_is_compiled_at_once(mon
     )
     monkeypatch.setattr(solved_scene, "STEP_LIMIT", 0)
     assert kv.transient(scene, at=[1.2e-3], certify=False).steps > 0
-    monkeypatch.setattr(trajectory.Tally, "steps", 0)
-    monkeypatch.setattr(trajectory.compilation, "available", lambda: True)
-    assert not trajectory.worthwhile()
-    assert trajectory.worthwhile(coming=trajectory.WORTHWHILE)

@@ -152,32 +152,39 @@ def test_a_task_is_small_and_picklable():
     assert one.tolist() == other.tolist()
 
 
-@pytest.mark.parametrize(("quantity", "points"), [("hops", 320), ("hops", 250), ("load", 320)])
-def test_kernels_are_compiled_once_before_work_is_given_out(monkeypatch, quantity, points):
-    """Two workers would each compile what follows 320 motions; 250 they had better interpret."""
-    told = []
+@pytest.mark.parametrize(("quantity", "points", "anew"), [
+    ("hops", 320, True), ("hops", 250, True), ("hops", 320, False), ("hops", 40, True), ("load", 320, True),
+])  # fmt: skip
+def test_kernels_are_compiled_once_before_work_is_given_out(monkeypatch, quantity, points, anew):
+    """Two workers would each compile for half of 320 motions of 0.1 s; fewer they had better interpret."""
+    told, clock = [], iter([0.0, 0.2])
 
     class Recording(ThreadPoolExecutor):
         def submit(self, function, given):
             told.append("block")
-            return super().submit(function, given)
+            raise RuntimeError("enough is known")
 
     monkeypatch.setattr(blocks, "compute", lambda given: told.append(given.start))
-    with Recording(2) as executor:
+    monkeypatch.setattr(blocks, "thread_time", lambda: next(clock))
+    monkeypatch.setattr(compiled.KERNEL, "compiled", None)
+    monkeypatch.setattr(compiled.KERNEL, "on_disk", not anew, raising=False)
+    monkeypatch.setattr(compiled.KERNEL, "pays", lambda total: total > 15.9)
+    with Recording(2) as executor, pytest.raises(RuntimeError, match="enough is known"):
         kv.sweep(over={V: f"10 mm/s:1 m/s:{points}"}, quantities=quantity, executor=executor)
-    first = [0, 319] if (quantity, points) == ("hops", 320) else []
-    assert sorted(told[: len(first)]) == first
+    measured = [0, points - 1] if quantity == "hops" and points >= 50 else []
+    first = measured * (2 if points == 320 and anew else 1)
+    assert told[: len(first)] == first
     assert set(told[len(first) :]) == {"block"}
 
 
 @pytest.mark.parametrize("names", [["hops", "depth"], ["events"]])
 def test_what_is_compiled_ahead_is_all_that_a_block_calls(monkeypatch, names):
-    monkeypatch.setattr(compiled.Tally, "steps", compiled.WORTHWHILE)
+    pytest.importorskip("numba")
     columns = columns_of(names, series="depth" in names)
     axes = axes_of(kv.Scene(), {V: [0.1, 0.2]})
     plan = Plan(kv.Scene(), axes, columns, (0.0, 0.1), "exact", 1e-6)
-    compile_ahead(plan, 10**6, 2)
-    assert len(compiled.kernel().signatures) == 1
+    compile_ahead(plan, 10**6, 1)
+    assert len(compiled.KERNEL.compiled.signatures) == 1
     assert compute(task(plan, 0, 2)).failures == []
     assert kv.transient(at=[0.1]).compiled
-    assert len(compiled.kernel().signatures) == 1
+    assert len(compiled.KERNEL.compiled.signatures) == 1

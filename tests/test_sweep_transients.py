@@ -163,16 +163,15 @@ def test_many_scenes_in_one_call_have_the_bits_of_single_ones(monkeypatch):
     from kvtheory.models.continuum import compiled
     from kvtheory.sweeps import measures
 
-    if not compiled.available():
-        pytest.skip("needs numba")
+    pytest.importorskip("numba")
     asked = {
         "over": {V: "10 mm/s:5 m/s:12:log", TAU: [1e-3, 0.1, 1.0]},
         "at": ["0 ms", "3 ms", "200 ms"],
         "quantities": [*NAMES, *MEASURED, "peak_to_steady_friction", "settling_time", "hops"],
     }
-    monkeypatch.setattr(compiled, "WORTHWHILE", 1)
+    monkeypatch.setattr(compiled.KERNEL, "worthwhile", lambda *_: True)
     together = kv.sweep(**asked)
-    monkeypatch.setattr(measures._Motions, "follow_together", lambda self: None)
+    monkeypatch.setattr(measures._Motions, "follow_together", lambda self, indices: False)
     alone = kv.sweep(**asked)
     assert together["hops"].max() > 0
     for name in alone.values:

@@ -9,8 +9,9 @@ import sympy as sp
 from kvtheory.derivations.chapters import viscoelastic as theory
 
 import kvtheory as kv
-from kvtheory.models.steady import viscoelastic
+from kvtheory.models.steady import convolution, viscoelastic
 from kvtheory.models.steady.methods import ODD, solve_exact, solve_quadrature
+from kvtheory.models.steady.revolved import Strip
 from kvtheory.results import STEADY_UNITS
 from kvtheory.theory import laws
 from kvtheory.theory.laws import Fractional
@@ -252,3 +253,42 @@ def test_a_kink_that_is_not_declared_is_refused_beyond_kelvin_voigt():
     bent = kv.Profile(lambda x: 0.1 * abs(x) + 0.3 * max(abs(x) - 1e-4, 0.0), slope)
     with pytest.raises(kv.QuadratureError, match="the slope jumps where `kinks`"):
         kv.steady(scene(ZENER, "fixed", indenter=bent))
+
+
+BRANCHES = {
+    "a slow and a fast arm": convolution.Arms([10.0, 3.0], [1e-2, 1e-6]),
+    "a springpot": convolution.Springpot(1e-3, 0.4),
+    "none": None,
+}
+HEIGHTS = kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.1)
+
+
+@pytest.mark.parametrize("memory", BRANCHES)
+@pytest.mark.parametrize("shape", HEIGHTS)
+@np.errstate(all="ignore")
+def test_the_load_of_a_convolution_is_that_of_its_pressure(shape, memory):
+    """One integral for the load, with the relaxation function integrated, and two for the pressure."""
+    contact = convolution.ViscoelasticLine(shape, BRANCHES[memory], 1e-3).at(1e-4)
+    carried, _ = contact.total(contact.pressure)
+    assert contact.load == pytest.approx(carried, rel=1e-13, abs=0.0)
+
+
+@np.errstate(all="ignore")
+def test_a_strip_next_to_a_tip_takes_the_finer_rule():
+    """There its flank bends within the distance of the strip, and the coarse rule errs by 1e-11."""
+    cone, depth = kv.Wedge(0.1), 1e-4
+    line = convolution.ViscoelasticLine(cone, BRANCHES["a slow and a fast arm"], 1e-3)
+    rules = {}
+    for y in (1e-9, 3e-4):
+        strip = line.strips(Strip(cone, y, line.reach, 1e-9))
+        contact = strip.at(depth - cone.height(y))
+        coarse, fine = (
+            convolution.Contact(strip.shape, strip.memory, contact.depth, rule) for rule in (0, 1)
+        )
+        rules[y] = contact.rule
+        if contact.rule:
+            assert abs(coarse.load / fine.load - 1.0) > 1e-13
+            assert contact.load == fine.load
+        assert contact.load == pytest.approx(fine.load, rel=1e-14, abs=0.0)
+        assert contact.friction()[:2] == pytest.approx(fine.friction()[:2], rel=1e-13, abs=0.0)
+    assert rules == {1e-9: 1, 3e-4: 0}

@@ -12,7 +12,7 @@ import numpy as np
 from kvtheory.charts.naive import Array, Law, solve_by_scipy
 from kvtheory.charts.problems import Curves, Problem, by_continuum, by_elements, by_two_states
 from kvtheory.charts.work_precision import Clock, Method
-from kvtheory.models.continuum import compiled
+from kvtheory.compilation import available
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.slow_manifold.motion import follow
 from kvtheory.models.slow_manifold.start import start
@@ -39,7 +39,7 @@ def transient_methods() -> dict[str, Method]:
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
                _starts_forward),
         *(Method(f"continuum, {how}", "rtol", TOLERANCES, "evaluations", partial(by_continuum, fast=fast))
-          for how, fast in (("interpreted", False), ("compiled", True)) if not fast or compiled.available()),
+          for how, fast in (("interpreted", False), ("compiled", True)) if not fast or available()),
         *(Method(f"two states, {name}", "rtol", TOLERANCES[:-1], "evaluations",
                  partial(by_two_states, method=name, solve=solve), suits=_two_states)
           for name, solve in solvers.items()),

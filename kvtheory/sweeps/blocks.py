@@ -4,8 +4,10 @@
 same bits. A scene that fails is a missing value with its reason; the others are not affected.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from time import thread_time
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +19,8 @@ from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import FAILS, REMARKS, STABLE, Array, Measured, Plan, Table
 
-INTERPRETED = 1.5
-"""Multiple of the steps from which compiling pays that each worker must have for compiling ahead."""
+MEASURED = 50
+"""Fewest points of a sweep of which two are solved to see how long that takes."""
 
 
 class Task(NamedTuple):
@@ -147,11 +149,22 @@ def _transients(given: Task, steady: Measured) -> Measured:
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
-    """Compile the kernels here if each worker would otherwise do so; workers share the disk."""
-    if not plan.transient or lacks_continuum(plan.scene):
-        return
-    from kvtheory.sweeps.measures import compiles
+    """Compile the kernels here if that pays for each worker; workers share the disk.
 
-    if compiles(plan.scene, points / (INTERPRETED * workers)):
-        for index in {0, plan.points - 1}:  # one of the two may fail
-            compute(task(plan, index, index + 1))
+    Two points are solved to see how long that takes.
+    """
+    if not plan.transient or lacks_continuum(plan.scene) or points < MEASURED:
+        return
+    from kvtheory.sweeps.measures import kernel_of
+
+    kernel, begun = kernel_of(plan.scene), thread_time()
+    for index in (0, plan.points - 1):
+        compute(task(plan, index, index + 1))
+    seconds = (thread_time() - begun) / 2.0 * points / workers
+    if kernel.compiled is None and kernel.pays(seconds) and not (workers > 1 and kernel.on_disk):
+        spent, kernel.spent = kernel.spent, math.inf
+        try:
+            for index in (0, plan.points - 1):  # one of the two may fail
+                compute(task(plan, index, index + 1))
+        finally:
+            kernel.spent = spent

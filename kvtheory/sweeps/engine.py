@@ -16,6 +16,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from kvtheory import compilation
 from kvtheory.progress import Progress
 from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import files
@@ -171,13 +172,16 @@ def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
         pool = futures.ThreadPoolExecutor(jobs)
     else:
         spawn = multiprocessing.get_context("spawn")
-        pool = futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
+        pool = futures.ProcessPoolExecutor(
+            jobs, spawn, initializer=_follow_parent, initargs=(compilation.known_unusable(),)
+        )
     with pool:
         yield pool.submit
 
 
-def _follow_parent() -> None:
-    """Leave interrupts to the parent process, and end with it, even if it is killed."""
+def _follow_parent(unusable: tuple[str, ...]) -> None:
+    """Leave interrupts to the parent process, which has warned, and end with it, even if it is killed."""
+    compilation.give_up(unusable)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()
     threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()

@@ -6,11 +6,12 @@ where nothing is compiled or events are requested, are solved one by one, into t
 
 import json
 from collections.abc import Callable, Mapping
+from time import thread_time
 from typing import Any
 
 import numpy as np
 
-from kvtheory import compilation
+from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
@@ -35,9 +36,6 @@ CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "fric
 """Scale of a value of the cycle, by its unit."""
 SETTLED = 0.01
 """Share of the steady friction force within which the motion counts as settled."""
-STEPS = {False: 40, True: 200}
-"""Approximate cost of a certified scene in interpreted steps, on Kelvin-Voigt and on a Prony series (True),
-where peak pressures count as steps; to decide whether compiling pays."""
 DOUBLINGS = 2
 """Doublings of the workspace of a single run: few scenes need more, and are solved alone."""
 
@@ -54,13 +52,9 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
     return block.measured
 
 
-def compiles(scene: Scene, points: float) -> bool:
-    """Count so many scenes as interpreted if compiling the kernels pays for them; return whether it does."""
-    arms = bool(scene.foundation.arms)
-    kernels: Any = trajectory if arms else compiled
-    pays = compilation.available() and STEPS[arms] * points >= kernels.WORTHWHILE
-    kernels.Tally.steps += kernels.WORTHWHILE * pays
-    return pays
+def kernel_of(scene: Scene) -> Kernel:
+    """Return the kernel that solves a scene."""
+    return trajectory.KERNEL if scene.foundation.arms else compiled.KERNEL
 
 
 def relative(statement: str) -> str:
@@ -102,22 +96,33 @@ class _Motions:
                 self.measured.reasons[index] = error
 
     def follow(self) -> None:
-        """Solve the scenes, in one call on Kelvin-Voigt and rigid drives if compiling pays."""
+        """Solve the scenes one by one, and in one call of compiled kernels from where on that pays."""
+        kernel, begun = kernel_of(self.plan.scene), thread_time()
         plain = not (self.plan.scene.foundation.arms or self.plan.texts)
-        rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
-        pays = compiles(self.plan.scene, len(self.scenes)) or compiled.worthwhile()
-        if self.scenes and plain and rigid and pays:
-            self.follow_together()
-        for index in self.scenes:
-            if not (self.found.status[index] == self.found.other[index] == DONE):
-                try:
+        together = plain and all(units.rigid_drive for _, units, _ in self.scenes.values())
+        waiting = list(self.scenes)
+        while waiting:
+            done = len(self.scenes) - len(waiting)
+            left = (thread_time() - begun) / max(done, 1) * len(waiting)
+            if together and kernel.worthwhile(left, ALIKE):
+                together = False
+                if self.follow_together(waiting):
+                    waiting = [i for i in waiting if not self.finished(i)]
+                continue
+            index = waiting.pop(0)
+            try:
+                with kernel.followed_by(left - left / (len(waiting) + 1)):
                     self.follow_alone(index)
-                except FAILS as error:
-                    self.measured.reasons[index] = error
+            except FAILS as error:
+                self.measured.reasons[index] = error
 
-    def follow_together(self) -> None:
-        """Solve all scenes in one call of the compiled kernel."""
-        indices, kept = list(self.scenes), list(self.scenes.values())
+    def finished(self, index: int) -> bool:
+        """Whether a scene was solved together with others."""
+        return bool(self.found.status[index] == self.found.other[index] == DONE)
+
+    def follow_together(self, indices: list[int]) -> bool:
+        """Solve scenes in one call of the compiled kernel; return whether it could be compiled."""
+        kept = [self.scenes[index] for index in indices]
         units, drives = [u for _, u, _ in kept], [drive for _, _, drive in kept]
         numbers = float(units[0].inertia_number), float(units[0].support_number)
         runs = []
@@ -126,6 +131,8 @@ class _Motions:
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)
+        if not compiled.prepared(runs[0]):
+            return False
         ends = np.array([drive.end for drive in drives])
         scenes = bulk.Scenes(
             np.array([float(u.inertia_number) for u in units]),
@@ -153,6 +160,7 @@ class _Motions:
             deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
         )
         self.tell(indices, errors, estimate.STATEMENT)
+        return True
 
     def follow_alone(self, index: int) -> None:
         """Solve one scene."""

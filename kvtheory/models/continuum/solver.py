@@ -10,9 +10,11 @@ indenter, d = 1, needs no equation along z, only events.
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from time import thread_time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -250,9 +252,9 @@ def solve(
 
     The drive must reach `end`. Numbers are eps > 0 (not used if the support is fixed) and kappa >= 0, where
     infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
-    1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
-    steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
-    reached. Rejected steps count towards `max_steps`. TransientError if a step fails, or too many are needed.
+    1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) where that pays, see
+    `compilation`; the numbers are the same. `progress` is called with the time reached. Rejected steps count
+    towards `max_steps`. TransientError if a step fails, or too many are needed.
 
     >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
     >>> print(f"{motion.at(2.0).depth:.6f}")
@@ -267,19 +269,28 @@ def solve(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
     numbers = float(inertia_number), float(support_number)
-    arrays = compiled.worthwhile() if fast is None else fast
+    kernel, s, begun, took = compiled.KERNEL, 0.0, thread_time(), 0.0
+    arrays = kernel.worthwhile() if fast is None else fast
     run = r_.begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
+    if arrays and not compiled.prepared(run):
+        run = r_.as_objects(run)
     room, left, status = bulk.NO_BULK.workspace, max_steps, stepping.PAUSED
     while status != stepping.DONE:
-        if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
-            run = r_.as_arrays(run)
-        status = compiled.chosen(run)(
-            bulk.WALK, run, run, room.times, room.samples, room.rows, room.times,
-            min(ATTEMPTS, left), bulk.NO_BULK,
-        )  # fmt: skip
-        now = run.now[0]
-        before, left = left, max_steps - int(value(now, "steps") + value(now, "rejected"))
-        compiled.Tally.steps += 0 if compiled.in_use(run) else before - left
+        if (
+            not compiled.in_use(run)
+            and s
+            and fast is None
+            and kernel.worthwhile(took * (end / s - 1.0))
+        ):
+            as_arrays = r_.as_arrays(run)
+            run = as_arrays if compiled.prepared(as_arrays) else run
+        with nullcontext() if compiled.in_use(run) else kernel.interpreting():
+            status = compiled.chosen(run)(
+                bulk.WALK, run, run, room.times, room.samples, room.rows, room.times,
+                min(ATTEMPTS, left), bulk.NO_BULK,
+            )  # fmt: skip
+        now, took = run.now[0], thread_time() - begun
+        left = max_steps - int(value(now, "steps") + value(now, "rejected"))
         s = float(value(now, "s"))
         if status in REASONS:
             raise TransientError(REASONS[status], s)

@@ -6,12 +6,13 @@ row for each strip, at y = 0, dy, ...
 """
 
 import math
-from functools import cache, partial
+from contextlib import nullcontext
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory import compilation
+from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.elements import kernels
 from kvtheory.models.elements.kernels import Constants, Course, Row
 from kvtheory.models.elements.model import span
@@ -23,9 +24,10 @@ FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as zero."""
 KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
-WORTHWHILE = 10_000
-"""Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
-kernels takes half a second; compiling them, once per installation, about twenty seconds."""
+SECONDS = 11.0
+"""Time to compile, once per installation."""
+
+KERNEL = Kernel(kernels.advance, (kernels,), SECONDS)
 
 
 class OutgrownError(ArithmeticError):
@@ -40,19 +42,6 @@ class IndenterState(NamedTuple):
     rate: float
     along: float = 0.0
     along_rate: float = 0.0
-
-
-class Tally:
-    """Number of steps of a strip interpreted in this process."""
-
-    steps = 0
-
-
-@cache
-def compiled_advance() -> Any:
-    """Return `kernels.advance`, compiled."""
-    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
-    return compilation.cached(kernels.advance, _nrt=False)
 
 
 class ElementRow:
@@ -91,19 +80,29 @@ class ElementRow:
         kernels.add_kinks(row, law.step(1.0), 0.0)
         kernels.begin(row, depth)
 
-    def compile(self, steps: int) -> None:
-        """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
-        work = steps * self.stored.low.size
-        pays = Tally.steps + work > WORTHWHILE and compilation.available()
-        Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
-        self.compiled = pays and self.constants.surface.profile is None
+    def compile(self, course: Course, found: Array, left: float = 0.0) -> None:
+        """Go on compiled if that pays, as steps would take `left` interpreted; profiles cannot be."""
+        if (
+            not self.compiled
+            and self.constants.surface.profile is None
+            and KERNEL.worthwhile(left, ALIKE)
+        ):
+            self.compiled = KERNEL.prepared(self.stored, course, found, 0, 0, 0)
 
     @np.errstate(all="ignore")  # the kernels check the results
     def run(
         self, course: Course, found: Array, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
         """Take steps up to `until` or a failure; return the status, and the steps and reports done."""
-        advance = compiled_advance() if self.compiled else kernels.advance
+        profile = self.constants.surface.profile is not None
+        with nullcontext() if self.compiled or profile else KERNEL.interpreting():
+            return self._run(
+                KERNEL if self.compiled else kernels.advance, course, found, begin, until
+            )
+
+    def _run(
+        self, advance: Any, course: Course, found: Array, begin: tuple[int, int], until: int
+    ) -> tuple[int, int, int]:
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
             status, step, reported = advance(self.stored, course, found, step, reported, until)

@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -284,10 +285,11 @@ def _run(
         limits = stability.limits(model, path)
         course = course_of(path, c.law, *table, _unsure(c, path, h)[0], limits)
         found = np.full((len(about), len(COLUMNS)), math.nan)
-        row.compile(len(steps))
-        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
-        status, done, reported, until = kernels.DONE, 0, 0, -1
+        status, done, reported, until, begun = kernels.DONE, 0, 0, -1, thread_time()
         while status == kernels.DONE and until < len(steps):
+            left = (thread_time() - begun) * (len(steps) / max(done, 1) - 1.0)
+            row.compile(course, found, left)
+            pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
             until = min(done + pause, len(steps))
             status, done, reported = row.run(course, found, (done, reported), until)
             if done:

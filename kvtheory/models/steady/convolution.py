@@ -8,13 +8,14 @@ where <u'> is the mean of u' over the memory of the branch: with v = (int_0^s g)
 u'(X - s(v)), however fast the branch relaxes, and the integrand has no boundary layer. The trailing edge is
 the first zero of the pressure, and
 
-    W = int p dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
+    W = int u'(X) int_0^(c - X) G ds dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
 
 as a greater depth adds a step of compression at the leading edge, which relaxes with G. There is one zero:
 where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises and G does not.
 """
 
 import math
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -40,8 +41,10 @@ Array = Any
 """Of floats."""
 Shape = Convex | ConvexProfile
 
-NODES, BOTH = RULES[3]
-"""A double-exponential rule from 0 to 1: its nodes, with weights of it and of the one of twice its step."""
+USED = RULES[2:4]
+"""Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
+ENOUGH = 1e-15
+"""Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -136,8 +139,9 @@ class Contact:
 
     load_curvature, guess, noise = None, (), 0.0
 
-    def __init__(self, shape: Shape, memory: Memory, depth: float) -> None:
-        self.shape, self.memory, self.depth = shape, memory, depth
+    def __init__(self, shape: Shape, memory: Memory, depth: float, rule: int = 0) -> None:
+        self.shape, self.memory, self.depth, self.rule = shape, memory, depth, rule
+        self.nodes, self.both = nodes, both = USED[rule]
         # The extent at rest: h(-a) = h(back) = depth.
         if isinstance(shape, ConvexProfile):
             self.a, self.back = shape.sides(depth)
@@ -151,27 +155,55 @@ class Contact:
         rows: list[list[Array]] = [[], [], []]
         # Nodes are exact towards the end that is closer to the lowest point.
         for start, end in pieces:
-            forth, back = (end - start) * NODES, (end - start) * NODES[::-1]
+            forth, back = (end - start) * nodes, (end - start) * nodes[::-1]
             rows[0].append(start + forth if abs(start) < abs(end) else end - back)
             rows[1].append(x_te - end + back)
-            rows[2].append((end - start) * BOTH)
+            rows[2].append((end - start) * both)
         self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
         """Positions, distances from the trailing edge, and weights of both rules."""
         self.rate = -shape.slope(self.x)
-        self.rows, apart = self.remembered(self.x)
-        self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
-        self.load, load_apart = self.total(self.pressure)
-        error = apart + load_apart / self.load
-        error = error ** (1.0 if getattr(shape, "bent", False) else 1.5)
-        self.load_error = MARGIN * (error + getattr(shape, "noise", 0.0))
-        if not self.load_error < LIMIT:
+        impulse = self.ahead + (0.0 if memory is None else memory.amount(self.ahead).sum(axis=0))
+        self.load, apart = self.total(self.rate * impulse)
+        self.load_error = self._error(apart / self.load)
+        self.load_slope = self.a + x_te  # dW/d(delta) over K
+        if memory is not None:
+            self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
+
+    def _error(self, apart: float) -> float:
+        """Return the relative error from the difference of both rules."""
+        apart = apart ** (1.0 if getattr(self.shape, "bent", False) else 1.5)
+        error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
+        if not error < LIMIT:
             raise QuadratureError(
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "
                 "`kinks` does not name every kink"
             )
-        self.load_slope = self.a + x_te  # dW/d(delta) over K
-        if memory is not None:
-            self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
+        return error
+
+    @cached_property
+    def passed(self) -> tuple[Array, float]:
+        """The pressure of each branch at the nodes, and the error of integrals over it."""
+        rows, apart = self.remembered(self.x)
+        pressure = self.depth - self.shape.height(self.x) + rows.sum(axis=0)
+        load, load_apart = self.total(pressure)
+        return rows, max(self._error(apart + load_apart / load), self.load_error)
+
+    @property
+    def finer(self) -> "Contact | None":
+        """The contact by the finer rule if pressures need it."""
+        if self.passed[1] < ENOUGH or self.rule + 1 == len(USED):
+            return None
+        return Contact(self.shape, self.memory, self.depth, self.rule + 1)
+
+    @property
+    def rows(self) -> Array:
+        """The pressure of each branch at the nodes."""
+        return self.passed[0]
+
+    @property
+    def pressure(self) -> Array:
+        """The pressure at the nodes."""
+        return self.depth - self.shape.height(self.x) + self.rows.sum(axis=0)
 
     def total(self, values: Array) -> tuple[float, float]:
         """Return the integral over the contact, and the difference of both rules."""
@@ -194,9 +226,9 @@ class Contact:
         for first, last in pairwise(cuts):
             width = last - first
             if width.any():
-                past = memory.delay(first[..., None] + width[..., None] * NODES, X)
+                past = memory.delay(first[..., None] + width[..., None] * self.nodes, X)
                 rate = -shape.slope(np.maximum(x[:, None] - past, -a))
-                means.append(width[..., None] * (rate @ BOTH.T))
+                means.append(width[..., None] * (rate @ self.both.T))
         fine, coarse = np.moveaxis(sum(means), -1, 0)
         size = np.abs(amount * fine).sum(axis=0)
         apart = np.abs(amount * (fine - coarse)).sum(axis=0)
@@ -234,15 +266,20 @@ class Contact:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
         if self.memory is None:
             return 0.0, 0.0, self.load_error
+        if finer := self.finer:
+            return finer.friction()
+        error = self.passed[1]
         left, _ = self.remembered(np.array([self.x_te]))
         work, lost = self.memory.works(self, left)
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
         rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
         rest = held if abs(rest - held) > JUMP * self.depth else rest
-        return work + 0.5 * rest * rest, lost, self.load_error + self.memory.noise
+        return work + 0.5 * rest * rest, lost, error + self.memory.noise
 
     def quantities(self) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
+        if finer := self.finer:
+            return finer.quantities()
         friction, lost, error = self.friction()
         edges, share = (-self.a, self.x_te), share_lost(friction, lost)
         values = self.half_length, *edges, self.load, friction, self.peak(), share
@@ -288,5 +325,9 @@ class ViscoelasticLine:
         return self.shallow(load, lambda x: x + spring), ()
 
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
-        """Return the contact at a depth."""
-        return Contact(self.shape, self.memory, depth)
+        """Return the contact at a depth, by the finer rule if the load needs it."""
+        if not getattr(self.shape, "bent", False):
+            contact = Contact(self.shape, self.memory, depth)
+            if contact.load_error < ENOUGH:
+                return contact
+        return Contact(self.shape, self.memory, depth, 1)

@@ -91,13 +91,12 @@ class Strip:
 class Contact(NamedTuple):
     """The middle plane of a contact, and the sums over its strips, over the stiffness."""
 
+    strips: "Strips"
     middle: Any
     depth: float
     noise: float
     load: float
     load_slope: float
-    friction: float
-    lost: float
     load_error: float  # relative, of every sum
     load_curvature: None = None
     guess: tuple[()] = ()
@@ -105,9 +104,10 @@ class Contact(NamedTuple):
     def quantities(self) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
         values, own, powers = self.middle.quantities()
-        values |= {"load": self.load, "friction_force": self.friction}
-        values["dissipated_in_contact"] = share_lost(self.friction, self.lost)
-        own |= dict.fromkeys(SUMS, self.load_error)
+        (load, _, _, friction, lost, _), error = self.strips.sums(self.middle, with_friction=True)
+        values |= {"load": load, "friction_force": friction}
+        values["dissipated_in_contact"] = share_lost(friction, lost)
+        own |= dict.fromkeys(SUMS, error)
         return values, own, powers | power_bounds(self)
 
 
@@ -125,9 +125,18 @@ class Strips:
         return self.line.shallow(load, lambda a: a * wide * (1.5 * a + 1.3 * l_r) + spring), ()
 
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
-        """Sum over the strips, by finer rules until two of them agree."""
-        middle, convex = self.line.at(depth), self.profile.convex
-        half, rim = middle.half_length, RIM[convex]
+        """Return the contact at a depth, with the load."""
+        middle = self.line.at(depth)
+        (load, slope, _), error = self.sums(middle, with_friction=False)
+        return Contact(self, middle, middle.depth, float(middle.noise), load, slope, error)
+
+    def sums(self, middle: Any, *, with_friction: bool) -> tuple[list[float], float]:
+        """Return the rows of `_strip` summed over the strips, by finer rules until two of them agree.
+
+        The relative error is that of every sum.
+        """
+        depth, half, convex = middle.depth, middle.half_length, self.profile.convex
+        rim = RIM[convex]
         pieces = list(pairwise([0.0, *self._breaks(depth, half), 0.5 * math.pi]))
         for nodes, (fine, _) in RULES[1 + convex :]:
             # Weights of the rule, and of those of twice and four times its step.
@@ -140,37 +149,38 @@ class Strips:
             y = half * np.maximum(np.sin(t), MIDDLE)
             deep = np.maximum(depth - self.profile.height(y), SMALLEST)
             weights *= 2.0 * half * self.indenter.stretch * np.cos(t)
-            each = np.einsum("ij,kj->ik", self._rows(y, deep), weights)
-            sums = np.maximum(each[[0, 2]], SMALLEST)
-            last, before = (np.abs(np.diff(each)[[0, 2]]) / sums[:, :1]).max(axis=0).tolist()
+            each = np.einsum("ij,kj->ik", self._rows(y, deep, with_friction), weights)
+            sums = np.maximum(each[::3], SMALLEST)
+            last, before = (np.abs(np.diff(each)[::3]) / sums[:, :1]).max(axis=0).tolist()
             # An analytic integrand squares its error with each rule; any other one divides it.
             estimate = last**1.5 if convex else last * min(MARGIN * last / before, 1.0)
             if estimate < RTOL[convex]:
                 break
-        error = estimate + float((each[4:, 0] / sums[:, 0]).max()) + rim**4
+        error = estimate + float((each[2::3, 0] / sums[:, 0]).max()) + rim**4
         if not error < LIMIT:
             raise QuadratureError(
                 "quadrature over the strips fails: the indenter's reach is too close"
             )
         error += SHARP if self.profile.kinks else LEAST * self.floor
-        load, slope, friction, lost = each[:4, 0].tolist()
-        noise = float(middle.noise)
-        return Contact(middle, middle.depth, noise, load, slope, friction, lost, error)
+        return each[:, 0].tolist(), error
 
-    def _rows(self, y: Array, depth: Array) -> Array:
-        """Return load, its slope, friction, its part lost, and the errors of load and friction of strips."""
+    def _rows(self, y: Array, depth: Array, with_friction: bool) -> Array:
+        """Return the rows of `_strip`, a column for each strip."""
         nearest = 2.0 ** math.floor(math.log2(NARROWEST * y.max()))
         if self.line.in_columns:
-            return self._strip(y[:, None], depth[:, None], nearest)[..., 0]
+            return self._strip(y[:, None], depth[:, None], nearest, with_friction)[..., 0]
         pairs = zip(y.tolist(), depth.tolist(), strict=True)
-        return np.transpose([self._strip(*pair, nearest) for pair in pairs])
+        return np.transpose([self._strip(*pair, nearest, with_friction) for pair in pairs])
 
-    def _strip(self, y: Any, depth: Any, nearest: float) -> Array:
+    def _strip(self, y: Any, depth: Any, nearest: float, with_friction: bool) -> Array:
+        """Return load, its slope and its error, and with friction also that, its part lost, and its error."""
         line = self.line.strips(Strip(self.profile, y, self.line.reach, nearest))
         contact = line.at(depth)
-        friction, lost, error = contact.friction()
-        errors = contact.load * contact.load_error, friction * error
-        return np.array([contact.load, contact.load_slope, friction, lost, *errors])
+        rows = [contact.load, contact.load_slope, contact.load * contact.load_error]
+        if with_friction:
+            friction, lost, error = contact.friction()
+            rows += [friction, lost, friction * error]
+        return np.array(rows)
 
     def _breaks(self, depth: float, half: float) -> list[float]:
         """Return t of the strips that touch a kink of the profile, or whose pressure vanishes there."""

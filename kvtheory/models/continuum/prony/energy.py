@@ -2,11 +2,24 @@ r"""The energy ledger of a transient on a Prony series (facts F14 and F23).
 
 In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_i T_i), in the contact and
 where the surface relaxes behind it. The ledger takes the stresses of each element from the memory, not the
-moments from which the solver computes the forces, so that its balance checks them. Both are integrated by
+moments from which the solver computes the forces, so that its balance checks them. It is integrated by
 Gauss's rule over the ground that the edges passed: between the ends of steps, on panels that double from the
 present backwards, since the stresses of fast arms change there: from the shortest relaxation time on in the
-contact, from the shortest time in which the free surface relaxes behind it. The powers are integrated over
-each step.
+contact, from the shortest time in which the free surface relaxes behind it.
+
+What was dissipated until now needs no integral over the ground at each past instant. In the contact
+Q_i = int s_i^2 dxi follows the balance, with the moments F_i and M_i, over both edges,
+
+    Q_i' = 2 k_i (d' F_i - 2 lambda M_i) - 2 Q_i/T_i +- s_e^2 X_e' = P_i - 2 Q_i/T_i,
+
+    int_0^s Q_i/T_i ds' = 1/2 int_0^s P_i(s') (1 - e^-2(s - s')/T_i) ds'.
+
+An element that an edge left at sigma relaxes in modes, m_j e^-r_j(s - sigma), and has lost since then
+
+    sum_jl m_j m_l L_jl (1 - e^-(r_j + r_l)(s - sigma))/(r_j + r_l),    L_jl = sum_i f_ij f_il/(k_i T_i)
+
+with s_i = sum_j f_ij m_j: that of free ground follows from the ground at present, and that of ground which an
+edge meets again from the element at this edge.
 """
 
 from typing import Any
@@ -15,22 +28,28 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum.energy import Ledger, accumulated, entries
+from kvtheory.models.continuum.energy import Ledger, entries
 from kvtheory.models.continuum.prony import evaluation as e_
 from kvtheory.models.continuum.prony.contact import (
+    ALONG,
     DEPTHS,
     EDGES,
     FALL,
+    FORCES,
     FREE,
+    MOMENTS,
     NEVER,
     PEELING,
+    RATE,
     SHARE,
     SLIDES,
     STIFFNESS,
     STRESSES,
     TIME,
+    TOUCHING,
 )
 from kvtheory.models.continuum.prony.records import SEGMENT
+from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.models.continuum.run import readable, structured
 from kvtheory.scene import base_motion as drive_
@@ -43,8 +62,9 @@ HALVINGS = 52
 """Bisections for the instant at which an edge passed an element."""
 BLOCK = 20
 """Number of times at which the integrals over the ground are evaluated together."""
-VOLUME, STORED, POWER = range(3)
-"""The integrals over the ground: of u, of u^2 + sum s_i^2/k_i, and of sum s_i^2/(k_i T_i)."""
+VOLUME, STORED, LOST = range(3)
+"""The integrals over the ground: of u, of u^2 + sum s_i^2/k_i, and of what free elements lost since an edge
+left them."""
 
 
 class Ground:
@@ -98,7 +118,7 @@ class Ground:
     def slid(self, index: Any, theta: Array, s: Array) -> tuple[Array, Array]:
         """Return Y and lambda of the base under the indenter."""
         step = self.steps[index]
-        piece, along = self.pieces[step["piece"]].T, self.rows[index, e_.ALONG].T
+        piece, along = self.pieces[step["piece"]].T, self.rows[index, ALONG].T
         t, powers = s - piece[drive_.START], piece[drive_.POWERS :]
         Y = piece[drive_.DISPLACEMENT] + polynomial.polyval(
             t, polynomial.polyint(powers), tensor=False
@@ -198,14 +218,100 @@ class Ground:
             )
             stress = k * (A - xi * B) + np.where(rest, 0.0, left * fade)
             self._count_before(stress, s, X, now, np.where(rest, 0, index))
+            lost = np.zeros_like(u)
         else:
-            run = self.motion.run
-            modes = np.einsum("mi,iq->mq", run.to_modes, -stress.sum(axis=0) - stress / k)
-            modes = modes * np.exp(np.minimum((nodes - s) * self.arms[:, FALL, None], 0.0))
+            age, modes = np.maximum(s - nodes, 0.0), self._modes(stress)
+            lost = self._lost(modes, age)
+            modes = modes * np.exp(-age * self.arms[:, FALL, None])
             u = np.einsum("m,mq->q", self.arms[:, SHARE], modes)
-            stress = np.einsum("im,mq->iq", run.from_modes, modes)
-        squares = stress * stress / k
-        return [u * rate, (u * u + squares.sum(axis=0)) * rate, (squares / T).sum(axis=0) * rate]
+            stress = np.einsum("im,mq->iq", self.motion.run.from_modes, modes)
+        return [u * rate, (u * u + (stress * stress / k).sum(axis=0)) * rate, lost * rate]
+
+    def _modes(self, stress: Array) -> Array:
+        """Return the modes of elements with these stresses, whose pressure is zero."""
+        each = -stress.sum(axis=0) - stress / self.arms[:, STIFFNESS, None]
+        return np.asarray(np.einsum("mi,iq->mq", self.motion.run.to_modes, each))
+
+    def _lost(self, modes: Array, age: Array) -> Array:
+        """Return what free elements lost since an edge left them with these modes."""
+        k, T, rates, f = (
+            self.arms[:, STIFFNESS],
+            self.arms[:, TIME],
+            self.arms[:, FALL],
+            self.motion.run.from_modes,
+        )
+        each = np.einsum("ij,il,i->jl", f, f, 1.0 / (k * T))
+        both = rates[:, None] + rates
+        faded = -np.expm1(-both[..., None] * age) / both[..., None]
+        return np.asarray(np.einsum("jq,lq,jl,jlq->q", modes, modes, each, faded))
+
+    def powers(self, s: Array) -> tuple[Array, Array, Array]:
+        """Return the powers at times: of the drive, in the damper over its damping, and P_i of each arm."""
+        index = self.step_at(s)
+        theta = (s - self.starts[index]) / self.steps["span"][index]
+        number = self.slid(index, theta, s)[1]
+
+        def along(row: int) -> Array:
+            return polynomial.polyval(theta, self.rows[index, row].T, tensor=False)
+
+        def arms(row: int) -> Array:
+            return polynomial.polyval(theta, self.memory[index, :, row].T, tensor=False)
+
+        step, rate, F, M = self.steps[index], along(RATE), arms(FORCES), arms(MOMENTS)
+        d = step["depth"] + step["span"] * polynomial.polyval(
+            theta, polynomial.polyint(self.rows[index, RATE].T), tensor=False
+        )
+        l, r = along(EDGES), along(EDGES + 1)
+        of_arrays: Any = forces
+        _, friction = of_arrays(l, r, d, F.sum(axis=0), M.sum(axis=0))
+        power = 2.0 * self.arms[:, STIFFNESS, None] * (rate * F - 2.0 * number * M)
+        for k, side in enumerate((-1.0, 1.0)):
+            _, moves, _, _ = self.place(k, s)
+            flies = step["sides"]["state"][:, k] == FREE
+            power += side * np.where(flies, 0.0, moves) * arms(STRESSES + k) ** 2
+        w = along(ALONG)
+        return (number + w) * friction, w * w, power
+
+    def spent(self, s: float, damping: float) -> tuple[float, float, float, float]:
+        """Return the work until `s`, and what contact, ground that was met again and damper lost."""
+        panels = self._panels(s, 0.0, s, False, self.ages[1])
+        if panels.size < 2:
+            return 0.0, 0.0, 0.0, 0.0
+        width = np.diff(panels)[:, None]
+        t, weights = (
+            (panels[:-1, None] + width * ABSCISSAE).reshape(-1),
+            (width * WEIGHTS).reshape(-1),
+        )
+        drive, damper, powers = self.powers(t)
+        kept = -np.expm1(2.0 * (t - s) / self.arms[:, TIME, None]) / self.arms[:, STIFFNESS, None]
+        rows = (
+            drive,
+            0.375 * (kept * powers).sum(axis=0),
+            0.75 * self.met_again(t),
+            damping * damper,
+        )
+        work, contact, again, lost = (float(weights @ row) for row in rows)
+        return work, contact, again, lost
+
+    def met_again(self, s: Array) -> Array:
+        """Return what elements had lost that an edge meets again at times, per time."""
+        index, found = self.step_at(s), np.zeros_like(s)
+        for k in range(2):
+            side = self.steps["sides"][index, k]
+            number = np.where(side["state"] == TOUCHING, side["segment"], NEVER)
+            at = np.nonzero((number != NEVER) & (self.segments["step"][number] != NEVER))[0]
+            if not at.size:
+                continue
+            segment = self.segments[number[at]]
+            X, moves, _, _ = self.place(k, s[at])
+            edge = segment["edge"]
+            sigma = self.instants(edge, X, segment["a"], np.minimum(segment["b"], s[at]))
+            _, _, then, theta = self.place(edge, sigma)
+            stress = polynomial.polyval(
+                theta, self.memory[then, :, STRESSES + edge].T, tensor=False
+            )
+            found[at] += self._lost(self._modes(stress), s[at] - sigma) * np.abs(moves)
+        return found
 
     def _count_before(self, stress: Array, s: Array, X: Array, now: Any, entered: Any) -> None:
         """Add to stresses in the steps `now` what earlier counts of the accumulators know of the elements."""
@@ -241,16 +347,8 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     """
     times, ground, given = np.asarray(s, dtype=float), Ground(motion), readable(motion.run.given[0])
     flat = times.reshape(-1)
-
-    def integrated(low: Array, high: Array) -> Array:
-        t = (low[:, None] + (high - low)[:, None] * ABSCISSAE).reshape(-1)
-        found, power = motion.states(t, peaks=False), 0.75 * ground.integrals(t)[:, POWER]
-        work, damper = found[e_.DRIVE] * found[e_.FRICTION_FORCE], found[e_.ALONG_RATE] ** 2
-        rows = np.stack([work, *power, given.damping * damper], axis=-1)
-        rows = rows.reshape(low.size, ABSCISSAE.size, rows.shape[-1])
-        return np.einsum("n,m,nmc->nc", high - low, WEIGHTS, rows)
-
-    sums = accumulated(integrated, ground.starts, flat)
-    found = motion.states(flat, peaks=False)
+    sums = np.array([ground.spent(t, given.damping) for t in flat.tolist()]).reshape(-1, 4).T
+    found, over = motion.states(flat, peaks=False), ground.integrals(flat)
+    sums[2] += 0.75 * over[1, LOST]
     moving = found[[e_.DEPTH, e_.RATE, e_.ALONG_X, e_.ALONG_RATE]]
-    return entries(given, moving, sums, 0.375 * ground.integrals(flat)[:, STORED], times.shape)
+    return entries(given, moving, sums, 0.375 * over[:, STORED], times.shape)

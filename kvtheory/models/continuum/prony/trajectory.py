@@ -1,14 +1,16 @@
 """A solved transient on a Prony series; its kernels are interpreted, or compiled by numba where it pays."""
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
+from time import thread_time
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory import compilation
+from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.prony import (
@@ -31,9 +33,10 @@ Array = NDArray[np.float64]
 STEP_LIMIT = 30_000
 ATTEMPTS = 100
 """Attempted steps between two reports of progress."""
-WORTHWHILE, LOADABLE = 5_000, 300
-"""Interpreted steps after which compiling pays, 20 s once per installation, and after which loading
-kernels that are compiled does, a second."""
+SECONDS = 22.0
+"""Time to compile, once per installation."""
+EVALUATED = 50
+"""Times at which states are evaluated between two decisions whether to compile."""
 SUBDIVISIONS = 4
 """Points shown for each step."""
 REFUSED = {
@@ -43,25 +46,17 @@ REFUSED = {
 """Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
 
 
-class Tally:
-    """Number of steps interpreted in this process."""
-
-    steps = 0
-
-
-def kernel() -> Any:
-    """Return the compiled entry of the kernels; it needs numba."""
-    return compiled.kernel(
-        evaluation.perform, (b_, r_, contact, step, segments, counting, hops, walk, evaluation)
-    )
+KERNEL = Kernel(
+    evaluation.perform,
+    (b_, r_, contact, step, segments, counting, hops, walk, evaluation),
+    SECONDS,
+    compiled.INLINED,
+)
 
 
-def worthwhile(coming: int = 0) -> bool:
-    """Return whether to use compiled kernels from now on; about `coming` more steps are certain."""
-    steps = Tally.steps + coming
-    if steps < min(LOADABLE, WORTHWHILE) or not compilation.available():
-        return False
-    return steps >= WORTHWHILE or compilation.on_disk(kernel())
+def prepared(run: Run) -> bool:
+    """Load or compile the kernels, for a run whose records are arrays; return whether that worked."""
+    return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros((1, 1)))
 
 
 @dataclass(frozen=True)
@@ -104,9 +99,27 @@ class Trajectory:
         found[0] = self.states([s])[:, 0]
         return self._perform(task, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
 
+    @cached_property
+    def arrays(self) -> Run:
+        """The run with arrays for compiled kernels."""
+        return as_arrays(self.run)
+
     def _perform(self, task: int, times: Array, found: Array) -> Array:
-        perform = kernel() if self.compiled else evaluation.perform
-        perform(task, self.run, 0, times, found)
+        """Perform a task at all times, compiled from where on that pays."""
+        if task not in (evaluation.STATES, evaluation.WITHOUT_PEAKS):
+            (KERNEL if self.compiled else evaluation.perform)(task, self.run, 0, times, found)
+            return found
+        fast, done, took = self.compiled, 0, 0.0
+        while done < times.size:
+            left = took * (times.size / max(done, 1) - 1.0)
+            fast = fast or (KERNEL.worthwhile(left, ALIKE) and prepared(self.arrays))
+            part = slice(done, None if fast else done + EVALUATED)
+            begun = thread_time()
+            with nullcontext() if fast else KERNEL.interpreting():
+                perform, run = (KERNEL, self.arrays) if fast else (evaluation.perform, self.run)
+                perform(task, run, 0, times[part], found[part])
+            took += thread_time() - begun
+            done = times.size if fast else done + EVALUATED
         return found
 
 
@@ -132,25 +145,32 @@ def solve(
     >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
     0.417162
     """
-    arrays = worthwhile(len(drive.pieces)) if fast is None else fast
+    arrays = KERNEL.worthwhile() if fast is None else fast
     run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
+    if arrays and not prepared(run):
+        run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=False)
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
+    begun = thread_time()
     while status != walk.DONE:
         interpreted = isinstance(run.steps, list)
-        perform = evaluation.perform if interpreted else kernel()
-        with np.errstate(all="ignore"):  # an iteration that diverges ends a step, compiled or not
+        perform = evaluation.perform if interpreted else KERNEL
+        with (
+            np.errstate(all="ignore"),  # an iteration that diverges ends a step, compiled or not
+            KERNEL.interpreting() if interpreted else nullcontext(),
+        ):
             status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
-        before, left = left, max_steps - now.steps - now.rejected
-        Tally.steps += before - left if interpreted else 0
+        left = max_steps - now.steps - now.rejected
         if status in REFUSED:
             raise ValueError(REFUSED[status], now.s)
         if status == walk.FULL:
             run = with_more_room(run)
         if left <= 0 and status != walk.DONE:
             raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
-        if fast is None and interpreted and status != walk.DONE and worthwhile():
-            run = as_arrays(run)
+        if fast is None and interpreted and status != walk.DONE and now.s:
+            to_come = (thread_time() - begun) * (end / now.s - 1.0)
+            if KERNEL.worthwhile(to_come) and prepared(same := as_arrays(run)):
+                run = same
         if progress is not None:
             progress(now.s)
     return Trajectory(run)
