@@ -1,9 +1,9 @@
 """Figs. 3 and 5 of the paper for a ball: the onset of sliding, and steady sliding over the velocity.
 
 The ball has the radius and the foundation of Table 1, and the depth of its fixed indenter; the dead weight
-is the one that rests at that depth. The forces on a ball at constant depth are steady immediately
-(`transient`). A ball that may rise is simulated by elements in strips (`elements`), and approaches exact
-steady sliding, drawn dotted.
+is the one that rests at that depth. A ball at constant depth slides steadily at every instant (`solve`). One
+that may rise is simulated by elements in strips (`elements`), and approaches exact steady sliding, drawn
+dotted.
 """
 
 from dataclasses import dataclass, replace
@@ -45,7 +45,7 @@ def starts(times: np.ndarray) -> dict[str, Any]:
     """Return the start from rest of both scenes, by support."""
     held, free = scenes().values()
     rising = kv.elements(free, per_length=DENSITY, at=times, certify=False)
-    return {"fixed": kv.transient(held, at=times), "dead-weight": rising}
+    return {"fixed": kv.solve(held, at=times), "dead-weight": rising}
 
 
 def compute() -> Data:

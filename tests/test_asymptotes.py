@@ -75,20 +75,22 @@ def random_scene(rng, n, kind):
 
 @pytest.mark.parametrize("kind", SUPPORTS)
 @pytest.mark.parametrize("n", [0.0, 1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 2.0, 2.7, 6.0, 24.0])
-def test_each_asymptote_is_exactly_as_wrong_as_it_says(n, kind):
-    """In every quantity, against ball arithmetic; n = 0 is the ball."""
+def test_each_asymptote_is_a_limit(n, kind):
+    """In every quantity, against ball arithmetic, to first order in V/V* or V*/V; n = 0 is the ball."""
     rng = np.random.default_rng([int(1000 * n), SUPPORTS.index(kind), 7])
     seen = dict.fromkeys(STEADY_UNITS, 0.0)
     for _ in range(SCENES):
         scene, truth = random_scene(rng, n, kind)
         found = kv.steady(scene, method="asymptote")
-        assert found.model == "asymptote"
+        assert (found.model, found.certificate.kind) == ("asymptote", "none")
+        ratio = abs(scene.drive.velocity) / asymptotes.critical_velocity(scene)
         for name in STEADY_UNITS:
             error = reference.relative_error(getattr(found, name), truth[name])
-            claimed = found.certificate.relative_error[name]
-            assert error <= claimed, (name, scene, error, claimed)
-            assert claimed <= error * (1.0 + 1e-9) + 1e-13, (name, scene, error, claimed)
             seen[name] = max(seen[name], error)
+            if kind != "suspended" and (
+                ratio < 1.0 or name != "trailing_edge"
+            ):  # its limit is zero
+                assert error <= 30.0 * min(ratio, 1.0 / ratio) + 1e-13, (name, scene, error)
     given = {"depth", "half_length", "leading_edge"} if kind == "fixed" else set()
     exact = {"retardation_length", *given, *({"load"} if kind == "dead-weight" else ())}
     assert {name for name, error in seen.items() if error < 1e-10} == exact
@@ -153,7 +155,6 @@ def test_the_regimes_are_told_apart_at_the_critical_velocity(kind):
     at_rest, exact = (kv.steady(scene, over={V: 0.0}, method=m) for m in ("asymptote", "exact"))
     for name in STEADY_UNITS:
         assert getattr(at_rest, name) == pytest.approx(getattr(exact, name), rel=1e-14, abs=0)
-        assert at_rest.certificate.relative_error[name] < 1e-13
 
 
 @pytest.mark.parametrize("ball", [False, True])

@@ -475,7 +475,7 @@ def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser
         return browser.run(shown)
 
     held = kv.Scene(kv.Sphere("10 mm"), support=kv.Fixed("0.3 mm"), drive=kv.Drive(0.05))
-    right = kv.transient(held, at=[0.1])
+    right = kv.solve(held, at=[0.1])
     assert told("#indenter=sphere&support=fixed&drive.velocity=50")[1]
     row, rest = browser.run("[player.run.rows.at(-1), player.run.rest]")
     drag = rest["load"] * rest["depth"] / rest["half_length"]

@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import kvtheory as kv
-from kvtheory.ladder import stiff_drive
 from kvtheory.ladder.series import ODD, ON_RIGID, SOLVED
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
@@ -125,7 +124,7 @@ def test_a_history_climbs_to_the_continuum_and_what_is_not_asked_for_is_not_give
     scene = kv.Scene(drive=kv.Drive(history=history))
     found = kv.solve(scene, at=[0.1], quantity=["depth", "friction_force"], rtol=1e-9)
     assert found.model == "continuum"  # with steps that are tightened until the certificate is met
-    assert [step.outcome for step in found.climb[:2]] == ["the drive changes"] * 2
+    assert [step.outcome for step in found.climb[:2]] == ["the depth changes", "the drive changes"]
     assert np.isnan(found.normal_force).all()
     assert set(found.certificate.relative_error) == {"time", "velocity", "depth", "friction_force"}
     assert max(found.certificate.relative_error.values()) <= 1e-9
@@ -154,49 +153,6 @@ def stiff_case(seed):
     rigid = light(number, eps, float(rng.choice([0.0, 3.0])), 2.0)
     drive = kv.Drive(number, stiffness=stiffness, damping=damping, mass=inertia)
     return replace(rigid, drive=drive), rigid, np.sort(rng.uniform(0.0, 2.0, 8))
-
-
-def test_the_estimate_covers_what_a_rigid_drive_neglects():
-    """Against the continuum on the spring, on a dozen starts; the bound is not far above."""
-    close, tried = [], 0
-    for seed in range(16):
-        sprung, rigid, at = stiff_case(seed)
-        scales = scales_of(StaticState.of(sprung))
-        on_rigid = kv.transient(rigid, at=at, rtol=1e-9, certify=False)
-        times = np.unique([*on_rigid.solution.natural_times, *at])
-        series = on_rigid.solution.series(times)
-        found = stiff_drive.neglected(series, StaticState.of(sprung))
-        if not math.isfinite(max(found["depth"])):
-            continue
-        truth = kv.transient(sprung, at=at, rtol=1e-7, certify=False)
-        for name, bound in found.items():
-            largest = bound[np.searchsorted(times, at)].max()
-            solved = getattr(on_rigid, ON_RIGID.get(name, name))
-            error = np.abs(solved - getattr(truth, name)).max() / scales[name]
-            assert error <= largest + 1e-6, (name, seed)
-            if name == "friction_force":
-                close.append(error / largest)
-        tried += 1
-    assert tried >= 10
-    assert np.median(close) > 0.03
-
-
-def test_a_stiff_spring_counts_as_rigid_only_where_it_does():
-    at = [0.1, 0.2]
-    models = {}
-    for stiffness in ("1 MN/m^2", "1e13 N/m^2"):
-        drive = kv.Drive(velocity="91 mm/s", stiffness=stiffness, damping="0.1 MN*s/m^2")
-        found = kv.solve(kv.Scene(drive=drive), quantity=list(SOLVED), at=at, rtol=1e-2)
-        models[stiffness] = found.model, found.climb[-1].assumed
-        truth = kv.transient(kv.Scene(drive=drive), at=at, rtol=1e-5, certify=False)
-        scale = scales_of(StaticState.of(kv.Scene()))["friction_force"]
-        claimed = found.certificate.relative_error["friction_force"]
-        assert np.abs(found.friction_force - truth.friction_force).max() <= claimed * scale
-    assert models["1 MN/m^2"] == ("continuum", "a parabola")
-    assert models["1e13 N/m^2"] == (
-        "continuum",
-        "a parabola, a drive so stiff that it counts as rigid",
-    )
 
 
 @pytest.mark.parametrize("seed", range(3))

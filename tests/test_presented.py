@@ -29,13 +29,21 @@ def test_text_and_table_are_short_and_name_quantities_units_model_and_error(resu
     assert len(lines) <= 10
     assert max(map(len, lines)) <= 110
     assert result.model in lines[0]
-    assert result.certificate.relative_to in lines[-1]
+    errors = result.certificate
+    assert (errors.statement if errors.kind == "none" else errors.relative_to) in lines[-1]
     assert "friction_force" in repr(result)
     units = TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
     assert html.count("<tr>") == 1 + len(units)
     assert all(f"<td>{name}</td>" in html for name in units)
     assert "N/mm" in html
     assert result.certificate.statement.split(",")[0][:30] in html.replace("&quot;", '"')
+
+
+def test_a_result_without_errors_says_so():
+    result = kv.steady(method="asymptote")
+    assert "Errors are not estimated" in str(result)
+    assert "errors up to" not in str(result)
+    assert "Errors are not estimated" in result._repr_html_()
 
 
 def test_files_hold_what_the_result_holds(result, tmp_path):

@@ -1,4 +1,4 @@
-"""The same sweep gives the same bits on every executor, and lost workers cost their blocks only."""
+"""The same sweep gives the same bits on every executor, and a pool that breaks costs no finished block."""
 
 import os
 import pickle
@@ -94,39 +94,29 @@ def test_threads_of_the_caller(here):
         assert executor.submit(abs, -1).result() == 1  # it was not shut down
 
 
-def test_own_processes_survive_a_worker_that_is_killed(here, tmp_path):
-    kill, output = Killer(children), tmp_path / "map.nc"
-    result = kv.sweep(over=OVER, jobs=2, block=1, output=output, progress=kill, **STEADY)
-    assert kill.done
-    assert_same(result, here["steady"])
-
-
-def test_the_callers_pool_that_breaks_is_reported_and_the_file_resumes(here, tmp_path):
-    arguments = {"over": OVER, "block": 1, "output": tmp_path / "map.nc", **STEADY}
-    before, kill = [], Killer(children)
-    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
-        # The motions in one block of a process of the caller; then the steady states, whose process dies.
-        assert_same(kv.sweep(over=OVER, executor=executor, **MOTION), here["motion"])
-        with pytest.raises(RuntimeError, match=r"broken|lost"):
-            kv.sweep(executor=executor, progress=kill, **arguments)
+def breaks_and_resumes(here, output, **pool):
+    """Kill a process of a pool: one message ends the sweep, and the same call without the pool resumes."""
+    arguments, before, kill = (
+        {"over": OVER, "block": 1, "output": output, **STEADY},
+        [],
+        Killer(children),
+    )
+    with pytest.raises(RuntimeError, match=r"the executor is broken.*the same call resumes"):
+        kv.sweep(progress=kill, **pool, **arguments)
     result = kv.sweep(progress=lambda share, words: before.append(done_of(words)), **arguments)
     assert before[0] >= kill.done[0] > 0
     assert_same(result, here["steady"])
 
 
-def test_a_block_that_fails_each_time_ends_the_sweep_with_its_reason():
-    class Faulty(Executor):
-        tries = 0
+def test_own_processes_that_break_lose_no_finished_block(here, tmp_path):
+    breaks_and_resumes(here, tmp_path / "map.nc", jobs=2)
 
-        def submit(self, function, /, *arguments):
-            future, self.tries = Future(), self.tries + 1
-            future.set_exception(MemoryError("no room"))
-            return future
 
-    faulty = Faulty()
-    with pytest.raises(RuntimeError, match="points 0 to 0 were lost 3 times: MemoryError: no room"):
-        kv.sweep(over=OVER, executor=faulty, block=1, in_flight=1)
-    assert faulty.tries == 3
+def test_the_callers_pool_that_breaks_loses_no_finished_block(here, tmp_path):
+    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
+        # The motions in one block of a process of the caller; then the steady states, whose process dies.
+        assert_same(kv.sweep(over=OVER, executor=executor, **MOTION), here["motion"])
+        breaks_and_resumes(here, tmp_path / "map.csv", executor=executor)
 
 
 def test_dask_on_a_cluster_of_processes(here, tmp_path):

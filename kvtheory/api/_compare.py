@@ -18,7 +18,7 @@ from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
-from kvtheory.scene.capabilities import lacks_quadratic_on_arms, lacks_strips, require
+from kvtheory.scene.capabilities import lacks_quadratic_on_arms, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -39,15 +39,15 @@ MINIMUM_TIMES = 16
 def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
     """Compute a transient without a certificate, as theory is needed for many trial scenes.
 
-    A ball needs elements, unless it is held at its depth and does not re-enter its trace. So do arms where
-    the continuum refuses, as at a take-off, and in trials, where coarse elements are cheaper.
+    A ball needs elements, unless it slides steadily at every instant. So do arms where the continuum refuses,
+    as at a take-off, and in trials, where coarse elements are cheaper.
     """
+    from kvtheory.ladder.series import never_steady, throughout
     from kvtheory.models.continuum import prony, solved_scene
-    from kvtheory.models.strips import held
 
     ball = not scene.indenter.per_width
-    if ball and not lacks_strips(scene) and not held.remembers(scene):
-        return vars(held.transient(scene, times, certify=False))
+    if ball and not never_steady(scene):
+        return throughout(steady, scene, np.asarray(times, dtype=float))[0]
     if scene.foundation.arms and not ball and rtol < TRIAL_RTOL:
         with suppress(ValueError, ArithmeticError), double_precision(scene):
             return vars(prony.solved_scene.transient(scene, times, rtol, certify=False))

@@ -19,8 +19,8 @@ from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names
 from kvtheory.scene.capabilities import (
     lacks_arms,
+    lacks_continuum,
     lacks_quadratic_on_arms,
-    lacks_transient,
     require,
 )
 from kvtheory.scene.foundations import MEASURED
@@ -145,7 +145,7 @@ def fit(
             require(lacks_arms, each, "a time series")
         law = STEADY[method_for(each, None)] if models else solve
         problem = friction.Problem(
-            each, keys, sets, law, _followed, precise=not lacks_transient(each)
+            each, keys, sets, law, _followed, precise=not lacks_continuum(each)
         )
         solved = friction.solve(problem, report=report, share=WEIGHED if models else 1.0)
         found[name] = *solved, friction.information(*solved)

@@ -98,12 +98,12 @@ def sweep(
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, if `output` holds anything other than this sweep, or was changed since
-        it was written, or if memory or disk cannot hold the result.
+        If another argument is wrong, if `output` holds anything other than this sweep, or lost rows, or if
+        memory or disk cannot hold the result.
     OSError
         If a file cannot be written; finished blocks are kept, and the same call resumes.
     RuntimeError
-        If the executor breaks, or loses a block repeatedly.
+        If the executor breaks; finished blocks of a file are kept, and the same call resumes.
 
     Examples
     --------

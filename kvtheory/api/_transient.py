@@ -6,7 +6,7 @@ from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
-from kvtheory.scene.capabilities import lacks_transient, require
+from kvtheory.scene.capabilities import lacks_continuum, require
 from kvtheory.scene.model import Scene
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
@@ -34,12 +34,11 @@ def transient(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola,
-        or a ball at constant depth that does not re-enter its own trace (`elements` simulates any ball). At
-        t < 0 it rests at its static depth. With `drive.stiffness` it is held along x by a spring that is then
-        relaxed; the mass that moves along x must be above zero. A drive that is a function of time is
-        replaced by polynomials within its tolerance, which the certificate adds to the errors of the
-        velocities, the pressure and the surface, but not of the other quantities.
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola
+        (`elements` simulates any shape). At t < 0 it rests at its static depth. With `drive.stiffness` it is
+        held along x by a spring that is then relaxed; the mass that moves along x must be above zero. A drive
+        that is a function of time is replaced by polynomials within its tolerance, which the certificate adds
+        to the errors of the velocities, the pressure and the surface, but not of the other quantities.
     at
         Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or ``"0 ms:200 ms:201"``
         (START:STOP:COUNT, both ends included); without it, the steps of the solver, subdivided.
@@ -66,9 +65,9 @@ def transient(
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is neither a parabola nor such a ball, if the contact on a Prony series parts, if an
-        argument is out of range, or a function that drives the foundation fails, is not finite, or is not
-        smooth between its breaks.
+        If the indenter is not a parabola, if the contact on a Prony series parts, if an argument is out of
+        range, or a function that drives the foundation fails, is not finite, or is not smooth between its
+        breaks.
     ArithmeticError
         If the motion cannot be computed to its end; the message says when and why.
 
@@ -86,12 +85,8 @@ def transient(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
     scene = one_scene(scene, "a transient")
-    require(lacks_transient, scene, "the transient")
+    require(lacks_continuum, scene, "the transient")
     with double_precision(scene):
-        if not scene.indenter.per_width:
-            from kvtheory.models.strips import held
-
-            return noted(scene, held.transient(scene, times_of(scene, at), certify=certify))
         from kvtheory.models.continuum import prony, solved_scene
 
         solver = prony.solved_scene if scene.foundation.arms else solved_scene

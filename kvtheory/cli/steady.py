@@ -31,7 +31,7 @@ def steady(scene: "Scene", progress: Any, method: str | None) -> Iterator[Any]:
         console.print_scenes(scene, state, {name: state.units[name] for name in STEADY_UNITS})
     else:
         console.print_quantities(state, state.units)
-    click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
+    click.echo(f"\n{state.certificate.sentence}")
     for note in state.notes:
         click.echo(note)
 
@@ -96,7 +96,7 @@ def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
         heads = "rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"
         click.echo()
         console.print_table(heads, rows)
-    click.echo(f"\nErrors are {found.certificate.kind}: {found.certificate.statement}.")
+    click.echo(f"\n{found.certificate.sentence}")
 
 
 def _print_final_velocity(scene: "Scene") -> None:

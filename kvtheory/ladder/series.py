@@ -1,19 +1,18 @@
-"""The rungs of a time series: exact (fixed or at rest), slow manifold, strips, continuum, elements."""
+"""The rungs of a time series: exact (fixed or at rest), slow manifold, continuum, elements."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.ladder import stiff_drive
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
-from kvtheory.models.strips import held
 from kvtheory.results import (
     TRANSIENT_UNITS,
     Certificate,
@@ -29,14 +28,11 @@ from kvtheory.scene.capabilities import (
     lacks_closed_form,
     lacks_continuum,
     lacks_kelvin_voigt,
-    lacks_paper_model,
     lacks_quadratic,
     lacks_rigid_drive,
     lacks_rigid_paper_model,
-    lacks_strips,
 )
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Derived
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
@@ -100,12 +96,10 @@ class Models:
 
 
 def rungs(models: Models) -> tuple[Rung, ...]:
-    """Return the rungs in order of cost; those of a ball are exact, strips and elements."""
+    """Return the rungs in order of cost; those of a ball are exact and elements."""
     table = (
-        ("exact", "steady from the first instant: the depth cannot change", _exact),
+        ("exact", "steady at every instant: the depth cannot change, no memory", _exact),
         ("slow manifold", "a start from rest, small inertia", _slow),
-        ("strips", "a ball held at its depth, no memory", _strips),
-        ("continuum", "a parabola, a drive so stiff that it counts as rigid", _stiff),
         ("continuum", "a parabola", _parabola),
         ("elements", "none", _elements),
     )
@@ -113,21 +107,62 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 
 
 def _exact(models: Models, scene: Scene, request: Request) -> Offer:
-    """Accept what is steady immediately: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
-    need(lacks_quadratic(scene) or lacks_kelvin_voigt(scene) or lacks_rigid_drive(scene))
-    need("" if scene.drive.constant else "the drive changes")
-    velocity = scene.drive.final_velocity
-    need("the depth changes" if velocity != 0.0 and not scene.held else "")
+    """Accept what is steady at every instant: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
+    need(never_steady(scene))
 
     def run() -> Answer:
-        state, measures = models.steady(scene), scales(StaticState.of(scene))
-        constant = {name: getattr(state, STEADY_NAMES.get(name, name), 0.0) for name in SOLVED}
-        rounding = max(state.certificate.relative_error.values())
-        errors = {name: rounding * abs(constant[name]) / measures[name] for name in SOLVED}
+        values, state = throughout(models.steady, scene, _times(scene, request))
+        measures = scales(StaticState.of(scene))
+        rounding = max(map(np.max, state.certificate.relative_error.values()))
+        errors = {
+            name: float(rounding * np.max(np.abs(values[name]), initial=0.0)) / measures[name]
+            for name in SOLVED
+        }
         own = Certificate(state.certificate.kind, state.certificate.statement, errors, AT_REST)
-        return _series(scene, {"velocity": velocity, **constant}, own, request, state)
+        return _series(scene, values, own, request, state)
 
     return Offer(0.0, run)
+
+
+def never_steady(scene: Scene) -> str:
+    """Return why a parabola or a ball does not slide steadily at every instant; an empty text if it does.
+
+    At a constant depth the leading edge of a strip of half length A stays at -A, on undisturbed surface, and
+    its trailing edge peels at sqrt(A^2 + l_r^2) - l_r, l_r = |V| tau of that instant (fact F10), as long as
+    it does not outrun the foundation, dx_TE/dt <= |V|. So where the drive slows down,
+
+        tau |dV/dt| (1 - l_r/sqrt(A^2 + l_r^2)) <= |V|,
+
+    which binds first in the middle plane, A = a, and at the slow end of a linear piece of the drive.
+    """
+    if why := lacks_quadratic(scene) or lacks_kelvin_voigt(scene) or lacks_rigid_drive(scene):
+        return why
+    if not scene.held:
+        resting = scene.drive.constant and scene.drive.final_velocity == 0.0
+        return "" if resting else "the depth changes"
+    if scene.drive.function is not None:
+        return "the drive is a function"
+    a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time
+    for (before, fast), (after, slow) in pairwise(scene.drive.points):
+        if abs(slow) >= abs(fast) and fast * slow >= 0.0:
+            continue
+        l_r = abs(slow) * tau
+        rate = math.inf if before == after else (abs(fast) - abs(slow)) / (after - before)
+        if fast * slow <= 0.0 or tau * rate * (1.0 - l_r / math.hypot(a, l_r)) > abs(slow):
+            return f"the drive slows down too fast, stops or reverses before t = {after:.6g} s"
+    return ""
+
+
+def throughout(
+    steady: Callable[..., SteadyState], scene: Scene, times: Array
+) -> tuple[dict[str, Any], SteadyState]:
+    """Return the series of a scene that slides steadily at every instant, and the steady states."""
+    path = scene.drive.motion(scene.run.duration, 1.0)
+    V = np.array([path.velocity(float(time)) for time in times])
+    state = steady(scene, over={"drive.velocity": V})
+    zero = np.zeros_like(V)
+    values = {name: getattr(state, STEADY_NAMES.get(name, name), zero) for name in SOLVED}
+    return {"time": times, "velocity": V, **values}, state
 
 
 def _slow(models: Models, scene: Scene, request: Request) -> Offer:
@@ -169,11 +204,6 @@ def _slow(models: Models, scene: Scene, request: Request) -> Offer:
     return Offer(max(error, given.least_error * fading), run)
 
 
-def _strips(models: Models, scene: Scene, request: Request) -> Offer:
-    need(lacks_strips(scene) or held.remembers(scene))
-    return Offer(math.nan, lambda: _picked(models.transient(scene, at=request.times), request))
-
-
 def _parabola(models: Models, scene: Scene, request: Request) -> Offer:
     need(lacks_continuum(scene))
     return Offer(math.nan, lambda: _continuum(models, scene, request))
@@ -197,27 +227,6 @@ def _continuum(models: Models, scene: Scene, request: Request) -> Answer:
         if error <= request.rtol or step <= TIGHTEST or (error == math.inf and not retried):
             return answer
         step = max(step * max(NEXT * request.rtol / error, least), TIGHTEST)
-
-
-def _stiff(models: Models, scene: Scene, request: Request) -> Offer:
-    """Solve on a rigid drive, and estimate the effect of the spring."""
-    need(lacks_paper_model(scene), "the drive is rigid" if scene.drive.rigid else "")
-    at_rest, error = StaticState.of(scene), math.nan
-    if scene.drive.constant and set(request.quantities) - {"depth", *GIVEN}:
-        first = 0.0 if request.times is None else min(request.times)
-        error = stiff_drive.ringing(at_rest, first / scene.foundation.retardation_time)
-
-    def run() -> Answer:
-        drive = replace(scene.drive, stiffness=None, damping=Derived(0.0), mass=None)
-        answer = _continuum(models, replace(scene, drive=drive), request)
-        solution, asked = answer.result.solution, np.asarray(answer.values["time"])
-        times = np.unique(np.concatenate([solution.natural_times, asked]))
-        found = stiff_drive.neglected(solution.series(times), at_rest)
-        wanted = np.searchsorted(times, asked)
-        more = {name: float(np.max(error[wanted])) for name, error in found.items()}
-        return _widened(answer, stiff_drive.STATEMENT, more)
-
-    return Offer(error, run)
 
 
 def _widened(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
@@ -305,8 +314,8 @@ def _series(
 ) -> Answer:
     """Return the requested quantities from constants or from values at the requested times."""
     times = _times(scene, request)
-    held = {name: np.full(times.shape, value) for name, value in values.items()}
-    return _answer({"time": times, **held}, own, request, result)
+    held = {name: np.broadcast_to(value, times.shape) for name, value in values.items()}
+    return _answer({**held, "time": times}, own, request, result)
 
 
 def _picked(result: Any, request: Request) -> Answer:

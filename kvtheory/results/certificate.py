@@ -31,6 +31,12 @@ class Certificate:
     relative_error: Mapping[str, Value]
     relative_to: str = THE_TRUTH
 
+    @property
+    def sentence(self) -> str:
+        """The kind and its explanation, below a table."""
+        kind = "not estimated" if self.kind == "none" else self.kind
+        return f"Errors are {kind}: {self.statement}."
+
 
 class Recorded:
     """A result that can be written as JSON."""

@@ -90,13 +90,14 @@ class Presented(Exported):
         errors = self.certificate.relative_error.values()
         worst = max((float(np.max(error, initial=0.0)) for error in errors), default=0.0)
         scale, kind = self.certificate.relative_to, self.certificate.kind
-        errors_up_to = f"errors up to {worst:.1e} of {scale} ({kind})"
-        return "\n".join([self._title, *pairs, errors_up_to, *getattr(self, "notes", ())])
+        known = f"errors up to {worst:.1e} of {scale} ({kind})"
+        told = self.certificate.sentence if kind == "none" else known
+        return "\n".join([self._title, *pairs, told, *getattr(self, "notes", ())])
 
     def _repr_html_(self) -> str:
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
-        reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
-        notes = "".join(f"<p>{escape(note)}</p>" for note in (reason, *getattr(self, "notes", ())))
+        told = self.certificate.sentence, *getattr(self, "notes", ())
+        notes = "".join(f"<p>{escape(note)}</p>" for note in told)
         return html_table(self._title, heads, self._shown()) + notes
 
     def plot(self, *, ax: Any = None, **style: Any) -> Any:

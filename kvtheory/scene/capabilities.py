@@ -97,8 +97,6 @@ lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rig
 lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("rigid",)))
 lacks_continuum = Needs(Scenes(("parabola",), ARMS))
 lacks_rigid_continuum = Needs(Scenes(("parabola",), ARMS, drives=("rigid",)))
-lacks_strips = Needs(Scenes(("sphere",), KELVIN_VOIGT, ("fixed",), ("rigid",), TRACE))
-lacks_transient = Needs(*lacks_continuum.sets, *lacks_strips.sets)
 lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ARMS))
 lacks_stability = lacks_quadratic_on_arms
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
@@ -144,7 +142,7 @@ QUESTIONS = {
         "and for laws with a finite state.",
     ),
     "transient": Question(
-        "the transient", "transient(scene)", lacks_transient,
+        "the transient", "transient(scene)", lacks_continuum,
         f"Without elements the contact has to be known as one interval in every strip: {TRACE}. Elements "
         "answer.",
     ),
@@ -179,7 +177,7 @@ QUESTIONS = {
 
 IN_MOTION = (
     lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
-    lacks_continuum, lacks_rigid_continuum, lacks_strips, lacks_transient,
+    lacks_continuum, lacks_rigid_continuum,
 )  # fmt: skip
 """The requirements of methods for transients; where one is not met, another method may apply."""
 

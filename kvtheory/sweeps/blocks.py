@@ -29,7 +29,6 @@ class Task(NamedTuple):
     plan: Plan
     start: int
     over: Mapping[str, Array]
-    tries: int = 1
 
     @property
     def points(self) -> int:

@@ -1,6 +1,5 @@
 """Runs a sweep: submits blocks to an executor, a bounded number at a time, and keeps the results."""
 
-import logging
 import multiprocessing
 import os
 import signal
@@ -39,13 +38,10 @@ AHEAD = 2
 """Blocks in flight per worker: one that is running and one that waits."""
 UNKNOWN_WORKERS = 16
 """Number of workers assumed where an executor does not tell; on a larger cluster give `in_flight`."""
-TRIES = 3
-"""Largest number of times that a block is submitted, in case its worker dies."""
 REFRESH = 0.5
 """Interval in s at which progress is shown and an interrupt is noticed while no block returns."""
 HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
 """Without that line, each process runs the script again, and ends at once."""
-log = logging.getLogger(__name__)
 
 
 def in_memory(plan: Plan, **how: Any) -> Sweep:
@@ -90,24 +86,21 @@ def run(
 ) -> int:  # fmt: skip
     """Compute all blocks that are not `kept`, and return their points; `executor` is not shut down.
 
-    A block that is lost with its worker is submitted again, `TRIES` times in all. After an error or an
-    interrupt, waiting blocks are cancelled, and those returned are kept.
+    After an error or an interrupt, waiting blocks are cancelled, and those returned are kept. A pool that
+    breaks ends the sweep.
     """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
     workers = jobs if executor is None else getattr(executor, "_max_workers", 0) or UNKNOWN_WORKERS
     most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
-    flying: dict[Future[Block], Task] = {}
-    again: list[Task] = []
+    flying = set[Future[Block]]()
 
-    def returned(future: Future[Block], given: Task) -> None:
+    def returned(future: Future[Block]) -> None:
         nonlocal done, failed
-        if (result := _result(future, given)) is None:
-            again.append(given._replace(tries=given.tries + 1))
-        else:
-            keep(result)
-            done += result.stop - result.start
-            failed += len(result.failures)
+        result = future.result()
+        keep(result)
+        done += result.stop - result.start
+        failed += len(result.failures)
 
     def show() -> None:
         rate = (done - before) / max(monotonic() - begun, 1e-9)
@@ -122,39 +115,28 @@ def run(
     with _workers(jobs, plan) if executor is None else nullcontext(executor.submit) as submit:
         try:
             while True:
-                while len(flying) < most and (given := again.pop() if again else next(tasks, None)):
-                    flying[submit(compute, given)] = given
+                while len(flying) < most and (given := next(tasks, None)):
+                    flying.add(submit(compute, given))
                 if not flying:
                     return done - before
                 for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
-                    returned(future, flying.pop(future))
+                    flying.remove(future)
+                    returned(future)
                 show()
         except BaseException as error:
             for future in flying:
                 future.cancel()
-            with suppress(OSError):  # if the disk is full, say
-                for future, given in flying.items():
-                    if future.done() and not future.cancelled():
-                        returned(future, given._replace(tries=0))
-            if isinstance(error, futures.BrokenExecutor):
-                raise RuntimeError(f"the executor is broken: {error}") from error
+            for future in flying:
+                if future.done() and not future.cancelled():
+                    with suppress(Exception):  # if it broke as well, or the disk is full
+                        returned(future)
+            if isinstance(error, futures.BrokenExecutor | futures.CancelledError):
+                hint = HINT if isinstance(error, BrokenProcessPool) else ""
+                why = f"the executor is broken: {error or type(error).__name__}{hint}"
+                raise RuntimeError(
+                    f"{why}; finished blocks of a file are kept, and the same call resumes"
+                ) from error
             raise
-
-
-def _result(future: Future[Block], given: Task) -> Block | None:
-    """Return a block, or None if it was lost with its worker; raise if it was lost too often."""
-    try:
-        lost = future.exception()
-    except futures.CancelledError as error:  # by the executor of a cluster
-        lost = error
-    if lost is None:
-        return future.result()
-    points = f"points {given.start} to {given.start + given.points - 1}"
-    if given.tries == TRIES:
-        told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
-        raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
-    log.warning("%s are given out again: %r", points, lost)
-    return None
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
@@ -177,31 +159,24 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
 def _workers(jobs: int, plan: Plan) -> Iterator[Callable[..., Future[Block]]]:
     """Yield `submit` of the default workers: this thread for one job, threads for NumPy, else processes."""
 
-    def fresh() -> Executor:
-        if plan.vectorised or jobs == 1:  # which start with the first task
-            return futures.ThreadPoolExecutor(jobs)
+    def here(function: Any, given: Task) -> Future[Block]:
+        future: Future[Block] = Future()
+        future.set_result(function(given))
+        return future
+
+    if jobs == 1:
+        yield here
+        return
+    pool: Executor
+    if plan.vectorised:
+        pool = futures.ThreadPoolExecutor(jobs)
+    else:
         spawn = multiprocessing.get_context("spawn")
-        known = (compilation.known_unusable(),)
-        return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent, initargs=known)
-
-    pool = fresh()
-
-    def submit(function: Any, given: Task) -> Future[Block]:
-        nonlocal pool
-        if jobs == 1:
-            future: Future[Block] = Future()
-            future.set_result(function(given))
-            return future
-        try:
-            return pool.submit(function, given)
-        except futures.BrokenExecutor:  # a worker was killed
-            pool = fresh()
-            return pool.submit(function, given)
-
-    try:
-        yield submit
-    finally:
-        pool.shutdown()
+        pool = futures.ProcessPoolExecutor(
+            jobs, spawn, initializer=_follow_parent, initargs=(compilation.known_unusable(),)
+        )
+    with pool:
+        yield pool.submit
 
 
 def _follow_parent(unusable: tuple[str, ...]) -> None:

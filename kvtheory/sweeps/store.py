@@ -1,26 +1,25 @@
 """The work file of a sweep: blocks that survive a killed process.
 
 It is an SQLite database beside the result. A block is one row and one transaction, so that after
-`kill -9` at any moment, or with a full disk, every block that was kept is whole. A row is sealed by digests
-of its content and of the sweep, so that a damaged block, or one of another sweep, is noticed.
+`kill -9` at any moment, or with a full disk, every block that was kept is whole. A row holds a checksum; a
+block that was damaged is dropped when the file is opened, and computed again.
 """
 
-import hashlib
 import json
 import math
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from zlib import crc32
 
 import numpy as np
 
 from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, Table
 
-APPLICATION = 0x6B765332
-"""Marks the SQLite file as a work file of a sweep in this layout ("kvS2")."""
+APPLICATION = 0x6B765333
+"""Marks the SQLite file as a work file of a sweep in this layout ("kvS3")."""
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
@@ -37,7 +36,7 @@ class WorkFile:
 
     def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
         self.path, self._plan, existed = path, plan, path.exists()
-        self._record, self._own = json.dumps(plan.record), set[int]()
+        self._record = json.dumps(plan.record)
         with _reported(path):
             self._base = sqlite3.connect(path, isolation_level=None, timeout=0.0)
             try:
@@ -64,7 +63,7 @@ class WorkFile:
         if not tables:
             run(f"PRAGMA application_id={APPLICATION}")
             run("CREATE TABLE sweep (record TEXT)")
-            columns = "stop, told TEXT, digest TEXT, seal TEXT, content BLOB"
+            columns = "stop INTEGER, message TEXT, content BLOB, checksum INTEGER"
             run(f"CREATE TABLE blocks (start INTEGER PRIMARY KEY, {columns})")
             run("INSERT INTO sweep VALUES (?)", (self._record,))
         (found,) = run("SELECT record FROM sweep").fetchone() or ("",)
@@ -76,6 +75,10 @@ class WorkFile:
                 raise ValueError(told)
             run("DELETE FROM blocks")
             run("UPDATE sweep SET record = ?", (self._record,))
+        damaged = [
+            (row[0],) for row in run("SELECT * FROM blocks") if _checksum(*row[:-1]) != row[-1]
+        ]
+        self._base.executemany("DELETE FROM blocks WHERE start = ?", damaged)
         run("COMMIT")
 
     def keep(self, block: Block) -> None:
@@ -83,24 +86,18 @@ class WorkFile:
         names = [column.name for column in self._plan.numeric]
         content = b"".join(np.ascontiguousarray(block.table[name]).data for name in names)
         texts = block.table[EVENTS].tolist() if self._plan.texts else []
-        told = json.dumps([block.failures, block.statements, block.errors, texts])
-        row = block.start, block.stop, told, _digest(content)
+        message = json.dumps([block.failures, block.statements, block.errors, texts])
+        row = block.start, block.stop, message, content
         with _reported(self.path):
-            insert = "INSERT INTO blocks VALUES (?, ?, ?, ?, ?, ?)"
-            self._base.execute(insert, (*row, self._seal(*row), content))
-        self._own.add(block.start)
+            self._base.execute("INSERT INTO blocks VALUES (?, ?, ?, ?, ?)", (*row, _checksum(*row)))
 
     def blocks(self, *, tables: bool = True) -> Iterator[Block]:
         """Yield the kept blocks in the order of their points, on request without their tables."""
         last = "content" if tables else "NULL"
-        select = f"SELECT start, stop, told, digest, seal, {last} FROM blocks ORDER BY start"
+        select = f"SELECT start, stop, message, {last} FROM blocks ORDER BY start"
         with _reported(self.path):
-            for *row, seal, content in self._base.execute(select):
-                start, stop, told, digest = row
-                unknown = tables and start not in self._own
-                if seal != self._seal(*row) or (unknown and digest != _digest(content)):
-                    raise sqlite3.DatabaseError(f"the block from point {start} on was changed")
-                *about, texts = json.loads(told)
+            for start, stop, message, content in self._base.execute(select):
+                *about, texts = json.loads(message)
                 table: Table = {EVENTS: np.array(texts, object)} if texts else {}
                 at = 0
                 for column in self._plan.numeric if tables else ():
@@ -109,10 +106,6 @@ class WorkFile:
                     table[column.name] = numbers.reshape(shape)
                     at += numbers.nbytes
                 yield Block(start, stop, table, *about)
-
-    def _seal(self, *row: Any) -> str:
-        """Return the digest of a row and of the identity of the sweep."""
-        return _digest(json.dumps([self._record, *row]).encode())
 
     def close(self, *, remove: bool = False) -> None:
         """Release the file, whose blocks remain for the next run; or remove it."""
@@ -137,5 +130,6 @@ def _reported(path: Path) -> Iterator[None]:
         raise OSError(f'"{path}" {damaged}: {error}') from None
 
 
-def _digest(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
+def _checksum(start: int, stop: int, message: str, content: bytes) -> int:
+    """Return the CRC of a row."""
+    return crc32(content, crc32(f"{start} {stop} {message}".encode()))

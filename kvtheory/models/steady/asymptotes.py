@@ -181,8 +181,3 @@ def error(limit: Value, exact: Value) -> Value:
     """Return limit/exact - 1, or 0 where both are equal, as at rest."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(limit == exact, 0.0, limit / np.asarray(exact) - 1.0)
-
-
-def exponent(scene: Scene) -> Value:
-    """Return n of the shape h ~ |x|^n."""
-    return _shape(scene)[2]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
 from kvtheory.models.steady import asymptotes
-from kvtheory.models.steady.methods import ROUNDING, plain, solve_exact
+from kvtheory.models.steady.methods import plain, solve_exact
 from kvtheory.results import (
     STEADY_UNITS,
     AsymptoteLine,
@@ -40,6 +40,8 @@ Formula = Callable[[Scene], Any]
 Excess = Callable[[Scene, Mapping[str, Array]], Array]
 """A function of a scene and of the magnitudes of its exact state, in the shape of the scene."""
 
+ROUNDING = 64 * 2.0**-52
+"""Rounding error of an asymptote and of the exact state it is compared with, about twenty operations each."""
 DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
 """Decades from V* within which the end of a range is searched for; times 1/alpha for a springpot."""
 POINTS = 301
