@@ -62,7 +62,7 @@ RATIO = r"$q = x_{\mathrm{TE}}/a$ is the parameter: $l = l_{\mathrm{r}}/a > 0$ i
 result = Chapter(SECTION)
 
 
-@result("F1", uses=("eq3", "eq22", "eq26", "eq27", "eq28", "eq29"))
+@result("F1")
 def _rational(proof: Proof) -> None:
     r"""The steady state is rational in one number.
 

@@ -47,6 +47,8 @@ class Finished:
     derivation: Derivation
     exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
     result: tuple[sp.Expr, sp.Expr]
+    leading: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+    """What was proved to leading order, with the leading term, in the way that needs the fewest premises."""
 
 
 _finished: dict[str, Finished] = {}
@@ -71,6 +73,10 @@ def forget(prefix: str) -> None:
     """Forget the results whose labels begin so: those of another document, which names its own alike."""
     for label in [each for each in _finished if each.startswith(prefix)]:
         del _finished[label]
+
+
+_SAID = "What is used of {} is said in words, and recalled by no step."
+"""Of labels that a record declares to rest on, though no step recalls them."""
 
 
 class StepError(ValueError):
@@ -274,8 +280,8 @@ def _bare(expr: sp.Expr) -> sp.Expr:
 
 
 def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """Put in values, and carry out what does not need to be believed."""
-    return expr.subs(at).doit(integrals=False, sums=False)
+    """Put in values, all at once, and carry out what does not need to be believed."""
+    return expr.subs(at, simultaneous=True).doit(integrals=False, sums=False)
 
 
 def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
@@ -340,6 +346,7 @@ class Book:
         self._last: tuple[sp.Expr, sp.Expr] = sp.nan, sp.nan
         """The sides of the relation that was kept last."""
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+        self._leading: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
@@ -410,13 +417,38 @@ class Book:
         if at:
             lhs, rhs, fact = self._placed(fact, lhs, rhs, at)
             shown = {}
+        self._use(label, lhs, rhs, fact)
+        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
+
+    @asked
+    def asymptote(
+        self, label: str, of: sp.Expr, name: sp.Symbol, reason: str = "the leading term"
+    ) -> sp.Expr:
+        """Give a name to the leading term that the derivation with this label has proved; return the term.
+
+        That is an exact fact about the term, and not about what it approaches.
+        """
+        found = [key for key in _source(label).leading if key[0] == of]
+        if len(found) != 1 or not name.is_Symbol:
+            raise StepError(f"{self.label}: {label} has no one leading term of {of} for {name}")
+        fact, leading = _source(label).leading[found[0]], found[0][1]
+        right = fact.step.right.rpartition(r" \left(1 ")[0] or tex(leading)
+        worth = "proved" if fact.step.status == "proved-leading-order" else fact.step.status
+        step = replace(fact.step, left=tex(name), right=right, status=worth)
+        fact = replace(fact, step=step)
+        self._use(label, name, leading, fact)
+        shown: Shown = {"left": step.left, "right": step.right}
+        self._write(name, "=", leading, reason, worth, shown, source=label, fact=fact)
+        return leading
+
+    def _use(self, label: str, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
+        """Take over a fact of another proof as a rule."""
         self._rule(lhs, rhs)
         if label not in self._uses:
             self._uses.append(label)
         self._carry(fact)
         self._origins[lhs] = fact
         self._consistent(lhs, rhs, label)
-        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
 
     def done(
         self, lhs: sp.Expr = None, rhs: sp.Expr | int = None, *, table: Table | None = None
@@ -428,17 +460,19 @@ class Book:
             raise StepError(f"{self.label}: no step established {key[0]} and {key[1]}")
         steps = self._stated()
         new = letters(self.label, self._section)
-        cited = {step.source for step in steps} | set(self._declared)
+        cited = {step.source for step in steps}
+        said = [label for label in self._declared if label not in cited]
+        text = f"{self._text} {ARGUED} {_SAID.format(', '.join(said))}" if said else self._text
         found = Derivation(
             label=self.label,
             equation=self.equation,
             section=self._section,
             title=told(self._title, new),
-            text=told(self._text, new),
+            text=told(text.strip(), new),
             latex=printed(result.step.latex, new),
-            status=self._status(),
+            status=self._status(by_words=bool(said)),
             steps=tuple(self._lettered(step) for step in steps),
-            uses=tuple(label for label in self._uses if label in cited),
+            uses=tuple(label for label in self._uses if label in {*cited, *said}),
             table=_table(table, new),
             domain=tuple(printed(each, new) for each in result.domain),
             premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
@@ -446,7 +480,7 @@ class Book:
         before = _finished.get(self.label)
         if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        _finished[self.label] = Finished(found, dict(self._exact), key)
+        _finished[self.label] = Finished(found, dict(self._exact), key, dict(self._leading))
         self.finished = found
         return found
 
@@ -503,30 +537,38 @@ class Book:
     def pair(
         self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
     ) -> Derivation:
-        """End the proof with two established relations, side by side."""
+        """End the proof with two established equalities, side by side."""
+        self._pair(one, other, reason)
+        return self.done()
+
+    @asked
+    def _pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> None:
         facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
-        if None in facts:
-            raise StepError(f"{self.label}: no step established {one} and {other}")
+        if any(fact is None or fact.step.relation != "=" for fact in facts):
+            raise StepError(f"{self.label}: no step established {one} = {other}")
         left, right = (
             r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
             for side in ("left", "right")
         )
         status = weakest(fact.step.status for fact in facts if fact)
-        step = Step(left, "=", right, reason, status)
         premises = merged(fact.premises for fact in facts if fact)
         domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
         key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        step = Step(left, "=", right, reason, status, claim=self._claim(*key))
+        self._needed |= {one[0], other[0]} & self._rules.keys()
         self._keep(*key, Fact(step, premises, self._conditions, domain), exact=False)
-        return self.done(*key)
 
-    def _status(self) -> str:
+    def _status(self, *, by_words: bool) -> str:
         """Return the weakest status of the steps and of what they rest on; argued, if words prove the title.
 
+        They do where the text says so, and where it uses what no step recalls: only that is a premise.
         Words count here alone: what others use of this proof are its lines.
         """
         used = (_finished[label].derivation.status for label in self._uses)
         weak = [status for status in used if status == "sampled"]
-        words = ["argued"] if ARGUED in self._text else []
+        words = ["argued"] if by_words or ARGUED in self._text else []
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
     def _meant(
@@ -730,7 +772,7 @@ class Book:
         gaps = [
             gap for variable, value in at.items() for gap in self._open_admissions(variable, value)
         ]
-        for gap in (*gaps, *(each.subs(at) for each in (*ends, *fact.conditions.positive))):
+        for gap in (*gaps, *(_put(each, at) for each in (*ends, *fact.conditions.positive))):
             if gap != sp.oo and not proves_positive(gap, self._conditions):
                 self._demand(gap, tex_condition(gap))
         return lhs, rhs, Fact(fact.step, premises, self._conditions, self._domain)

@@ -124,6 +124,25 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim} fails {found}")
 
     @asked
+    def proportional(
+        self,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        factor: sp.Expr,
+        reason: str,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that `lhs` is a number times `rhs`, and print that it goes as that: lhs ~ rhs."""
+        if not (factor.is_number and factor.is_positive):
+            raise StepError(f"{self.label}: {factor} is no positive number")
+        self._identical(lhs, factor * rhs)
+        self._displayed(lhs, rhs, shown)
+        self._asked = "equal", {"lhs": lhs, "rhs": factor * rhs}, self._asked[2]
+        shown.setdefault("right", tex(rhs))
+        self._record(lhs, r"\sim", factor * rhs, reason, "proved", shown, exact=False, trusted=True,
+                     note=f"up to the factor ${tex(factor)}$")  # fmt: skip
+
+    @asked
     def integral(
         self,
         lhs: sp.Expr,
@@ -163,11 +182,14 @@ class Proof(Guarded):
             not (plain or signs(found)) and found.is_real is False
         ):
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
-        if lhs in self._rules:
-            self._same_integral(self._rules.pop(lhs), whole)
+        defined = lhs in self._rules
+        if defined:
+            self._same_integral(self._unnamed(lhs), whole)
+            del self._rules[lhs]
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
-        premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        known = defined or lhs == whole
+        premise = None if known else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
@@ -468,8 +490,9 @@ class Proof(Guarded):
             series = _series(c, eps, k)
             self._displayed(1 + c * eps**k, sp.S.Zero, {"left": series})
             shown["right"] = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
-        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True,
-                     note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
+        fact = self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False,
+                            trusted=True, note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
+        self._leading.setdefault((sp.sympify(expr), sp.sympify(leading)), fact)
         return c, k
 
     @asked
@@ -486,6 +509,13 @@ class Proof(Guarded):
         if found:
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
+
+    def _unnamed(self, name: sp.Expr) -> sp.Expr:
+        """Return what a name stands for that was given to another name, and use its definitions."""
+        while name in self._rules:
+            self._used.add(name)
+            name = self._rules[name]
+        return name
 
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
