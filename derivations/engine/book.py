@@ -350,7 +350,14 @@ class Book:
 
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
-        """Define the left side by the right side: a name, or a law of the model."""
+        """Define the left side by the right side: a name, or a law of the model.
+
+        What a proof that this one uses has defined alike is recalled from there.
+        """
+        sides = sp.sympify(lhs), sp.sympify(rhs)
+        if source := next((each for each in self._declared if sides in _source(each).exact), ""):
+            self._recall(source, *sides, reason, at=None)
+            return
         self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
             raise StepError(f"{self.label}: {lhs} has a value already")
