@@ -367,7 +367,9 @@ class Book:
         self._premise(lhs, rhs, fact)
 
     @asked
-    def where(self, condition: Relational, reason: str = "") -> None:
+    def where(
+        self, condition: Relational, reason: str = "", **shown: Unpack[Shown]
+    ) -> None:
         """Restrict what follows to where an inequality holds: part of the domain of the result."""
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
             raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
@@ -376,7 +378,9 @@ class Book:
         if proves_positive(-gap, self._conditions) or gap.is_nonpositive:
             raise StepError(f"{self.label}: {condition} contradicts what is given")
         sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
-        latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
+        self._displayed(condition.lhs, condition.rhs, shown)
+        left, right = shown.get("left") or tex(condition.lhs), shown.get("right") or tex(condition.rhs)
+        latex = f"{left} {sign} {right}"
         for form in (gap, raw):
             self._demand(form, latex)
         premises = merged(fact.premises for fact in self._origins.values())
@@ -387,8 +391,7 @@ class Book:
                 f"{self.label}: no point was found where {condition} and all else holds"
             )
         claim = self._claim(condition.lhs, condition.rhs)
-        sides = tex(condition.lhs), sign, tex(condition.rhs)
-        self._steps.append(Step(*sides, reason, "definition", claim=claim))
+        self._steps.append(Step(left, sign, right, reason, "definition", claim=claim))
 
     def recall(
         self,
