@@ -80,7 +80,9 @@ def _low(proof: Proof) -> None:
     proof.recall("F19")
     proof.define(w_rest, sp.Subs(w_n, *rest), "load at rest")
     proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
-    proof.define(m_low, sp.Subs(m_n / l, *rest), "friction coefficient per $l$")
+    ratio = n * (n + 1) * (SQUARES + l * Q**2 / 2) / (1 + q + l + l**2 * Q)
+    proof.equal(m_n / l, ratio, "friction coefficient per $l$, continuous at rest")
+    proof.define(m_low, sp.Subs(ratio, *rest), "friction coefficient per $l$ at rest")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
 
 

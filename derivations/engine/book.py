@@ -490,7 +490,12 @@ class Book:
         before = _finished.get(self.label)
         if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        _finished[self.label] = Finished(found, dict(self._exact), key, dict(self._leading))
+        printed_ones = {id(step) for step in steps}
+        exact, leading = (
+            {sides: fact for sides, fact in facts.items() if id(fact.step) in printed_ones}
+            for facts in (self._exact, self._leading)
+        )
+        _finished[self.label] = Finished(found, exact, key, leading)
         self.finished = found
         return found
 

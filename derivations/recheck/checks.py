@@ -200,7 +200,7 @@ class Record:
             left, right = _sides(premise)
             if premise["kind"] == left.op == "integral":
                 proved.add(left)
-            if left.op in {"symbol", "call", "integral"}:
+            if left.op in {"symbol", "call", "integral", "sum"}:
                 values[left] = right
             else:
                 equations.append(left - right)
@@ -222,7 +222,7 @@ class Record:
             if all(
                 a is b or (places and _equal(plain, a, b).status == "confirmed") for a, b in pairs
             ):
-                for condition in (put(read(each), places) for each in other["domain"]):
+                for condition in (_placed(read(each), places) for each in other["domain"]):
                     stated = condition in question.conditions
                     for point in () if stated else question.points(condition):
                         if not point.truth(condition):
@@ -379,6 +379,11 @@ class Record:
         """Check that the ratio is positive."""
         left, right = _sides(claim)
         return _signed(question, read(claim["nonnegative"]) / (left - right), ">")
+
+
+def _placed(relation: Tree, places: Mapping[Tree, Tree]) -> Tree:
+    """Return a relation at other places."""
+    return Tree(relation.op, *(put(side, places) for side in relation.args))
 
 
 def _sides(claim: Claim) -> tuple[Tree, Tree]:
