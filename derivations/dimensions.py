@@ -51,6 +51,7 @@ OWN: dict[str, dict[str, str]] = {
     "F22-ringing": {"d_r": "1"},
     "eq14": {"f_z": "N/m"},
     "eq15": {"f_x": "N/m"},
+    "dense-row": {"f_z": "N/m", "f_x": "N/m"},
     "element-mean-force": {"p_s": "Pa"},
 }
 """Units of letters in records where they are not those of the nomenclature: moments of the whole relaxation

@@ -18,7 +18,7 @@ def test_a_wrong_dimension_is_found_in_every_relation(by_label):
         steps = [
             step
             for step in record.steps
-            if step.claim and 0 not in (step.claim.lhs, step.claim.rhs)
+            if step.claim and not {0, "pair"} & {step.claim.lhs, step.claim.rhs, step.claim.check}
         ]
         for step in steps if record.label not in EXEMPT else ():
             factor = (K, 1 / tau, W**2)[planted % 3]

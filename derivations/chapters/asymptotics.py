@@ -13,11 +13,12 @@ from . import friction_identity
 from .model import C, K, R, V, delta, h, x
 from .steady import F, W, a, l, l_r, mu, q
 
-load_excess, V_star, mu_low, mu_high = symbols(r"""
+load_excess, V_star, mu_low, mu_high, mu_high_weight = symbols(r"""
     W_e      W_{\mathrm{e}}     N/m  elastic part of the load  real
     V_star   V^{*}              m/s  crossing velocity, where the two asymptotes meet  from critical-fixed
     mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity
     mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity
+    mu_high_weight  \mu_{\mathrm{L2\text{-}MI}}  1  asymptote for high velocity, dead weight
 """)
 alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
 

@@ -10,9 +10,9 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.record import Table
 from ..engine.step import Proof
-from .asymptotics import V_star, alpha
+from .asymptotics import alpha, mu_high, mu_high_weight, mu_low
 from .model import K, R, V, delta, tau
-from .steady import W, a, l, l_r, mu, q
+from .steady import Lambda, W, a, l, l_r, mu, q
 from .theorems import RATIO, SECTION, UNIT, A, B, m, w
 
 Lambda_peak, mu_peak, Lambda_fixed, Lambda_weight, X, Y, T, mu_max, V_max = symbols(r"""
@@ -168,18 +168,18 @@ def _intersections(proof: Proof) -> None:
     indenter the maximum is at 1.664 times that velocity.
     """
     proof.recall("eq22")
-    proof.recall("critical-dead-weight")
-    proof.define(Lambda_weight, V_star * tau * sp.cbrt(K / (R * W)), "the crossing velocity, scaled")
-    proof.equal(Lambda_weight, sp.cbrt(alpha**2), "a number", right=r"\alpha^{2/3}")
+    for label, name in (("eq42", mu_low), ("eq45", mu_high), ("eq46", mu_high_weight)):
+        proof.asymptote(label, mu, name)
+    reached = "fixed indenter: 1 at"
+    proof.equal(mu_low / mu_high, V * tau / sp.sqrt(R * delta) / alpha, reached)
+    proof.root(Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed,
+               right=r"\alpha")  # fmt: skip
+    proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
+    proof.equal((mu_low / mu_high_weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
+    proof.root(
+        *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
+        name=Lambda_weight, right=r"\alpha^{2/3}",
+    )  # fmt: skip
     proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3
     proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")
-
-
-@result("F5-fixed")
-def _intersection_fixed(proof: Proof) -> None:
-    """Crossing velocity of the fixed indenter."""
-    proof.recall("eq22")
-    proof.recall("critical-fixed")
-    proof.define(Lambda_fixed, V_star * tau / sp.sqrt(R * delta), "the crossing velocity, scaled")
-    proof.equal(Lambda_fixed, alpha, "a number", right=r"\alpha")
