@@ -3,10 +3,11 @@
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import sympy as sp
+from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
@@ -41,6 +42,8 @@ DISTANCE = sp.Dummy("h", positive=True)
 """The distance from the point of a limit: no other letter, whatever its name, is this one."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
+KINKS = (*_CONTINUOUS, sp.sign, sp.Piecewise)
+"""What need not be smooth."""
 _WRITTEN = {
     sp.tan: lambda u: sp.sin(u) / sp.cos(u),
     sp.asinh: lambda u: sp.log(u + sp.sqrt(u**2 + 1)),
@@ -138,7 +141,25 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     numerator over the common denominator is expanded, with every root an algebraic generator; a
     number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
     """
-    if left == right or vanishes(left - right):
+    if left == right:
+        return sp.S.Zero
+    letters = {node: _letter_of(node) for node in (left - right).atoms(sp.Integral)}
+    back = {letter: node for node, letter in letters.items()}
+    return _difference(*(_masked(side, letters) for side in (left, right))).xreplace(back)
+
+
+@lru_cache(maxsize=4096)
+def _letter_of(integral: sp.Integral) -> sp.Dummy:
+    """Return a letter for an integral, which no rule of algebra may split: its parts may diverge."""
+    return sp.Dummy(real=True)
+
+
+def _masked(expr: sp.Expr, letters: Mapping[sp.Expr, sp.Dummy]) -> sp.Expr:
+    return expr.xreplace(letters) if letters else expr
+
+
+def _difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
+    if vanishes(left - right):
         return sp.S.Zero
     numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
     rest = expanded(normalise(numerator))
@@ -150,8 +171,6 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest.has(sp.sin, sp.cos) and vanishes(in_one_angle(rest)[0]):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
-    if rest.has(sp.Integral):
-        rest = rest.replace(sp.Integral, _constants_out)
     return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
 
 
@@ -177,11 +196,32 @@ def _by_primes(number: sp.Rational) -> sp.Expr:
     return sp.Add(*(power * sp.log(prime) for prime, power in sp.factorrat(number).items()))
 
 
-def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:
-    """Write the factors that do not depend on its variables before an integral."""
-    variables = [limit[0] for limit in limits]
-    factor, rest = sp.factor(integrand).as_independent(*variables, as_Add=False)
-    return factor * sp.Integral(rest, *limits)
+def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
+    """Write constants before an integral; split it where each part exists: continuous, between finite ends.
+
+    >>> x, f = sp.Symbol("x", real=True), sp.Function("f", real=True)
+    >>> parted(sp.Integral(2 + 3 * f(x), (x, 0, 1)), NONE)
+    3*Integral(f(x), (x, 0, 1)) + 2
+    """
+    variable, *ends = integral.limits[0]
+    if len(integral.limits) != 1 or len(ends) != 2:
+        return integral
+    low, high = ends
+    terms = sp.Add.make_args(expanded(integral.function))
+    ordered = proves_nonnegative(high - low, known)
+    over = (variable, low, high) if ordered else (variable, -sp.oo, sp.oo)
+    finite = low.is_finite and high.is_finite
+    exist = finite and all(is_continuous(term, over, known) for term in terms)
+    terms = terms if exist else (sp.factor(integral.function),)
+    total = sp.S.Zero
+    for term in terms:
+        factor, rest = term.as_independent(variable, as_Add=False)
+        power = sp.S.Zero if rest == 1 else rest.as_base_exp()[1] if rest.as_base_exp()[0] == variable else None
+        if exist and power is not None and power.is_Integer and power >= 0:
+            total += factor * (high ** (power + 1) - low ** (power + 1)) / (power + 1)
+        else:
+            total += factor * sp.Integral(rest, integral.limits[0])
+    return total
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -221,12 +261,18 @@ def _less(one: sp.Expr, other: sp.Expr) -> bool:
         return one != other
     if one == sp.oo or other == -sp.oo:
         return False
-    variable = sp.Dummy()
-    if sp.minimal_polynomial(one, variable) == sp.minimal_polynomial(other, variable):
-        digits = 60  # far more than the distance of two roots of the small polynomials here
-        if abs(sp.N(one, digits) - sp.N(other, digits)) < sp.Float(10, digits) ** -40:
-            return False
-    return bool(sp.N(one, 60) < sp.N(other, 60))
+    variable, gap = sp.Dummy(), other - one
+    if sp.minimal_polynomial(gap, variable) == variable:
+        return False
+    for digits in _DIGITS:
+        value = sp.N(gap, digits, maxn=10 * digits)
+        if value.is_comparable and abs(value) > sp.Float(10, digits) ** (-digits // 2):
+            return bool(value > 0)
+    raise UndecidedError(f"{one} and {other} are too close")
+
+
+_DIGITS = 30, 300, 3000
+"""Digits with which two numbers that differ are compared, until their difference shows."""
 
 
 def sign_between(expr: sp.Expr, over: Interval) -> str:
@@ -404,7 +450,7 @@ def near(
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = 1 / h if point == sp.oo else point + side * h
-    local = _reduced(put(expr, {variable: place}))
+    local = _reduced(_in_exponentials(put(expr, {variable: place}), h))
     if not local.has(sp.exp):
         return local
     power, shown = _without_faded(local, h)
@@ -413,10 +459,33 @@ def near(
     return shown
 
 
+def _in_exponentials(expr: sp.Expr, h: sp.Symbol) -> sp.Expr:
+    """Write by exponentials what may grow or fade as they do: then nothing else does."""
+    expr = expr.replace(sp.sinh, lambda u: (sp.exp(u) - sp.exp(-u)) / 2 if u.has(h) else sp.sinh(u))
+    expr = expr.replace(expm1, lambda u: sp.exp(u) - 1)
+    return expr.replace(
+        lambda node: node.is_Pow and node.base != sp.E and node.exp.has(h),
+        lambda node: sp.exp(node.exp * sp.log(node.base)),
+    )
+
+
+def _refuse_growth(expr: sp.Expr, h: sp.Symbol) -> None:
+    """Refuse what may grow beside an exponential that fades, or have poles without end."""
+    for node in sp.preorder_traversal(expr):
+        if not node.has(h) or node.is_Add or node.is_Mul or node == h:
+            continue
+        slow = isinstance(node, (sp.log, sp.atan, sp.asinh, sp.Abs, sp.Max, sp.Min))
+        slow = slow or (node.is_Pow and not node.exp.has(h))
+        bounded = isinstance(node, (sp.exp, sp.sin, sp.cos)) and not _leading(node.args[0], h)[1].is_negative
+        if not (slow or bounded):
+            raise UndecidedError(f"{node} may grow as fast as {expr} fades")
+
+
 def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     """Return n, f with local = T**n (f + what is smaller than any power of h), T = exp(-c/h**k).
 
-    All exponentials with an exponent without bound must be whole powers of one, T. A quotient of
+    All exponentials with an exponent without bound must be whole powers of one, T, and nothing else may
+    grow faster than a power. A quotient of
     polynomials in T has the series of the quotient of their lowest coefficients.
     """
     exponents = {node.exp: _leading(sp.cancel(node.exp), h) for node in local.atoms(sp.exp)}
@@ -428,9 +497,11 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
         raise UndecidedError(f"{sp.exp(least)} has no known limit")
     least = least if fading[least].is_negative else -least
     powers = {each: sp.cancel(each / least) for each in fading}
-    if not all(power.is_Integer for power in powers.values()):
+    if not all(power.is_Rational for power in powers.values()):
         raise UndecidedError(f"{local} has exponentials that are no powers of one another")
-    shown = sp.together(local.xreplace({sp.exp(each): faded ** powers[each] for each in fading}))
+    order = sp.ilcm(1, 1, *(power.q for power in powers.values()))
+    shown = sp.together(local.xreplace({sp.exp(each): faded ** (order * powers[each]) for each in fading}))
+    _refuse_growth(shown, h)
     (top, one), (bottom, other) = (_lowest(part, faded) for part in sp.fraction(shown))
     return int(one - other), sp.cancel(top / bottom)
 
@@ -450,6 +521,8 @@ def next_order(
     the last one that is written bounds the rest.
     """
     approached = sides(variable, point, known)
+    for side in approached:
+        _uniform(ratio, variable, point, side, known)
     try:
         found = [_next_on(ratio, eps, variable, point, side) for side in approached]
     except UndecidedError:
@@ -464,6 +537,21 @@ def next_order(
         if difference(c, other[0]) != 0 or other[1] != k or not (k.is_Integer or other[3]):
             raise UndecidedError(f"{ratio} has another series on the other side of {point}")
     return c, k, rest
+
+
+def _uniform(
+    ratio: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions
+) -> None:
+    """Refuse a ratio in which something begins with a coefficient that vanishes for some parameters.
+
+    There it would begin with another power, and what was left out be larger.
+    """
+    nonzero, nonnegative = demands(ratio)
+    for base in nonzero | nonnegative:
+        if base.has(variable) and base != variable:
+            first = _leading(near(base, variable, point, DISTANCE, side), DISTANCE)[0]
+            if not proves_nonzero(first, known):
+                raise UndecidedError(f"{first} may vanish, with which {base} begins; say where it does not")
 
 
 def _in_small(
@@ -680,9 +768,8 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
         infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
         if infinite or not all(_under_integral(node, variable, known) for variable in variables):
             return False
-    kinks = (*_CONTINUOUS, sp.sign, sp.Piecewise, sp.Heaviside, sp.floor, sp.ceiling, sp.Mod)
     for variable in variables:
-        if any(node.has(variable) for node in inner.atoms(*kinks)):
+        if any(node.has(variable) for node in inner.atoms(*KINKS)):
             everywhere = variable, -sp.oo, sp.oo
             slope = expanded(inner.diff(variable)).replace(_is_distance, _distance)
             if len(derivative.variables) > 1 or not all(

@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
-from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
+from .algebra import difference, is_constant_zero, is_continuous, is_differentiable, parted
 from .conditions import (
     Conditions,
     Interval,
@@ -29,6 +29,7 @@ from .conditions import (
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .identity import letters_of
+from .language import foreign, parts
 from .letters import letters, printed, told
 from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
@@ -144,9 +145,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         try:
             with _limited():
                 for argument in arguments.values():
-                    book._meant(
-                        argument, complex_too=name in _ALGEBRAIC, limits_too=name == "equal"
-                    )
+                    book._meant(argument)
                 return check(*args, **kwargs)
         except StepError:
             raise
@@ -167,10 +166,6 @@ _SHORT = 8
 
 _BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
 """What has a variable of its own."""
-
-_ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
-"""The checks that complex letters may enter."""
-
 
 class _Printer(LatexPrinter):
     """SymPy's own, but for values at a place, whose brackets it leaves out."""
@@ -340,6 +335,8 @@ class Book:
         self._read: dict[str, sp.Expr] = {}
         """The other forms that the display of the step in hand shows of its sides."""
         self._steps: list[Step] = []
+        self._named: dict[str, sp.Symbol] = {}
+        """The letters by their names."""
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
@@ -385,7 +382,7 @@ class Book:
             self._demand(form, latex)
         premises = merged(fact.premises for fact in self._origins.values())
         if not has_witness(
-            tuple((each.lhs, each.rhs) for each in premises), self._conditions.positive
+            tuple((each.lhs, each.rhs) for each in premises), self._conditions.gaps
         ):
             raise StepError(
                 f"{self.label}: no point was found where {condition} and all else holds"
@@ -457,6 +454,8 @@ class Book:
         if label not in self._uses:
             self._uses.append(label)
         self._carry(fact)
+        if not has_witness((), self._conditions.gaps):
+            raise StepError(f"{self.label}: no point was found where the conditions of {label} and all else hold")
         self._origins[lhs] = fact
         self._consistent(lhs, rhs, label)
 
@@ -586,29 +585,20 @@ class Book:
         words = ["argued"] if by_words or ARGUED in self._text else []
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
-    def _meant(
-        self, argument: object, *, complex_too: bool = False, limits_too: bool = False
-    ) -> None:
-        """Refuse what is no exact real value, and letters bound to places where they cannot be."""
+    def _meant(self, argument: object) -> None:
+        """Refuse what is not in the language, two letters of one name, and places where a letter cannot be."""
+        if isinstance(argument, Mapping):
+            argument = [*argument, *argument.values()]
         if isinstance(argument, tuple | list):
             for part in argument:
-                self._meant(part, complex_too=complex_too, limits_too=limits_too)
-        if not isinstance(argument, sp.Basic) or not argument.args:
+                self._meant(part)
+        if not isinstance(argument, sp.Basic):
             return
-        for node in sp.preorder_traversal(argument):
-            inexact = isinstance(node, sp.Float | sp.Order | sp.AccumBounds)
-            if (
-                inexact
-                or node in (sp.zoo, sp.nan)
-                or (isinstance(node, sp.Limit) and not limits_too)
-            ):
-                raise StepError(f"{self.label}: {node} is no exact value")
-            if (
-                isinstance(node, sp.Symbol)
-                and node.is_extended_real is not True
-                and not complex_too
-            ):
-                raise StepError(f"{self.label}: {node} is not known to be real")
+        if found := foreign(argument):
+            raise StepError(f"{self.label}: {found}")
+        for node in parts(argument):
+            if isinstance(node, sp.Symbol) and self._named.setdefault(node.name, node) != node:
+                raise StepError(f"{self.label}: there are two letters {node.name}")
             if isinstance(node, sp.Integral | sp.Sum | sp.Product):
                 places = [(limit[0], end) for limit in node.limits for end in limit[1:]]
             elif isinstance(node, sp.Subs):
@@ -688,6 +678,10 @@ class Book:
             gap = case.gts - case.lts
             positive = (*self._conditions.positive, self._resolve(gap), gap)
             self._conditions = Conditions(self._conditions.intervals, positive)
+            premises = merged(fact.premises for fact in self._origins.values())
+            pairs = tuple((each.lhs, each.rhs) for each in premises)
+            if not has_witness(pairs, self._conditions.gaps):
+                raise StepError(f"{self.label}: no point was found where {case} and all else holds")
         elif case != sp.true:
             raise StepError(f"{self.label}: {case} is no equality and no strict inequality")
         try:
@@ -703,6 +697,12 @@ class Book:
         value = self._resolve(self._rules[name])
         if name.is_integer and not value.is_integer:
             raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
+        signed = name.is_nonnegative or name.is_nonpositive
+        both = sp.sympify(self._rules[name]), value
+        if name.is_nonzero and not signed and not any(
+            proves_nonzero(form, self._conditions) for form in both
+        ):
+            raise StepError(f"{self.label}: {name} is not zero, but {value} may be; say where it is not")
         raw = demands(self._rules[name])[1]
         settled = {
             self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)
@@ -762,7 +762,7 @@ class Book:
         if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
-        return has_witness(pairs, self._conditions.positive)
+        return has_witness(pairs, self._conditions.gaps)
 
     def _placed(
         self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
@@ -926,16 +926,23 @@ class Book:
                     continue
                 self._read.setdefault(side, link)
                 read, checked = map(evaluated, map(self._resolve, (link, expr)))
-                if difference(read, checked) != 0:
+                if difference(self._parted(read), self._parted(checked)) != 0:
                     raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
         self._used = used
 
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: "Said | str") -> None:
-        rest = difference(lhs, rhs)
+        rest = difference(self._parted(lhs), self._parted(rhs))
         if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
             rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
         if rest != 0 and not is_constant_zero(rest, self._conditions):
             raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _parted(self, expr: sp.Expr) -> sp.Expr:
+        """Write each integral as the sum of its parts, where these exist."""
+        return expr.replace(
+            lambda node: isinstance(node, sp.Integral),
+            lambda node: parted(node, self._conditions),
+        )
 
     def _signed(self, inner: sp.Expr) -> sp.Expr:
         """Write an absolute value without its bars, where the conditions say the sign."""

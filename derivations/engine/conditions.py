@@ -36,6 +36,15 @@ class Conditions:
         """Return these conditions, with one variable inside an interval as well."""
         return Conditions((*self.intervals, over), self.positive)
 
+    @property
+    def gaps(self) -> tuple[sp.Expr, ...]:
+        """All that is positive: the expressions, and how far a variable is from the ends of its interval."""
+        ends = (
+            gap for name, low, high in self.intervals for gap in (name - low, high - name)
+            if not gap.has(sp.oo, -sp.oo)
+        )  # fmt: skip
+        return (*self.positive, *ends)
+
 
 NONE = Conditions()
 
@@ -73,7 +82,18 @@ def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
     bound = sp.Dummy(variable.name, real=True)
     inside = known.with_interval((bound, low, high))
     integrand = expr.function.subs(variable, bound)
-    return proves_nonnegative(high - low, known) and proves_nonnegative(integrand, inside)
+    return (
+        _exists(integrand, (bound, low, high), known)
+        and proves_nonnegative(high - low, known)
+        and proves_nonnegative(integrand, inside)
+    )
+
+
+def _exists(integrand: sp.Expr, over: Interval, known: Conditions) -> bool:
+    """Tell whether an integral is known to exist: of what is continuous, between finite ends."""
+    from .algebra import is_continuous
+
+    return all(sp.sympify(end).is_finite for end in over[1:]) and is_continuous(integrand, over, known)
 
 
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -110,6 +130,8 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
         sign = _sign_of_wave(expr, known)
     elif isinstance(expr, (sp.Min, sp.Max)):
         sign = _sign_of_extreme(expr, known)
+    elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+        sign = _sign_of_integral(expr, known)
     elif expr.is_Add and known.positive:
         sign = next((side for side in _sides(seen) if _outweighs(side * expr, known)), 0)
     elif expr.is_Mul:
@@ -136,6 +158,16 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
         ):
             return side
     return _by_scale(expr)
+
+
+def _sign_of_integral(expr: sp.Integral, known: Conditions) -> int:
+    """Return the sign of the integrand, between ends in order."""
+    variable, low, high = expr.limits[0]
+    bound = sp.Dummy(variable.name, real=True)
+    integrand, over = expr.function.subs(variable, bound), (bound, low, high)
+    if not (_exists(integrand, over, known) and proves_positive(high - low, known)):
+        return 0
+    return _sign(integrand, known.with_interval(over))
 
 
 def _sides(seen: frozenset[int]) -> tuple[int, ...]:

@@ -26,6 +26,7 @@ from .algebra import (
     is_continuous,
     leading_term,
     limit_at,
+    normalise,
     next_order,
     roots_between,
     sign_between,
@@ -188,6 +189,7 @@ class Proof(Guarded):
             del self._rules[lhs]
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
+        self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
         known = defined or lhs == whole
         premise = None if known else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
@@ -237,6 +239,9 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim}: {called} cannot have this value")
         if called != variable and not domain_of(called, None).holds(found, self._conditions):
             raise StepError(f"{self.label}: {claim}: {called} is not known to reach this value")
+        for base in (each.subs(variable, found) for each in demands(whole)[0]):
+            if not base.is_nonzero and not proves_nonzero(base, self._conditions):
+                raise StepError(f"{self.label}: {claim}: {base} may vanish there; say where it does not")
         try:
             only_root(whole, variable, found, domain_of(variable, over), self._conditions)
         except (UndecidedError, sp.PolynomialError) as error:
@@ -509,6 +514,15 @@ class Proof(Guarded):
         if found:
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
+
+    def _defined_alike(self, integral: sp.Expr, *forms: tuple[sp.Expr, sp.Expr]) -> None:
+        """Refuse an antiderivative or a value that is undefined for parameters for which the integral is not."""
+        shared = {normalise(base) for base in demands(integral)[0]}
+        bases = {base for raw, form in forms for base in self._undefined(sp.sympify(raw), form)}
+        for base in bases:
+            varies = isinstance(integral, sp.Integral) and base.has(*integral.variables)
+            if not (varies or normalise(base) in shared or proves_nonzero(base, self._conditions)):
+                raise StepError(f"{self.label}: {base} may vanish, but not in {integral}; say where it does not")
 
     def _unnamed(self, name: sp.Expr) -> sp.Expr:
         """Return what a name stands for that was given to another name, and use its definitions."""

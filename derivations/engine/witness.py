@@ -1,6 +1,6 @@
 """A point at which premises and conditions hold together: without one they prove nothing.
 
-Letters are drawn, the equations solved one after the other with 50 digits, at changes of sign. Values,
+Letters are drawn, the equations solved one after the other with 200 digits, at changes of sign. Values,
 slopes and integrals of unknown functions are letters of their own.
 """
 
@@ -13,13 +13,17 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .conditions import known_sign, linear
+from .conditions import known_sign, linear, proves_nonnegative, proves_positive
 from .identity import letters_of
 from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
-_TRIES, _DIGITS, _NONE = 200, 50, mpmath.mpf(10) ** -30
-_GRID = [mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)]
+_TRIES, _DIGITS, _NONE = 200, 200, mpmath.mpf(10) ** -150
+_GRID = [
+    *(mpmath.mpf(10) ** k for k in range(-20, -4)),
+    *(mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)),
+    *(mpmath.mpf(10) ** k for k in range(5, 21)),
+]
 
 
 Pairs = tuple[tuple[sp.Expr, sp.Expr], ...]
@@ -122,7 +126,7 @@ def _inside(node: sp.Expr, values: Pairs) -> sp.Expr:
 def _lettered(expr: sp.Expr) -> sp.Expr:
     """Write letters for what depends on unknown functions, with their sign."""
     if isinstance(expr, _OPAQUE):
-        known = {"positive": expr.is_positive, "nonnegative": expr.is_nonnegative}
+        known = {"positive": proves_positive(expr), "nonnegative": proves_nonnegative(expr)}
         return sp.Dummy(real=True, **{k: v for k, v in known.items() if v})
     return expr.func(*map(_lettered, expr.args)) if expr.has(*_OPAQUE) else expr
 
