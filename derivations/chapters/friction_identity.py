@@ -64,7 +64,9 @@ def _instant(proof: Proof) -> None:
     primitive = K * sp.integrate(height, x) + C * sp.integrate(rate, x)
     proof.recall("dense-row", F_z)
     proof.integral(F_z, p, steady.CONTACT, primitive, "Eq. (14) for a dense row")
-    primitive = -(K * sp.integrate(sp.expand(x * height), x) + C * sp.integrate(sp.expand(x * rate), x)) / R
+    primitive = (
+        -(K * sp.integrate(sp.expand(x * height), x) + C * sp.integrate(sp.expand(x * rate), x)) / R
+    )
     proof.recall("dense-row", F_x)
     proof.integral(F_x, -h(x).diff(x) * p, steady.CONTACT, primitive, "Eq. (15) for a dense row")
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")

@@ -10,9 +10,7 @@ from ..engine.nomenclature import letter, symbol
 from ..engine.step import Proof, tex
 from .model import C, K, V, delta
 from .power_law import (
-    FRICTION_FORCE,
     HIGH_COEFFICIENT,
-    LOAD,
     LOW_SLOPE,
     NUMBER,
     SECTION,

@@ -10,7 +10,7 @@ from ..engine.step import Proof
 from . import asymptotics as asy
 from . import steady
 from .asymptotics import V_star, mu_high, mu_low
-from .model import C, K, M, N, R, V, delta, g, tau
+from .model import K, M, N, R, V, delta, g, tau
 from .steady import W, a, mu, q
 
 delta_0 = symbol("delta_0", "static depth", "m", source="scaled-pressure")
@@ -104,7 +104,8 @@ def _six_digits(value: sp.Expr, unit: sp.Expr | int) -> str:
 def _velocity_dependences(proof: Proof) -> None:
     r"""Velocity dependences of the friction coefficient.
 
-    Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly: Eqs. (47) and (48) give its order.
+    Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly: Eqs. (47) and (48) give its
+    order.
     """
     proof.asymptote("eq42", mu, mu_low)
     proof.asymptote("eq45", mu, mu_high)

@@ -107,7 +107,7 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.done(P, PRESSURE)
 
 
-@result("scaled-form", uses=("eq14", "eq17", "scaled-pressure"))
+@result("scaled-form", uses=("scaled-pressure",))
 def _scaled_motion(proof: Proof) -> None:
     r"""Scaled motion of the indenter.
 
@@ -166,4 +166,3 @@ def _peeling_edges(proof: Proof) -> None:
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
         name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
-

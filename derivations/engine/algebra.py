@@ -12,7 +12,6 @@ from sympy.core.function import AppliedUndef
 from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
-    NONE,
     Conditions,
     Interval,
     demands,
@@ -47,12 +46,8 @@ KINKS = (*_CONTINUOUS, sp.sign, sp.Piecewise)
 _WRITTEN = {
     sp.tan: lambda u: sp.sin(u) / sp.cos(u),
     sp.asinh: lambda u: sp.log(u + sp.sqrt(u**2 + 1)),
-    sp.acosh: lambda u: sp.log(u + sp.sqrt(u - 1) * sp.sqrt(u + 1)),
-    sp.atanh: lambda u: (sp.log(1 + u) - sp.log(1 - u)) / 2,
-    sp.re: lambda u: (u + sp.conjugate(u)) / 2,
-    sp.im: lambda u: (u - sp.conjugate(u)) / (2 * sp.I),
 }
-"""Functions by others; true of all complex numbers, of the inverse ones for principal values."""
+"""Functions by others."""
 
 
 @lru_cache(maxsize=4096)
@@ -64,8 +59,6 @@ def normalise(expr: sp.Expr) -> sp.Expr:
     """
     for kind, written in _WRITTEN.items():
         expr = expr.replace(kind, written)
-    if expr.has(sp.conjugate):
-        expr = expr.replace(_is_square_of_size, lambda e: _size_squared(e) ** (e.exp / 2))
     if expr.has(sp.Max):
         expr = expr.replace(_is_of_two, _by_distance)
     expr = expr.replace(sp.Min, lambda *args: sp.Min(*args).rewrite(sp.Piecewise))
@@ -73,15 +66,6 @@ def normalise(expr: sp.Expr) -> sp.Expr:
         lambda e: e.is_Pow and e.exp.is_Rational and not e.exp.is_Integer,
         lambda e: sp.expand_power_base(sp.factor(sp.together(e.base)) ** e.exp),
     )
-
-
-def _is_square_of_size(expr: sp.Expr) -> bool:
-    return bool(expr.is_Pow and isinstance(expr.base, sp.Abs) and expr.exp.is_even)
-
-
-def _size_squared(power: sp.Pow) -> sp.Expr:
-    (number,) = power.base.args
-    return number * sp.conjugate(number)
 
 
 def in_one_angle(*expressions: sp.Expr) -> tuple[sp.Expr, ...]:
@@ -216,8 +200,8 @@ def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
     total = sp.S.Zero
     for term in terms:
         factor, rest = term.as_independent(variable, as_Add=False)
-        power = sp.S.Zero if rest == 1 else rest.as_base_exp()[1] if rest.as_base_exp()[0] == variable else None
-        if exist and power is not None and power.is_Integer and power >= 0:
+        base, power = (variable, sp.S.Zero) if rest == 1 else rest.as_base_exp()
+        if exist and base == variable and power.is_Integer and power >= 0:
             total += factor * (high ** (power + 1) - low ** (power + 1)) / (power + 1)
         else:
             total += factor * sp.Integral(rest, integral.limits[0])
@@ -360,45 +344,6 @@ def leading_term(
     return _leading(near(expr, variable, point, h, side), h)
 
 
-def limit_at(
-    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions = NONE
-) -> sp.Expr:
-    """Return the limit that an expression has from one side, by its leading term there.
-
-    Only rational functions and power series decide: all else may oscillate. What must not vanish, or be
-    negative, for the expression to be defined must not do so near the point, whatever the other letters are.
-
-    >>> x = sp.Symbol("x", real=True)
-    >>> limit_at(sp.sin(x) / x, x, 0, 1), limit_at((x + 1) / (x**2 + 1), x, sp.oo, -1)
-    (1, 0)
-    """
-
-    def leading(part: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        found = _lowest_powers(part, DISTANCE) or leading_of_series(part, DISTANCE)
-        if found is None:
-            raise UndecidedError(f"{part} has no known power series")
-        return found
-
-    def is_sure(base: sp.Expr, proves: Callable[..., bool]) -> bool:
-        return proves(leading(near(base, variable, point, DISTANCE, side))[0], known)
-
-    nonzero, nonnegative = demands(expr)
-    roots = nonnegative - {base for base in nonnegative if base.is_nonnegative}
-    local = near(expr, variable, point, DISTANCE, side)
-    top, bottom = sp.fraction(local)
-    weight, order = leading(bottom)
-    defined = all(is_sure(base, proves_nonzero) for base in nonzero)
-    defined = defined and all(is_sure(base, proves_positive) for base in roots)
-    if not defined or not proves_nonzero(weight, known):
-        raise UndecidedError(f"{expr} may not be defined near {variable} = {point}")
-    if top == 0:
-        return sp.S.Zero
-    factor, power = leading(top)
-    if power < order:
-        raise UndecidedError(f"{expr} is not known to stay finite as {variable} -> {point}")
-    return factor / weight if power == order else sp.S.Zero
-
-
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
@@ -476,7 +421,10 @@ def _refuse_growth(expr: sp.Expr, h: sp.Symbol) -> None:
             continue
         slow = isinstance(node, (sp.log, sp.atan, sp.asinh, sp.Abs, sp.Max, sp.Min))
         slow = slow or (node.is_Pow and not node.exp.has(h))
-        bounded = isinstance(node, (sp.exp, sp.sin, sp.cos)) and not _leading(node.args[0], h)[1].is_negative
+        bounded = (
+            isinstance(node, (sp.exp, sp.sin, sp.cos))
+            and not _leading(node.args[0], h)[1].is_negative
+        )
         if not (slow or bounded):
             raise UndecidedError(f"{node} may grow as fast as {expr} fades")
 
@@ -500,7 +448,9 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     if not all(power.is_Rational for power in powers.values()):
         raise UndecidedError(f"{local} has exponentials that are no powers of one another")
     order = sp.ilcm(1, 1, *(power.q for power in powers.values()))
-    shown = sp.together(local.xreplace({sp.exp(each): faded ** (order * powers[each]) for each in fading}))
+    shown = sp.together(
+        local.xreplace({sp.exp(each): faded ** (order * powers[each]) for each in fading})
+    )
     _refuse_growth(shown, h)
     (top, one), (bottom, other) = (_lowest(part, faded) for part in sp.fraction(shown))
     return int(one - other), sp.cancel(top / bottom)
@@ -551,7 +501,9 @@ def _uniform(
         if base.has(variable) and base != variable:
             first = _leading(near(base, variable, point, DISTANCE, side), DISTANCE)[0]
             if not proves_nonzero(first, known):
-                raise UndecidedError(f"{first} may vanish, with which {base} begins; say where it does not")
+                raise UndecidedError(
+                    f"{first} may vanish, with which {base} begins; say where it does not"
+                )
 
 
 def _in_small(
@@ -658,9 +610,9 @@ def is_continuous(
     inside = known.with_interval(over)
     if expr.is_Pow:
         return _is_continuous_power(expr, over, known, smooth)
-    if isinstance(expr, (sp.tan, sp.atanh, sp.acosh)):
+    if isinstance(expr, sp.tan):
         return is_continuous(_WRITTEN[expr.func](*expr.args), over, known, smooth=smooth)
-    if isinstance(expr, (sp.log, sp.asin, sp.acos)):
+    if isinstance(expr, (sp.log, sp.asin)):
         (argument,) = expr.args
         if isinstance(expr, sp.log):
             real = _throughout(proves_positive, argument, over, inside)
@@ -719,7 +671,7 @@ def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
 
     For inverse functions of one real letter, smooth wherever the letter can be: on one interval.
     """
-    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.acos, sp.asinh, sp.log):
+    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.asinh, sp.log):
         return False
     (letter,) = expr.free_symbols
     place = _place(letter, known)

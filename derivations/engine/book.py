@@ -167,6 +167,7 @@ _SHORT = 8
 _BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
 """What has a variable of its own."""
 
+
 class _Printer(LatexPrinter):
     """SymPy's own, but for values at a place, whose brackets it leaves out."""
 
@@ -364,9 +365,7 @@ class Book:
         self._premise(lhs, rhs, fact)
 
     @asked
-    def where(
-        self, condition: Relational, reason: str = "", **shown: Unpack[Shown]
-    ) -> None:
+    def where(self, condition: Relational, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Restrict what follows to where an inequality holds: part of the domain of the result."""
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
             raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
@@ -376,14 +375,15 @@ class Book:
             raise StepError(f"{self.label}: {condition} contradicts what is given")
         sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
         self._displayed(condition.lhs, condition.rhs, shown)
-        left, right = shown.get("left") or tex(condition.lhs), shown.get("right") or tex(condition.rhs)
+        left, right = (
+            shown.get("left") or tex(condition.lhs),
+            shown.get("right") or tex(condition.rhs),
+        )
         latex = f"{left} {sign} {right}"
         for form in (gap, raw):
             self._demand(form, latex)
         premises = merged(fact.premises for fact in self._origins.values())
-        if not has_witness(
-            tuple((each.lhs, each.rhs) for each in premises), self._conditions.gaps
-        ):
+        if not has_witness(tuple((each.lhs, each.rhs) for each in premises), self._conditions.gaps):
             raise StepError(
                 f"{self.label}: no point was found where {condition} and all else holds"
             )
@@ -455,7 +455,9 @@ class Book:
             self._uses.append(label)
         self._carry(fact)
         if not has_witness((), self._conditions.gaps):
-            raise StepError(f"{self.label}: no point was found where the conditions of {label} and all else hold")
+            raise StepError(
+                f"{self.label}: no point was found where the conditions of {label} and all else hold"
+            )
         self._origins[lhs] = fact
         self._consistent(lhs, rhs, label)
 
@@ -586,7 +588,7 @@ class Book:
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
     def _meant(self, argument: object) -> None:
-        """Refuse what is not in the language, two letters of one name, and places where a letter cannot be."""
+        """Refuse what is not in the language, letters of one name, and places where a letter cannot be."""
         if isinstance(argument, Mapping):
             argument = [*argument, *argument.values()]
         if isinstance(argument, tuple | list):
@@ -699,10 +701,14 @@ class Book:
             raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
         signed = name.is_nonnegative or name.is_nonpositive
         both = sp.sympify(self._rules[name]), value
-        if name.is_nonzero and not signed and not any(
-            proves_nonzero(form, self._conditions) for form in both
+        if (
+            name.is_nonzero
+            and not signed
+            and not any(proves_nonzero(form, self._conditions) for form in both)
         ):
-            raise StepError(f"{self.label}: {name} is not zero, but {value} may be; say where it is not")
+            raise StepError(
+                f"{self.label}: {name} is not zero, but {value} may be; say where it is not"
+            )
         raw = demands(self._rules[name])[1]
         settled = {
             self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import sympy as sp
+from sympy.codegen.cfunctions import log1p
 
 from .forms import coefficients, derivative, expanded, factors, put, reduced, sign_of_terms
 from .identity import letters_of
@@ -93,7 +94,9 @@ def _exists(integrand: sp.Expr, over: Interval, known: Conditions) -> bool:
     """Tell whether an integral is known to exist: of what is continuous, between finite ends."""
     from .algebra import is_continuous
 
-    return all(sp.sympify(end).is_finite for end in over[1:]) and is_continuous(integrand, over, known)
+    return all(sp.sympify(end).is_finite for end in over[1:]) and is_continuous(
+        integrand, over, known
+    )
 
 
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -119,7 +122,7 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 
 @lru_cache(maxsize=8192)
-def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return for each way
+def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911, PLR0912 one for each way
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
     seen = signs(expr, known.intervals, known.positive)
     if len(seen) == 2:
@@ -596,13 +599,8 @@ def _demands_of_power(base: sp.Expr, exponent: sp.Expr) -> _Demands:
 _OWN_DEMANDS: dict[type, Callable[..., _Demands]] = {
     sp.Pow: _demands_of_power,
     sp.log: lambda u: ((u,), (u,)),
-    sp.gamma: lambda u: ((u,), (u,)),  # more than it needs: the poles are at 0, -1, -2 and so on
+    log1p: lambda u: ((1 + u,), (1 + u,)),
     sp.asin: lambda u: ((), (1 - u**2,)),
-    sp.acos: lambda u: ((), (1 - u**2,)),
-    sp.acosh: lambda u: ((), (u - 1,)),
-    sp.atanh: lambda u: ((1 - u**2,), (1 - u**2,)),
-    **dict.fromkeys((sp.coth, sp.csch), lambda u: ((u,), ())),
-    **dict.fromkeys((sp.tan, sp.sec), lambda u: ((sp.cos(u),), ())),
-    **dict.fromkeys((sp.cot, sp.csc), lambda u: ((sp.sin(u),), ())),
+    sp.tan: lambda u: ((sp.cos(u),), ()),
 }
 """What a node demands of its arguments."""

@@ -15,9 +15,9 @@ from sympy.polys.rings import PolyElement
 
 from .identity import LARGEST, Polynomials, letters_of
 
-SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.atan, sp.asinh)
 """Functions that have all derivatives wherever their argument is real."""
-_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin, sp.acos)
+_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin)
 
 
 @lru_cache(maxsize=16384)

@@ -250,7 +250,9 @@ class Record:
         """Return what is found about both relations, which stand in this record."""
         found = []
         for relation in (claim["one"], claim["other"]):
-            each = next((each for each in self.claims.values() if _relation(each) == relation), None)
+            each = next(
+                (each for each in self.claims.values() if _relation(each) == relation), None
+            )
             if each is None:
                 return Verdict("refuted", "no claim of this record")
             found.append(self.verdict(each))
