@@ -158,21 +158,23 @@ def _critical(proof: Proof, high: str, critical: sp.Expr, shown: str) -> None:
     proof.root(mu_low - mu_high, V_star, critical, "the two asymptotes meet", right=shown)
 
 
-def _critical_scale(proof: Proof, source: str, scale: sp.Expr, factor: sp.Expr) -> None:
+def _critical_scale(proof: Proof, source: str, scale: sp.Expr, factor: sp.Expr, shown: str) -> None:
     proof.recall(source)
-    proof.proportional(V_star, scale, factor, "where the two asymptotes meet")
+    proof.proportional(V_star, scale, factor, "where the two asymptotes meet", right=shown)
 
 
-for _number, _label, _name, _term, _value, _shown, _factor in (
-    (47, "critical-fixed", "fixed indenter", "eq45", critical_fixed, CRITICAL_FIXED, alpha),
+for _number, _label, _name, _term, _value, _shown, _factor, _order in (
+    (47, "critical-fixed", "fixed indenter", "eq45", critical_fixed, CRITICAL_FIXED, alpha,
+     r"\frac{K \sqrt{R \delta}}{C}"),
     (48, "critical-dead-weight", "dead weight", "eq46", critical_dead_weight, CRITICAL_DEAD_WEIGHT,
-     alpha ** (2 * third)),
+     alpha ** (2 * third), r"\frac{\sqrt[3]{R K^2 W}}{C}"),
 ):  # fmt: skip
     result(_label, title=f"Crossing of the asymptotes, {_name}", high=_term, critical=_value, shown=_shown,
            text=r"The paper gives the order of magnitude; the factor, with $\alpha = 2\sqrt{2}/3$, is new.",
            )(_critical)  # fmt: skip
     result(f"eq{_number}", title=f"Critical velocity, {_name}", source=_label, scale=_value / _factor,
-           text=rf"The factor is that of ({_label}).", factor=_factor)(_critical_scale)  # fmt: skip
+           text=rf"The factor is that of ({_label}).", factor=_factor,
+           shown=_order)(_critical_scale)  # fmt: skip
 
 
 @result("eq49")

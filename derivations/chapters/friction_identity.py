@@ -40,7 +40,8 @@ def _any_shape(proof: Proof) -> None:
     proof.recall("eq29", C)
     work = -sp.Derivative(h(x), x) * p
     result = sp.Derivative(p**2, x) / (2 * K) + bending / K * p
-    proof.equal(work, result, "the integrand of Eq. (15)", left="-h'(x) p(x)")
+    proof.equal(work, result, "the integrand of Eq. (15)", left="-h'(x) p(x)",
+                right=r"\frac{1}{2 K} \frac{d}{d x} p(x)^2 + l_{\mathrm{r}} h''(x) p(x)")  # fmt: skip
 
 
 @result("F21")

@@ -17,7 +17,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.codegen.cfunctions import log1p
 
-from .forms import coefficients, derivative, expanded, factors, put, reduced, sign_of_terms
+from .forms import derivative, expanded, factors, put, reduced, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -72,8 +72,6 @@ def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
             return True
     elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
         return _is_nonnegative_integral(expr, known)
-    if _by_ends(expr, known, proves_nonnegative) or _is_definite(expr, known, strict=False):
-        return True
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
 
 
@@ -122,7 +120,7 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 
 @lru_cache(maxsize=8192)
-def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911, PLR0912 one for each way
+def _sign(expr: sp.Expr, known: Conditions) -> int:
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
     seen = signs(expr, known.intervals, known.positive)
     if len(seen) == 2:
@@ -151,16 +149,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911, PLR0912 on
     several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
     if factored != expr and several and (sign := _sign(factored, known)):
         return sign
-    for side in _sides(seen):
-        one = side * expr
-        if (
-            _by_ends(one, known, proves_positive)
-            or _is_definite(one, known, strict=True)
-            or _by_slope(one)
-            or _by_coefficients(one)
-        ):
-            return side
-    return _by_scale(expr)
+    return next((side for side in _sides(seen) if _by_slope(side * expr)), 0)
 
 
 def _sign_of_integral(expr: sp.Integral, known: Conditions) -> int:
@@ -193,30 +182,6 @@ def _sign_of_extreme(expr: sp.Expr, known: Conditions) -> int:
     signs = [_sign(arg, known) for arg in expr.args]
     decides = 1 if isinstance(expr, sp.Max) else -1
     return decides if decides in signs else signs[0] if len(set(signs)) == 1 else 0
-
-
-def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> bool:
-    """Decide what is affine in a sine or cosine by its values at -1 and 1, between which it lies."""
-    for wave in sorted(expr.atoms(sp.sin, sp.cos), key=str):
-        name = sp.Dummy(real=True)
-        named = expr.xreplace({wave: name})
-        slope = derivative(named, name)
-        if wave.is_real and not slope.has(name) and not named.atoms(sp.sin, sp.cos):
-            return all(proves(named.subs(name, end), known) for end in (-1, 1))
-    return False
-
-
-def _is_definite(expr: sp.Expr, known: Conditions, *, strict: bool) -> bool:
-    """Decide a quadratic polynomial by its leading coefficient and its discriminant."""
-    proves = proves_positive if strict else proves_nonnegative
-    for letter in sorted(expr.free_symbols, key=str):
-        if not letter.is_real or not expr.is_polynomial(*expr.free_symbols):
-            return False
-        coefficients = sp.Poly(expr, letter).all_coeffs()
-        if len(coefficients) == 3:
-            lead, middle, rest = coefficients
-            return proves_positive(lead, known) and proves(4 * lead * rest - middle**2, known)
-    return False
 
 
 _DERIVATIVES, _LONGEST = 6, 60
@@ -278,36 +243,12 @@ def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
     return end is not None and bool(sp.limit(whole, letter, end).is_nonnegative)
 
 
-def _by_scale(expr: sp.Expr) -> int:
-    """Decide what two positive letters enter by their ratio alone, but for a factor."""
-    letters = sorted(expr.free_symbols, key=str)
-    if len(letters) != 2 or not expr.has(sp.atan) or not all(each.is_positive for each in letters):
-        return 0
-    one, other = letters
-    scaled = sp.Mul(*factors(expanded(expr.subs(one, one * other))))
-    scale, rest = scaled.as_independent(one, as_Add=False)
-    return known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
-
-
-def _by_coefficients(expr: sp.Expr) -> bool:
-    """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
-    for letter in sorted(expr.free_symbols, key=str):
-        if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
-            found = coefficients(expr, letter)
-            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found.values()):
-                return True
-    return False
-
-
 def _never_below(slope: sp.Expr, left: int) -> bool:
     """Tell whether a slope is never negative, after positive factors have been left out."""
     forms = [slope, sp.Mul(*factors(slope))]
     forms.append(sp.Mul(*(part for part in sp.Mul.make_args(forms[1]) if not part.is_positive)))
     return any(
-        _product_sign(form, strict=False) == 1
-        or _by_ends(form, NONE, proves_nonnegative)
-        or _by_slope(expanded(form), left)
-        for form in forms
+        _product_sign(form, strict=False) == 1 or _by_slope(expanded(form), left) for form in forms
     )
 
 
