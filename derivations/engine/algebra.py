@@ -9,7 +9,6 @@ from functools import lru_cache
 import sympy as sp
 from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
-from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
     Conditions,
@@ -473,13 +472,7 @@ def next_order(
     approached = sides(variable, point, known)
     for side in approached:
         _uniform(ratio, variable, point, side, known)
-    try:
-        found = [_next_on(ratio, eps, variable, point, side) for side in approached]
-    except UndecidedError:
-        inner = _in_small(ratio, eps, variable, point, known)
-        if inner is None:
-            raise
-        found = [_next_on(*inner, 0, 1)]
+    found = [_next_on(ratio, eps, variable, point, side) for side in approached]
     c, k, rest, _ = found[0]
     if not any(positive for *_, positive in found):
         raise UndecidedError(f"{eps} is not a small positive quantity")
@@ -504,32 +497,6 @@ def _uniform(
                 raise UndecidedError(
                     f"{first} may vanish, with which {base} begins; say where it does not"
                 )
-
-
-def _in_small(
-    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
-) -> tuple[sp.Expr, sp.Expr, sp.Symbol] | None:
-    """Write a ratio that is a function of the small quantity alone in a variable of which that is a power.
-
-    The small quantity is a power of the variable, or an exponential: of unknown order, but known to fade.
-    """
-    ratio = ratio.rewrite(sp.exp) if ratio.has(HyperbolicFunction) else ratio
-    ratio, small = sp.powsimp(expanded(ratio), deep=True), sp.Dummy("small", positive=True)
-    if eps.is_Pow and eps.base == variable and variable.is_positive and point in (0, sp.oo):
-        fades = proves_positive(eps.exp if point == 0 else -eps.exp, known)
-        nodes = {node: node.exp for node in ratio.atoms(sp.Pow) if node.base == variable}
-        nodes[variable] = sp.S.One
-    elif isinstance(eps, sp.exp) and variable.is_positive and point == sp.oo:
-        rate, order = eps.exp.as_coeff_exponent(variable)
-        fades = not rate.has(variable) and proves_positive(-rate, known) and order.is_positive
-        nodes = {node: node.exp for node in ratio.atoms(sp.exp) if node.has(variable)}
-    else:
-        return None
-    powers = {node: sp.cancel(exponent / eps.exp) for node, exponent in nodes.items()}
-    whole = {node: power for node, power in powers.items() if power.is_Rational}
-    order = sp.ilcm(1, 1, *(power.q for power in whole.values()))
-    inner = ratio.xreplace({node: small ** (order * power) for node, power in whole.items()})
-    return (inner, small**order, small) if fades and not inner.has(variable) else None
 
 
 def _next_on(

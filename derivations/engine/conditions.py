@@ -127,11 +127,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
         return 0
     if sign := known_sign(expr):
         return sign
-    if isinstance(expr, (sp.sin, sp.cos)):
-        sign = _sign_of_wave(expr, known)
-    elif isinstance(expr, (sp.Min, sp.Max)):
-        sign = _sign_of_extreme(expr, known)
-    elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+    if isinstance(expr, sp.Integral) and len(expr.limits) == 1:
         sign = _sign_of_integral(expr, known)
     elif expr.is_Add and known.positive:
         sign = next((side for side in _sides(seen) if _outweighs(side * expr, known)), 0)
@@ -165,23 +161,6 @@ def _sign_of_integral(expr: sp.Integral, known: Conditions) -> int:
 def _sides(seen: frozenset[int]) -> tuple[int, ...]:
     """Return the signs that may be proved: the one that was seen, or else both."""
     return tuple(seen) or (1, -1)
-
-
-def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
-    """Decide the sign of a sine in (-pi, pi) and of a cosine in (-pi/2, pi/2)."""
-    (angle,) = expr.args
-    right = sp.pi / 2 if isinstance(expr, sp.cos) else sp.S.Zero
-    for side in (1, -1) if right == 0 else (1,):
-        phase = side * angle + right
-        if proves_positive(phase, known) and proves_positive(sp.pi - phase, known):
-            return side
-    return 0
-
-
-def _sign_of_extreme(expr: sp.Expr, known: Conditions) -> int:
-    signs = [_sign(arg, known) for arg in expr.args]
-    decides = 1 if isinstance(expr, sp.Max) else -1
-    return decides if decides in signs else signs[0] if len(set(signs)) == 1 else 0
 
 
 _DERIVATIVES, _LONGEST = 6, 60
@@ -297,8 +276,6 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
         if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
         if power.base.is_positive
     }
-    if expr.has(sp.cosh):
-        yield expr.replace(sp.cosh, lambda angle: 1 + 2 * sp.sinh(angle / 2) ** 2)
     if squares and not known.intervals and not known.positive:
         yield expr.subs(squares)  # roots of letters are letters too
     for place, (variable, *ends) in enumerate(known.intervals):
