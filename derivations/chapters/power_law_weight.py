@@ -34,6 +34,7 @@ from .theorems import kappa, lam, r, s
 scaled_n = symbol("f_n", "scaled load of a power law that has been lifted, $W/W_0$")
 scaled_n_s = symbol("f_n_s", latex="f_n'")
 letter("L_1", "asymptote of the friction coefficient for low velocity")
+letter("L_2", "asymptote of the friction coefficient for high velocity")
 slip_n = symbol("D_n", "logarithmic slope of the friction coefficient of a power law", real=True)
 T_n = symbol("T_n", "scaled friction of a power law over its asymptote for low velocity", real=True)
 lam_cross = symbol("lambda_cross", "drive number where the asymptotes meet", latex=r"\lambda^{*}")
