@@ -6,7 +6,7 @@ from functools import cache
 from importlib import import_module
 from types import ModuleType
 
-from .engine.book import finished, restore
+from .engine.book import StepError, finished, restore
 from .engine.nomenclature import BY_LATEX
 from .engine.record import Derivation
 from .engine.store import digests, keep, load
@@ -62,11 +62,23 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     gc.disable()  # to look for cycles among so many objects would take a sixth of the time
     try:
         derived: tuple[Derivation, ...] = chapter.result.derive()
+        _ask_dimensions(derived)
         keep(name, _digests()[name], finished(each.label for each in derived))
     finally:
         if collects:
             gc.enable()
     return derived
+
+
+def _ask_dimensions(derived: tuple[Derivation, ...]) -> None:
+    """Refuse records with a step whose sides have different units."""
+    from .dimensions import faults
+
+    labels = {step.source for each in derived for step in each.steps if step.source}
+    sources = {label: each.derivation for label, each in finished(labels).items()}
+    for each in derived:
+        if found := faults(each, sources):
+            raise StepError(found[0])
 
 
 def catalogue(

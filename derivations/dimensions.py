@@ -51,6 +51,7 @@ OWN: dict[str, dict[str, str]] = {
     "F22-ringing": {"d_r": "1"},
     "eq14": {"f_z": "N/m"},
     "eq15": {"f_x": "N/m"},
+    "dense-row": {"f_z": "N/m", "f_x": "N/m"},
     "element-mean-force": {"p_s": "Pa"},
 }
 """Units of letters in records where they are not those of the nomenclature: moments of the whole relaxation
@@ -183,9 +184,13 @@ def faults(derivation: Derivation, sources: Mapping[str, Derivation]) -> list[st
     found = []
     for step in derivation.steps if derivation.label not in EXEMPT else ():
         origin = sources.get(step.source, derivation)
+        walk = _Walk(origin.label, origin.section)
         try:
-            if step.claim:
-                _Walk(origin.label, origin.section).same(step.claim.lhs, step.claim.rhs)
+            if step.claim and isinstance(step.claim.lhs, sp.Tuple):
+                for sides in zip(step.claim.lhs, step.claim.rhs, strict=True):
+                    walk.same(*sides)
+            elif step.claim:
+                walk.same(step.claim.lhs, step.claim.rhs)
         except DimensionError as error:
             found.append(f"{derivation.label}: {step.latex}: {error}")
     return found

@@ -200,7 +200,7 @@ WIDER = {
     "F15-euler/3": {"over": ["z", "1", ["infinity"]]},
     "F15-runge-kutta/9": {"over": ["z", "0", "3"]},  # zero at 2.785
     "F15-runge-kutta/10": {"over": ["z", "2", ["infinity"]]},
-    "wedge-low/3": {"over": ["l", "0", "2"]},  # (1 - l)(2 + l)
+    "wedge-low/4": {"over": ["l", "0", "2"], "domain": []},  # (1 - l)(2 + l)
     "F9/0": {"over": ["eta", "0", ["infinity"]]},  # 2 - 2 eta
     "F3/3": {"over": ["q", "0", "4"]},  # 2 - sqrt 3 and 2 + sqrt 3
     "F18-glassy/3": {"over": ["omega_v", "0", "2"], "domain": []},  # w/6 - w^2/9 is zero at 3/2

@@ -3,7 +3,9 @@
 from dataclasses import replace
 
 import pytest
+from kvtheory.derivations.catalogue import _ask_dimensions
 from kvtheory.derivations.dimensions import BASE, EXEMPT, DimensionError, faults, of_unit
+from kvtheory.derivations.engine.book import StepError
 from kvtheory.derivations.symbols import K, W, tau
 
 
@@ -18,7 +20,7 @@ def test_a_wrong_dimension_is_found_in_every_relation(by_label):
         steps = [
             step
             for step in record.steps
-            if step.claim and 0 not in (step.claim.lhs, step.claim.rhs)
+            if step.claim and not {0, "pair"} & {step.claim.lhs, step.claim.rhs, step.claim.check}
         ]
         for step in steps if record.label not in EXEMPT else ():
             factor = (K, 1 / tau, W**2)[planted % 3]
@@ -27,6 +29,14 @@ def test_a_wrong_dimension_is_found_in_every_relation(by_label):
             missed += len(faults(replace(record, steps=(wrong,)), by_label)) != 1
     assert planted > 1500
     assert missed == 0
+
+
+def test_a_chapter_is_refused_with_a_step_of_wrong_dimension(by_label):
+    step = by_label["eq29"].steps[0]
+    wrong = replace(step, claim=replace(step.claim, rhs=step.claim.rhs * (1 + tau)))
+    _ask_dimensions((by_label["eq29"],))
+    with pytest.raises(StepError, match=r"eq29: .* has the dimension"):
+        _ask_dimensions((replace(by_label["eq29"], steps=(wrong,)),))
 
 
 def test_units_are_read():

@@ -46,7 +46,7 @@ def test_no_claim_is_refuted_and_every_known_kind_is_decided(records):
         undecided == []
     )  # a claim about two forms of one expression is about them as they are printed
     weaker = Counter(each.kind for each in having(verdicts, "supported").values())
-    assert set(weaker) <= {"limit", "inequality", "integral", "maximum", "crossing"}
+    assert set(weaker) <= {"limit", "inequality", "integral", "maximum", "crossing", "pair"}
     assert counts(verdicts)["confirmed"] > 5 * sum(weaker.values())
 
 

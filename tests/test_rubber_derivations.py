@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.chapters import few_arms, rubber_transient, viscoelastic
+from kvtheory.derivations.engine.book import established
 from scipy.optimize import brentq, minimize_scalar
 
 import kvtheory as kv
@@ -139,6 +140,7 @@ def test_f26_finds_the_foundation_from_its_friction_maximum(by_label):
 
     best = minimize_scalar(falls, bracket=(0.02, 0.04, 0.08), tol=1e-10)
     known = {s.mu_max: -best.fun, s.V_max: best.x, s.W: WEIGHT, s.R: 0.01, s.K: K}
+    known |= {each: established("F3-values", each) for each in (s.mu_peak, s.Lambda_peak)}
     stiffness, time = (
         step.claim.rhs for step in by_label["F26"].steps if step.claim.check == "root"
     )

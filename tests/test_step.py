@@ -183,7 +183,7 @@ def test_a_sampled_step_stays_sampled_when_it_is_recalled_twice():
     assert third.done(2 * z**3, 2 * y).status == "sampled"
     by_words = Proof("by-words", None, section="Trial", title="By words", uses=("second",))
     by_words.equal(x + x, 2 * x, "sum")
-    assert by_words.done(x + x, 2 * x).status == "sampled"
+    assert by_words.done(x + x, 2 * x).status == "argued"
 
 
 @pytest.mark.parametrize(
@@ -230,14 +230,22 @@ def test_a_title_that_words_prove_is_argued_and_its_lines_are_proved():
 
         Argued: It is seen in a plot.
         """
-        proof.equal(2 * y, y + y, "twice")
+        proof.equal((y + 1) ** 2, y**2 + 2 * y + 1, "twice")
 
-    @result("resting", uses=("words",))
+    @result("resting")
     def _proved(proof):
         """Thrice."""
-        proof.equal(3 * y, y + y + y, "thrice")
+        proof.recall("words")
+        proof.equal(x * (y + 1) ** 2, x * (y**2 + 2 * y + 1), "and so")
 
-    words, resting = result.derive()
+    @result("naming", uses=("words",))
+    def _named(proof):
+        """Four times."""
+        proof.equal(4 * y, y + y + 2 * y, "four times")
+
+    words, resting, naming = result.derive()
+    assert (naming.status, naming.steps[0].status) == ("argued", "proved")
+    assert "What is used of words is said in words" in naming.text
     assert words.status == "argued"
     assert words.text == "Twice. Argued, not checked by machine. It is seen in a plot."
     assert {words.steps[0].status, resting.status} == {"proved"}

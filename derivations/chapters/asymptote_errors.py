@@ -11,7 +11,9 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
-from .steady import l, q
+from .asymptotics import mu_high, mu_low
+from .model import V, delta
+from .steady import F, W, l, l_r, mu, q
 from .theorems import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
@@ -31,7 +33,7 @@ from .theorems import (
 
 (
     gap, e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high,
-    e_depth_low, e_depth_high, e_load_spring, S, b, E,
+    e_depth_low, e_depth_high, e_load_spring, S, b, E, W_low, W_high, F_low, F_high, depth_high,
 ) = symbols(r"""
     gap         \bar q            1  $1 - q$
     e_L1        e_{\mathrm{L1}}   1  relative error of the asymptote of the friction coefficient for low
@@ -52,7 +54,11 @@ from .theorems import (
     b           -                 1  root of the static depth over the depth, $(1 +
             E_\delta)^{1/3}$  prints b_\delta
     E           -                 1  relative excess of the load over the static one  prints E_\delta
-    -           L_2               1  asymptote of the friction coefficient for high velocity
+    W_low       W_{\mathrm{L1}}   N/m  asymptote of the load for low velocity
+    W_high      W_{\mathrm{L2}}   N/m  asymptote of the load for high velocity
+    F_low       F_{\mathrm{L1}}   N/m  asymptote of the friction force for low velocity
+    F_high      F_{\mathrm{L2}}   N/m  asymptote of the friction force for high velocity
+    depth_high  \delta_{\mathrm{L2}}  m  asymptote of the depth for high velocity
 """)  # fmt: skip
 
 result = Chapter("Errors of the asymptotes")
@@ -65,7 +71,12 @@ class Asymptote:
     label: str
     title: str
     equation: str
+    of: sp.Symbol
+    """The quantity."""
+    term: sp.Symbol
+    """Its leading term."""
     symbol: sp.Symbol
+    """The error."""
     ratio: sp.Expr
     """Asymptote/exact in terms of w, phi, m and l."""
     stable: sp.Expr
@@ -87,43 +98,43 @@ ASYMPTOTES = (
     Asymptote(
         "error-L1",
         "Friction coefficient at low velocity",
-        *("eq42", e_l1, l / m, 6 * l / ((1 + q) * B)),
+        *("eq42", mu, mu_low, e_l1, l / m, 6 * l / ((1 + q) * B)),
         *(1, _rational(3, 4), _rational(3, 2), "<"),
     ),
     Asymptote(
         "error-L2-fixed",
         "Friction coefficient at high velocity, fixed depth",
-        *("eq45", e_l2_fixed, 2 / (3 * m), (1 + q) * (7 - 2 * q + 3 * q**2) / (6 * l * B)),
+        *("eq45", mu, mu_high, e_l2_fixed, 2 / (3 * m), (1 + q) * (7 - 2 * q + 3 * q**2) / (6 * l * B)),
         *(-1, _rational(7, 24), _rational(2, 3), ">"),
     ),
     Asymptote(
         "error-load-low",
         "Load at low velocity, fixed depth",
-        *("eq40", e_load_low, 4 / (3 * w), -(gap**2) * (q**2 + 2 * q + 3) / ((1 + q) ** 2 * A)),
+        *("eq40", W, W_low, e_load_low, 4 / (3 * w), -(gap**2) * (q**2 + 2 * q + 3) / ((1 + q) ** 2 * A)),
         *(2, -_rational(3, 4), 0, ">"),
     ),
     Asymptote(
         "error-load-high",
         "Load at high velocity, fixed depth",
-        *("eq43", e_load_high, l / w, -q * B / ((1 + q) * A)),
+        *("eq43", W, W_high, e_load_high, l / w, -q * B / ((1 + q) * A)),
         *(-1, -_rational(2, 3), 0, "<"),
     ),
     Asymptote(
         "error-friction-low",
         "Friction force at low velocity, fixed depth",
-        *("eq41", e_friction_low, 4 * l / (3 * phi), gap * (q**2 + q + 4) / ((1 + q) * B)),
+        *("eq41", F, F_low, e_friction_low, 4 * l / (3 * phi), gap * (q**2 + q + 4) / ((1 + q) * B)),
         *(1, 0, _rational(3, 4), "<"),
     ),
     Asymptote(
         "error-friction-high",
         "Friction force at high velocity, fixed depth",
-        *("eq44", e_friction_high, 2 * l / (3 * phi), -q * (q**2 + 3) / ((1 + q) * B)),
+        *("eq44", F, F_high, e_friction_high, 2 * l / (3 * phi), -q * (q**2 + 3) / ((1 + q) * B)),
         *(-1, -_rational(3, 8), 0, "<"),
     ),
     Asymptote(
         "error-depth-high",
         "Depth at high velocity, dead weight",
-        *("eq49", e_depth_high, w / l, (1 + q) * B / (6 * l)),
+        *("eq49", delta, depth_high, e_depth_high, w / l, (1 + q) * B / (6 * l)),
         *(-1, _rational(2, 3), _rational(4, 3), ">"),
     ),
 )  # fmt: skip
@@ -140,6 +151,16 @@ def _recall(proof: Proof, ratio: sp.Expr) -> None:
         proof.recall("F1", part)
 
 
+def _dimensional(proof: Proof, equation: str, of: sp.Symbol, term: sp.Symbol) -> None:
+    """Recall an asymptote, and the quantities that are in it and in what it approaches."""
+    leading = proof.asymptote(equation, of, term)
+    proof.recall("eq28", delta)
+    proof.recall("scaling", V, l_r)
+    wanted = {W, F, mu} & {of, *leading.free_symbols}
+    for part in sorted(wanted, key=str):
+        proof.recall("F1", part)
+
+
 def _gap(proof: Proof) -> None:
     proof.define(gap, 1 - q, "the peeled part of the outlet side")
     proof.equal(gap, 2 * q * l / (1 + q), "without a difference")
@@ -150,7 +171,9 @@ def _error(proof: Proof, asymptote: Asymptote) -> None:
     _recall(proof, asymptote.ratio)
     if asymptote.stable.has(gap):
         _gap(proof)
-    proof.define(error, asymptote.ratio - 1, "asymptote over exact value")
+    _dimensional(proof, asymptote.equation, asymptote.of, asymptote.term)
+    proof.define(error, asymptote.term / asymptote.of - 1, "asymptote over exact value")
+    proof.equal(error, asymptote.ratio - 1, "in scaled quantities")
     proof.equal(error, asymptote.stable, "in this form exact also where it is small")
     slope = sp.Derivative((asymptote.ratio - 1).subs(_IN_Q), q)
     proof.sign(slope, asymptote.growth, 0, UNIT, "monotonic", left=_slope_of(error))
@@ -160,11 +183,11 @@ def _error(proof: Proof, asymptote: Asymptote) -> None:
 
 
 for _each in ASYMPTOTES:
-    result(_each.label, title=_each.title, uses=(_each.equation,), asymptote=_each,
+    result(_each.label, title=_each.title, asymptote=_each,
            text=rf"The asymptote over the exact value is $1 + {tex(_each.symbol)}$.")(_error)  # fmt: skip
 
 
-@result("error-depth-low", uses=("eq40",))
+@result("error-depth-low")
 def _depth_low(proof: Proof) -> None:
     r"""Depth at low velocity, dead weight.
 
@@ -181,7 +204,9 @@ def _depth_low(proof: Proof) -> None:
     proof.sign(sp.Derivative((1 + E) ** 2, E), ">", 0, (E, 0, sp.oo), "grows with $E$")
     _recall(proof, w)
     _gap(proof)
-    proof.define(E, 3 * w / 4 - 1, "excess of the load over the static load at this depth")
+    _dimensional(proof, "eq40", W, W_low)
+    proof.define(E, W / W_low - 1, "excess of the load over the static load at this depth")
+    proof.equal(E, 3 * w / 4 - 1, "in scaled quantities")
     proof.equal(E, excess, "without a difference")
     proof.sign(sp.Derivative(3 * LOAD / 4, q), "<", 0, UNIT, "monotonic")
     proof.sign(E / l**2, "<", _rational(3, 4), UNIT, r"hence the error is below $l^2/2$")
@@ -191,7 +216,7 @@ def _depth_low(proof: Proof) -> None:
 _CONCAVE = r"$(1 + E)^{2/3} < 1 + \frac{2}{3} E$"
 
 
-@result("error-L2-dead-weight", uses=("eq46",))
+@result("error-L2-dead-weight")
 def _dead_weight(proof: Proof) -> None:
     r"""Friction coefficient at high velocity, dead weight.
 
@@ -204,13 +229,15 @@ def _dead_weight(proof: Proof) -> None:
     for error in ASYMPTOTES:
         if error.symbol in (e_depth_high, e_l2_fixed):
             proof.recall(error.label, (error.symbol, error.ratio - 1))
-    proof.define(e_l2_weight, 2 / (3 * m) * sp.sqrt(w / l) - 1, _OVER_EXACT)
+    _dimensional(proof, "eq46", mu, mu_high)
+    proof.define(e_l2_weight, mu_high / mu - 1, "asymptote over exact value")
+    proof.equal(e_l2_weight, 2 / (3 * m) * sp.sqrt(w / l) - 1, "in scaled quantities")
     proof.equal(e_l2_weight, root * (1 + e_l2_fixed) - 1, "both errors")
     proof.define(S, e_depth_high / (1 + root), "half the error of the depth, at first order")
     proof.equal(S, root - 1, "without a difference on the left")
     proof.equal(e_l2_weight, form, "a sum of positive terms")
     _recall(proof, squared)
-    proof.equal((1 + e_l2_weight) ** 2, squared, r"the square of $L_2/\mu$")
+    proof.equal((1 + e_l2_weight) ** 2, squared, r"the square of $\mu_{\mathrm{L2}}/\mu$")
     slope = sp.Derivative(squared.subs(_IN_Q), q)
     proof.sign(
         slope, ">", 0, UNIT, "monotonic", left=rf"\frac{{d}}{{dq}} (1 + {tex(e_l2_weight)})^2"
@@ -220,10 +247,7 @@ def _dead_weight(proof: Proof) -> None:
     proof.done(e_l2_weight, form)
 
 
-_OVER_EXACT = r"$\alpha \sqrt{W/(R C V)}$ over $\mu$, with $W = K \delta a w$ and $\mu = a m/R$"
-
-
-@result("error-load-suspended", uses=("scaled-load", "balance"))
+@result("error-load-suspended")
 def _suspended(proof: Proof) -> None:
     r"""Load of a suspended indenter at high velocity.
 
@@ -231,7 +255,7 @@ def _suspended(proof: Proof) -> None:
     lifted by its whole static depth; this over the exact load.
     """
     form = 4 * kappa / (3 * s * w)
-    proof.define(f, 3 * s**3 * w / 4, "load over static load")
+    proof.recall("scaled-load", (f, 3 * s**3 * w / 4))
     proof.define(
         e_load_spring, (f + kappa * s**2) / f - 1, r"balance: $1 + \kappa = f + \kappa s^2$"
     )

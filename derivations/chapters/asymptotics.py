@@ -13,9 +13,12 @@ from . import friction_identity
 from .model import C, K, R, V, delta, h, x
 from .steady import F, W, a, l, l_r, mu, q
 
-load_excess, V_star = symbols(r"""
-    W_e     W_{\mathrm{e}}  N/m  elastic part of the load  real
-    V_star  V^{*}           m/s  crossing velocity, where the two asymptotes meet  from eq47
+load_excess, V_star, mu_low, mu_high, mu_high_weight = symbols(r"""
+    W_e      W_{\mathrm{e}}     N/m  elastic part of the load  real
+    V_star   V^{*}              m/s  crossing velocity, where the two asymptotes meet  from critical-fixed
+    mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity
+    mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity
+    mu_high_weight  \mu_{\mathrm{L2\text{-}MI}}  1  asymptote for high velocity, dead weight
 """)
 alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
 
@@ -136,40 +139,52 @@ def _high_coefficient(proof: Proof) -> None:
 def _high_dead_weight(proof: Proof) -> None:
     """Friction coefficient at high velocity, dead weight.
 
-    The velocity $V^{*}$ is that of Eq. (48); the load $W$ is given.
+    The load $W$ is given. The velocity $V^{*}$ is where this asymptote meets that of low velocity
+    (critical-dead-weight).
     """
     _recall_coefficient(proof)
-    proof.define(V_star, critical_dead_weight, "Eq. (48)", right=CRITICAL_DEAD_WEIGHT)
-    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "exact $F/W$ at the load $W$",
-                        eps=_small, right=HIGH_DEAD_WEIGHT)  # fmt: skip
+    reason = "exact $F/W$ at the load $W$"
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, reason, eps=a / l_r,
+                        right=HIGH_DEAD_WEIGHT)  # fmt: skip
+    proof.define(V_star, critical_dead_weight, "a scale of velocity", right=CRITICAL_DEAD_WEIGHT)
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "in this scale", eps=_small,
+                        right=HIGH_DEAD_WEIGHT)  # fmt: skip
 
 
-@result("eq47", uses=("eq42", "eq45"))
-def _critical_fixed(proof: Proof) -> None:
-    """Critical velocity, fixed indenter."""
-    proof.define(V, V_star, "the two asymptotes meet")
-    reason = "Eq. (42) equals Eq. (45)"
-    gap = low_coefficient - high_coefficient
-    proof.root(gap, V_star, critical_fixed, reason, right=CRITICAL_FIXED)
+def _critical(proof: Proof, high: str, critical: sp.Expr, shown: str) -> None:
+    proof.asymptote("eq42", mu, mu_low)
+    proof.asymptote(high, mu, mu_high)
+    proof.define(V, V_star, "at the velocity at which")
+    proof.root(mu_low - mu_high, V_star, critical, "the two asymptotes meet", right=shown)
 
 
-@result("eq48", uses=("eq42", "eq46"))
-def _critical_dead_weight(proof: Proof) -> None:
-    """Critical velocity, dead weight."""
-    proof.define(V, V_star, "the two asymptotes meet")
-    reason = "Eq. (42) equals Eq. (46)"
-    gap = low_coefficient - high_coefficient_dead_weight
-    proof.root(gap, V_star, critical_dead_weight, reason, right=CRITICAL_DEAD_WEIGHT)
+def _critical_scale(proof: Proof, source: str, scale: sp.Expr, factor: sp.Expr, shown: str) -> None:
+    proof.recall(source)
+    proof.proportional(V_star, scale, factor, "where the two asymptotes meet", right=shown)
+
+
+for _number, _label, _name, _term, _value, _shown, _factor, _order in (
+    (47, "critical-fixed", "fixed indenter", "eq45", critical_fixed, CRITICAL_FIXED, alpha,
+     r"\frac{K \sqrt{R \delta}}{C}"),
+    (48, "critical-dead-weight", "dead weight", "eq46", critical_dead_weight, CRITICAL_DEAD_WEIGHT,
+     alpha ** (2 * third), r"\frac{\sqrt[3]{R K^2 W}}{C}"),
+):  # fmt: skip
+    result(_label, title=f"Crossing of the asymptotes, {_name}", high=_term, critical=_value, shown=_shown,
+           text=r"The paper gives the order of magnitude; the factor, with $\alpha = 2\sqrt{2}/3$, is new.",
+           )(_critical)  # fmt: skip
+    result(f"eq{_number}", title=f"Critical velocity, {_name}", source=_label, scale=_value / _factor,
+           text=rf"The factor is that of ({_label}).", factor=_factor,
+           shown=_order)(_critical_scale)  # fmt: skip
 
 
 @result("eq49")
 def _lift(proof: Proof) -> None:
     """Vertical lift.
 
-    At a given load the depth falls as $V^{-1}$ once $V$ is far above $V^{*}$ of Eq. (48).
+    At a given load the depth falls as $V^{-1}$ once $V$ is far above $V^{*}$ of (critical-dead-weight).
     """
     _recall_exact(proof)
-    proof.recall("eq48")
+    proof.recall("critical-dead-weight")
     reason = "Eq. (43) solved for the depth at the load $W$"
     proof.leading_order(delta, W / (C * V), *_high, reason, eps=_small)
 
@@ -181,7 +196,7 @@ def _vanishing_friction(proof: Proof) -> None:
     With the load held, $\mu \to 0$ for $V/V^{*} \to \infty$, as $(V^{*}/V)^{1/2}$.
     """
     _recall_coefficient(proof)
-    proof.recall("eq48")
+    proof.recall("critical-dead-weight")
     limit = C * V_star / (R * K) * (V_star / V) ** sp.Rational(1, 2)
     shown = r"\frac{C V^{*}}{R K} \sqrt{\frac{V^{*}}{V}}"
     reason = r"tends to 0 as $V/V^{*} \to \infty$"

@@ -20,7 +20,7 @@ from .theorems import kappa, lam
     s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
     ball_loss, ball_depth, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
     ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
-    ball_load_high, ball_friction_low, ball_friction_high,
+    ball_load_high, ball_friction_low, ball_friction_high, ball_low, ball_high,
 ) = symbols(r"""
     s           -                 1  scaled time, $t/\tau$  from scaled-pressure
     y_b         \tilde \zeta      1  place of a strip of a ball over the half width $a
@@ -54,6 +54,8 @@ from .theorems import kappa, lam
             ball  real
     e_b_F_high  \tilde e_{F\!,\,V\to\infty}  1  relative error of the friction force at high velocity,
             ball  real
+    m_b_low     \tilde m_{\mathrm{L1}}  1  asymptote of $\tilde m$ for low velocity
+    m_b_high    \tilde m_{\mathrm{L2}}  1  asymptote of $\tilde m$ for high velocity
 """)  # fmt: skip
 
 SECTION = "Ball"
@@ -132,7 +134,7 @@ def _load(proof: Proof) -> None:
     proof.define(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
 
 
-@result("F20-loss", uses=("F20-load",))
+@result("F20-loss")
 def _loss(proof: Proof) -> None:
     r"""Ball: what leaves the contact.
 
@@ -149,7 +151,7 @@ def _loss(proof: Proof) -> None:
     proof.done(D, LOSS)
 
 
-@result("F20", uses=("F20-load", "F21-steady"))
+@result("F20", uses=("F21-steady",))
 def _friction(proof: Proof) -> None:
     r"""Ball: friction.
 
@@ -170,7 +172,7 @@ def _friction(proof: Proof) -> None:
     proof.define(m, COEFFICIENT, r"$\mu R/a$")
 
 
-@result("F20-energy", uses=("energy-any-shape", "F20-loss"))
+@result("F20-energy", uses=("energy-any-shape",))
 def _energy(proof: Proof) -> None:
     r"""Ball: energy dissipated inside the contact.
 
@@ -192,7 +194,7 @@ def _energy(proof: Proof) -> None:
     proof.done(ball_share, share)
 
 
-@result("F20-low", uses=("F20",))
+@result("F20-low")
 def _limits(proof: Proof) -> None:
     r"""Ball: low velocity.
 
@@ -206,7 +208,7 @@ def _limits(proof: Proof) -> None:
     proof.leading_order(m, l, reason="friction coefficient: that of the cylinder", **near)
 
 
-@result("F20-high", uses=("F20",))
+@result("F20-high")
 def _high(proof: Proof) -> None:
     r"""Ball: high velocity.
 
@@ -220,7 +222,7 @@ def _high(proof: Proof) -> None:
     proof.leading_order(m, HIGH, reason=r"$\mu \to \frac{3 \pi}{16} \frac{a}{R}$", **far)
 
 
-@result("F20-balance", uses=("F20-load", "F20-loss"))
+@result("F20-balance")
 def _balance(proof: Proof) -> None:
     r"""Ball: one depth for a weight.
 
@@ -229,12 +231,13 @@ def _balance(proof: Proof) -> None:
     load.
     """
     angle, tail = sp.atan(s / lam), TAIL.subs({l: lam / s})
-    whole = 2 * s**4 * LOAD / PI
+    whole = 2 * s**4 * w / PI
     scaled = s**3 * (s * (1 + T / PI) / 2 + 8 * lam / (3 * PI))
     slope = 4 * s**2 * (PI * s**2 / 2 + s * lam + (s**2 + lam**2) * theta) / PI
     curve = 8 * s**2 * (PI * s**2 + 2 * s * lam + (2 * s**2 + lam**2) * theta) / PI
     proof.define(l, lam / s, r"$\lambda = V \tau/a_0$, $s = a/a_0$")
     known(proof, {l: lam / s})
+    proof.recall("F20-load", at={l: lam / s})
     proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R_{\mathrm{y}}/R}$")
     proof.equal(ball_scaled, scaled, "a sum of positive terms")
     proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
@@ -258,7 +261,7 @@ def _balance(proof: Proof) -> None:
     proof.done(ball_scaled, scaled)
 
 
-@result("F20-crossing", uses=("F20-low", "F20-high"))
+@result("F20-crossing")
 def _crossing(proof: Proof) -> None:
     r"""Ball: crossing velocity.
 
@@ -266,14 +269,17 @@ def _crossing(proof: Proof) -> None:
     \pi}{16} a$ for a given depth; at a given load ($\kappa = 0$) or on a spring at $V^{*} \tau = \tilde
     \lambda^{*} a_0$.
     """
-    proof.define(ball_cross, HIGH, r"$l = \tilde m$ of high velocity, at a given depth")
+    proof.asymptote("F20-low", m, ball_low)
+    proof.asymptote("F20-high", m, ball_high)
+    reason = "the asymptotes meet at a given depth"
+    proof.root(ball_low - ball_high, l, HIGH, reason, name=ball_cross)
     held = HIGH * (2 * (1 + kappa)) ** sp.Rational(1, 4)
     lifted = 3 * PI * (1 + kappa) / (8 * lam)
     reason = r"$\lambda = \frac{3 \pi}{16} s$ with $s^3 = \frac{3 \pi (1 + \kappa)}{8 \lambda}$"
-    proof.root(lam**3 - HIGH**3 * lifted, lam, held, reason, name=ball_lam_cross)
+    proof.root(lam**3 - ball_high**3 * lifted, lam, held, reason, name=ball_lam_cross)
 
 
-@result("F20-peak", uses=("F20", "F20-loss"))
+@result("F20-peak")
 def _slip(proof: Proof) -> None:
     r"""Ball: friction maximum of a dead weight.
 
@@ -286,8 +292,8 @@ def _slip(proof: Proof) -> None:
     load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
     known(proof)
     proof.recall("F20-loss")
-    proof.define(w, LOAD, "F20-load")
-    proof.define(phi, FRICTION, "F20")
+    proof.recall("F20-load")
+    proof.recall("F20", phi)
     gain = l * (sp.Rational(4, 3) - 2 * D)
     proof.equal(l * sp.diff(load, l), gain, "a faster ball carries more",
                 left=r"l \frac{d \tilde w}{d l}")  # fmt: skip
@@ -301,7 +307,7 @@ def _slip(proof: Proof) -> None:
     proof.done(ball_slip, slip)
 
 
-@result("F20-unique", uses=("F20-peak",))
+@result("F20-unique")
 def _unique(proof: Proof) -> None:
     r"""Ball: one friction maximum.
 
@@ -325,8 +331,9 @@ def _unique(proof: Proof) -> None:
     proof.recall("F20-loss")
     proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$")
     shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
-    slip = (1 - 2 * l * D / g) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
-    proof.equal(slip / l, shape, r"$\tilde E/l$ of F20-peak")
+    proof.recall("F20-load")
+    proof.recall("F20-peak")
+    proof.equal(ball_slip / l, shape, "over $l$")
     size = (
         g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * rest
         + l * g * (2 * D + lost) + sp.Rational(16, 3) * l**2 * (kept + l * D**2 / g)
@@ -348,6 +355,9 @@ def _error(
     proof: Proof, name: sp.Symbol, ratio: sp.Expr, error: sp.Expr, slope: sp.Expr, sign: str
 ) -> None:
     """Prove the error of an asymptote, and that it grows with l or falls."""
+    for label, part in (("F20-load", w), ("F20", phi), ("F20", m)):
+        if ratio.has(part):
+            proof.recall(label, part)
     proof.define(name, ratio - 1, "asymptote over the truth, less one")
     proof.equal(name, error, "without cancellation")
     known(proof)
@@ -363,19 +373,19 @@ _g, _whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
 _slower = 2 * (2 * l**2 / 3 + l * T / 2) / (1 + l**2)
 """4/3 - 2 D, by which the load grows with l."""
 for _label, _title, _name, _ratio, _form, _growth, _sign in (
-    ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * _g),
+    ("L1", "low velocity", ball_l1, l / m, 4 * l / (3 * _g),
      sp.Rational(4, 3) * (_g + 2 * l * D) / _g**2, ">"),
-    ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT, HIGH / l - T / (PI + T),
+    ("L2", "high velocity, given depth", ball_l2, HIGH / m, HIGH / l - T / (PI + T),
      (8 * PI * (sp.Rational(2, 15) - ball_rest) / (PI + T) ** 2 - HIGH) / l**2, "<"),
-    ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
+    ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / w,
      -(sp.Rational(16, 3) * l - (PI - T)) / _whole, -8 * PI * _slower / _whole**2, "<"),
-    ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
+    ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / w,
      -(PI + T) / _whole, (8 * D * _whole + 4 * (PI + T) * _slower) / _whole**2, ">"),
     ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
-     PI / 2 * l / FRICTION, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
+     PI / 2 * l / phi, (PI - T) / (PI + T), 16 * PI * D / (PI + T) ** 2, ">"),
     ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
-     PI / 4 * l / FRICTION, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
+     PI / 4 * l / phi, -T / (PI + T), 8 * PI * D / (PI + T) ** 2, ">"),
 ):  # fmt: skip
     result(f"F20-error-{_label}", title=f"Ball: relative error, {_title}", text="It is monotonic in $l$.",
-           uses=("F20",), name=_name, ratio=_ratio, error=_form, slope=_growth,
+           name=_name, ratio=_ratio, error=_form, slope=_growth,
            sign=_sign)(_error)  # fmt: skip

@@ -23,7 +23,7 @@ CUBES = (sp.Rational(3, 16) * T * (1 + 5 * l**2) - l) / (1 + l**2)
 result = Chapter(SECTION)
 
 
-@result("F20-slopes", uses=("F20-load",))
+@result("F20-slopes")
 def _slopes(proof: Proof) -> None:
     r"""Ball: how its forces change.
 

@@ -90,7 +90,7 @@ def _shape(proof: Proof) -> None:
     proof.done(circle - xi**2, first)
 
 
-@result("circle-fixed", uses=("circle-shape", "F16"))
+@result("circle-fixed", uses=("circle-shape",))
 def _fixed(proof: Proof) -> None:
     r"""True circle at given depth.
 
@@ -162,7 +162,7 @@ def _dead_weight(proof: Proof) -> None:
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
 
 
-@result("circle-steepness", uses=("energy-any-shape",))
+@result("circle-steepness")
 def _steepness(proof: Proof) -> None:
     r"""True circle: the square of its slope.
 

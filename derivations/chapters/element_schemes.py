@@ -53,8 +53,8 @@ _h, _z, _y = sp.symbols("h z E", positive=True)
 _theta = sp.Symbol("theta", positive=True)
 _excess = sp.Symbol("theta_+", nonnegative=True)
 _beyond = sp.Symbol("eta_+", positive=True)
-_R, _D, _w = sp.symbols("R D w")
-_k1, _k2, _k3, _k4 = sp.symbols("k_1:5")
+_R, _D, _w = sp.symbols("R D w", real=True)
+_k1, _k2, _k3, _k4 = sp.symbols("k_1:5", real=True)
 _rest = sp.symbols("r_1:4", real=True)
 _end, _pressure_rate = sp.symbols("p_e p_s", real=True)
 
@@ -214,7 +214,7 @@ def _unconditional(proof: Proof) -> None:
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
     proof.notation |= {"m": sp.Lambda(_D, motion), "c_2": lead, "c_1": middle, "c_0": zeroth}
     proof.equal(
-        sp.Subs(motion, _D, 2 * _w / (1 - _w)),
+        motion.subs(_D, 2 * _w / (1 - _w)),
         (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
         r"with $m(D)$ the equation of a step: the outside of the unit circle becomes a half plane",
         left=r"m\left(\frac{2 w}{1 - w}\right)",

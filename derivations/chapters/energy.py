@@ -5,7 +5,7 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
-from .model import C, K, R, V, delta, h, x
+from .model import C, K, R, V, delta, h, t, t_0, u_i, x
 from .steady import F, a, l, l_r, q, x_le, x_te
 from .theorems import NUMBER, RATIO, UNIT, B, phi
 
@@ -51,7 +51,7 @@ def _split(proof: Proof) -> None:
     proof.define(F, F_elastic + F_viscous, "the friction force")
 
 
-@result("energy-behind", uses=("eq25", "eq29"))
+@result("energy-behind")
 def _relaxation(proof: Proof) -> None:
     r"""Energy lost behind the contact.
 
@@ -59,11 +59,12 @@ def _relaxation(proof: Proof) -> None:
     u_{\mathrm{TE}} e^{-(x - x_{\mathrm{TE}})/l_{\mathrm{r}}}$ (Eqs. 25, 29).
     """
     u_te = delta - h(x_te)
-    surface = u_te * sp.exp(-(x - x_te) / l_r)
-    proof.notation |= {
-        "V": V, "C": K * l_r / V, r"\dot{u}": V * sp.diff(surface, x), r"u_{\mathrm{TE}}": u_te,
-    }  # fmt: skip
-    integrand = K * l_r * sp.diff(surface, x) ** 2
+    surface = u_i.subs(t, t_0 + (x - x_te) / V)
+    proof.define(u_i.subs(t, t_0), u_te, "where it leaves the contact")
+    proof.recall("eq29", surface)
+    proof.recall("eq29", C)
+    proof.notation |= {r"\dot{u}": V * sp.Derivative(surface, x), r"u_{\mathrm{TE}}": u_te}
+    integrand = C / V * (V * sp.Derivative(surface, x)) ** 2
     behind = sp.Integral(integrand, (x, x_te, sp.oo))
     proof.integral(
         *(behind, integrand, (x, x_te, sp.oo), -K * surface**2 / 2),
@@ -74,7 +75,7 @@ def _relaxation(proof: Proof) -> None:
     )
 
 
-@result("energy-any-shape", text=_ASSUMPTIONS, uses=("energy-behind",))
+@result("energy-any-shape", text=_ASSUMPTIONS)
 def _any_shape(proof: Proof) -> None:
     """Friction force of any shape is dissipation.
 
@@ -97,7 +98,7 @@ def _any_shape(proof: Proof) -> None:
     )
 
 
-@result("F6", uses=("energy-any-shape", "F1"))
+@result("F6")
 def _parabola(proof: Proof) -> None:
     r"""Energy dissipated inside the contact.
 

@@ -16,7 +16,6 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter, symbol
 from ..engine.rules import Computed
 from ..engine.step import Proof, tex
-from .friction_identity import depth_rate_now
 from .model import K, M, R, V, delta, tau, x
 from .steady import W, mu
 
@@ -27,6 +26,7 @@ letter(r"\mathsf{X}", "dimension of a length along the foundation", "dimension",
 letter(r"\mathsf{Z}", "dimension of a vertical length", "dimension", source="dimension")
 letter(r"\mathsf{T}", "dimension of a time", "dimension", source="dimension")
 k_s = symbol("k_s", "stiffness of the suspension per unit width", "N/m²", source="")
+depth_rate_now = symbol("delta_t", latex=r"\dot\delta", real=True)
 
 result = Chapter("Dimensionless groups")
 

@@ -10,8 +10,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.record import Table
 from ..engine.step import Proof
-from .asymptotics import alpha
-from .model import C, K, R, V, delta, tau
+from .asymptotics import alpha, mu_high, mu_high_weight, mu_low
+from .model import K, R, V, delta, tau
 from .steady import Lambda, W, a, l, l_r, mu, q
 from .theorems import RATIO, SECTION, UNIT, A, B, m, w
 
@@ -111,7 +111,7 @@ def _peak_values(proof: Proof) -> None:
     proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
 
 
-@result("F26", uses=("F3-values", "eq42"))
+@result("F26")
 def _bell(proof: Proof) -> None:
     r"""Stiffness and retardation time from the friction maximum.
 
@@ -119,15 +119,15 @@ def _bell(proof: Proof) -> None:
     both constants of a Kelvin-Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, on every
     linear foundation (F18-low).
     """
-    third = sp.cbrt(3 - sp.sqrt(3))
-    height, place = 3 * (sp.sqrt(3) - 1) / (4 * third), sp.sqrt(3) / third
-    proof.notation |= {r"\hat\mu_{\max}": height, r"\Lambda_{\max}": place}
-    stiffness, time = (height / mu_max) ** 3 * W / R**2, place * sp.cbrt(R * W / K) / V_max
+    proof.recall("F3-values", mu_peak, Lambda_peak)
+    stiffness, time = (mu_peak / mu_max) ** 3 * W / R**2, Lambda_peak * sp.cbrt(R * W / K) / V_max
     known = r"$\mu_{\max} (K R^2/W)^{1/3}$ is known"
-    proof.root(mu_max * sp.cbrt(K * R**2 / W) - height, K, stiffness, known,
+    proof.root(mu_max * sp.cbrt(K * R**2 / W) - mu_peak, K, stiffness, known,
                right=r"\left(\frac{\hat\mu_{\max}}{\mu_{\max}}\right)^3 \frac{W}{R^2}")  # fmt: skip
-    proof.root(V_max * tau * sp.cbrt(K / (R * W)) - place, tau, time, r"$V_{\max} \tau (K/(R W))^{1/3}$, too",
+    reason = r"$V_{\max} \tau (K/(R W))^{1/3}$, too"
+    proof.root(V_max * tau * sp.cbrt(K / (R * W)) - Lambda_peak, tau, time, reason,
                right=r"\frac{\Lambda_{\max}}{V_{\max}} \left(\frac{R W}{K}\right)^{1/3}")  # fmt: skip
+    height, place = established("F3-values", mu_peak), established("F3-values", Lambda_peak)
     numbers = {
         r"\hat \mu_{\max}": height,
         r"\hat \mu_{\max}^3": height**3,
@@ -160,21 +160,22 @@ result("F4-high", title="Friction coefficient at high velocity: series", end=0, 
        shown=r"m - \frac{2}{3} + \frac{7}{36 l}")(_expansion)  # fmt: skip
 
 
-@result("F5", uses=("eq42", "eq45", "eq46"))
+@result("F5")
 def _intersections(proof: Proof) -> None:
     """Crossing velocity and friction maximum.
 
     The crossing velocity is where the two asymptotes of the friction coefficient meet. For a dead-weight
     indenter the maximum is at 1.664 times that velocity.
     """
-    low = C * V / (R * K)
-    fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
-    proof.define(C, K * tau, "Eq. (22)")
-    proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
+    proof.recall("eq22")
+    for label, name in (("eq42", mu_low), ("eq45", mu_high), ("eq46", mu_high_weight)):
+        proof.asymptote(label, mu, name)
+    reached = "fixed indenter: 1 at"
+    proof.equal(mu_low / mu_high, V * tau / sp.sqrt(R * delta) / alpha, reached)
     proof.root(Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed,
                right=r"\alpha")  # fmt: skip
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
-    proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
+    proof.equal((mu_low / mu_high_weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
     proof.root(
         *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
         name=Lambda_weight, right=r"\alpha^{2/3}",

@@ -110,17 +110,15 @@ def _inclination(proof: Proof) -> None:
 
     The inclination is within $-\pi/2 < \theta_i < \pi/2$, so $\cos\theta_i > 0$.
     """
-    proof.define(sp.tan(theta), -slope, left=r"\tan\theta_i", right=f"-{_SLOPE}")
-    proof.where(sp.cos(theta) > 0, "the surface is not vertical")
-    proof.equal(slope, -sp.tan(theta), "the same", left=_SLOPE)
-    proof.done(sp.tan(theta), -slope)
+    proof.define(theta, -sp.atan(slope), right=rf"-\arctan\left({_SLOPE}\right)")
+    proof.equal(sp.tan(theta), -slope, "its tangent", left=r"\tan\theta_i", right=f"-{_SLOPE}")
 
 
 @result("eq11")
 def _normal(proof: Proof) -> None:
     """Normal force on an element."""
     proof.recall("eq8")
-    proof.where(sp.cos(theta) > 0, "the surface is not vertical")
+    proof.recall("eq10", theta)
     proof.equal(f_n, _FORCE / sp.cos(theta), r"divide by $\cos\theta_i > 0$",
                 right=rf"\frac{{{_FORCE_TEX}}}{{\cos\theta_i}}")  # fmt: skip
 
@@ -136,7 +134,7 @@ def _up(proof: Proof) -> None:
 @result("eq13")
 def _along(proof: Proof) -> None:
     """Horizontal force on the indenter."""
-    proof.recall("eq10", slope)
+    proof.recall("eq10", theta)
     proof.define(f_x, f_n * sp.sin(theta), "the reaction has this horizontal component")
     proof.define(f_z, f_n * sp.cos(theta), "and this vertical one")
     proof.recall("eq9")

@@ -62,12 +62,10 @@ result = Chapter(SECTION)
 
 def in_q(proof: Proof) -> None:
     """Let l and Q be functions of q and n = 1 + nu."""
-    proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
-    proof.define(l, NUMBER, r"$q = x_{\mathrm{TE}}/a$ is the parameter")
-    proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
+    proof.recall("F19-edge", n, l, Q)
 
 
-@result("F19-pressure", uses=("eq22", "eq29", "pressure"))
+@result("F19-pressure")
 def _pressure(proof: Proof) -> None:
     r"""Power law: pressure.
 
@@ -95,7 +93,7 @@ def _pressure(proof: Proof) -> None:
     proof.done(P, BEHIND)
 
 
-@result("F19-edge", uses=("F19-pressure",))
+@result("F19-edge")
 def _edge(proof: Proof) -> None:
     r"""Power law: trailing edge.
 
@@ -104,9 +102,10 @@ def _edge(proof: Proof) -> None:
     increasing and convex, so that Newton's method descends to its root from every point above.
     """
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
+    proof.recall("F19-pressure")
     proof.define(l, NUMBER, "$l$ for an edge at $y = q$")
-    proof.notation |= {r"\hat p": sp.Lambda(y, BEHIND), "l": sp.Lambda(q, NUMBER)}
-    proof.equal(BEHIND.subs(y, q), sp.S.Zero, "no pressure there", left=r"\hat p(q)")
+    proof.notation |= {"l": sp.Lambda(q, NUMBER)}
+    proof.equal(sp.Subs(P, y, q), sp.S.Zero, "no pressure there")
     proof.equal(
         *(sp.diff(NUMBER, q), -(n - 1 + q**n) / (n * q**n), "slope"),
         left=r"\frac{d l}{d q}",
@@ -118,10 +117,11 @@ def _edge(proof: Proof) -> None:
     del proof.notation["l"]
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
     proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
+    proof.equal(q, 1 / Q - n * l, "solved for $q$")
     proof.equal(1 / (q + n * l), Q, "one equation for $q$, without a difference")
 
 
-@result("F19-load", uses=("F19-edge",))
+@result("F19-load")
 def _load(proof: Proof) -> None:
     """Power law: load.
 
@@ -137,7 +137,7 @@ def _load(proof: Proof) -> None:
     proof.equal(w_n, LOAD, "a sum of positive terms")
 
 
-@result("F19-friction", uses=("F19-edge",))
+@result("F19-friction")
 def _friction(proof: Proof) -> None:
     """Power law: friction force.
 
@@ -178,7 +178,7 @@ def _coefficient(proof: Proof) -> None:
     proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")
 
 
-@result("F19-peak", uses=("F19-pressure",))
+@result("F19-peak")
 def _peak_pressure(proof: Proof) -> None:
     r"""Power law: peak pressure.
 
@@ -200,7 +200,7 @@ def _peak_pressure(proof: Proof) -> None:
     proof.define(P_n, form, "both cases in one form")
 
 
-@result("F19-energy", uses=("energy-any-shape",))
+@result("F19-energy")
 def _energy(proof: Proof) -> None:
     r"""Power law: energy dissipated inside the contact.
 

@@ -12,20 +12,8 @@ from sympy.codegen.cfunctions import expm1, log1p
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
-from .power_law import (
-    FRICTION_FORCE,
-    HIGH_COEFFICIENT,
-    LOAD,
-    LOW_SLOPE,
-    SECTION,
-    Q,
-    excess,
-    in_q,
-    n,
-    y,
-    z,
-)
-from .power_law_weight import AT_REST
+from .power_law import SECTION, Q, excess, in_q, n, phi_n, w_n, y, z
+from .power_law_limits import m_high, m_low, w_rest
 from .steady import l, q
 
 (
@@ -72,6 +60,11 @@ _SHORT = {
 error for high velocity, of which a wedge has the second only."""
 
 
+_SOURCES = {
+    w_n: "F19-load", phi_n: "F19-friction", w_rest: "F19-low", m_low: "F19-low", m_high: "F19-high",
+}  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Asymptote:
     """An asymptote over the exact value, and the form of its error."""
@@ -88,43 +81,43 @@ class Asymptote:
 ASYMPTOTES = (
     Asymptote(
         *("L1", "friction coefficient at low velocity", e_n_l1),
-        LOW_SLOPE * l * LOAD / FRICTION_FORCE,
+        m_low * l * w_n / phi_n,
         (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$\frac{2 n - 1}{4}\, l$ at low velocity",
     ),
     Asymptote(
         *("L2", "friction coefficient at high velocity", e_n_l2),
-        HIGH_COEFFICIENT * LOAD / FRICTION_FORCE,
+        m_high * w_n / phi_n,
         (blunt + sharp) / (l * damped),
         r"$\frac{(n - 1)(2 n^2 - 1)}{2 n^2 (n + 1)}\, l^{-1}$ at high velocity; no term is negative",
     ),
     Asymptote(
         *("load-low", "load at low velocity", e_n_load_low),
-        AT_REST / LOAD,
+        w_rest / w_n,
         -(l**2 * Q + bend) / whole,
         r"$-\frac{n + 1}{4}\, l^2$ at low velocity",
     ),
     Asymptote(
         *("load-high", "load at high velocity", e_n_load_high),
-        l / LOAD,
+        l / w_n,
         -tip / (n**2 * whole),
         r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity",
     ),
     Asymptote(
         *("friction-low", "friction force at low velocity", e_n_friction_low),
-        2 * n * HIGH_COEFFICIENT * l / (n * FRICTION_FORCE),
+        2 * m_high * l / phi_n,
         (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$\frac{2 n - 1}{4}\, l$ at low velocity",
     ),
     Asymptote(
         *("friction-high", "friction force at high velocity", e_n_friction_high),
-        HIGH_COEFFICIENT * l / FRICTION_FORCE,
+        m_high * l / phi_n,
         -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity",
     ),
     Asymptote(
         *("depth-high", "depth at high velocity, dead weight", e_n_depth_high),
-        LOAD / l,
+        w_n / l,
         tip / (n * (n + 1) * l),
         r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity",
     ),
@@ -133,7 +126,7 @@ ASYMPTOTES = (
 result = Chapter(SECTION)
 
 
-@result("F19-peeled", uses=("F19-edge",))
+@result("F19-peeled")
 def _peeled(proof: Proof) -> None:
     r"""Power law: the peeled parts.
 
@@ -167,7 +160,7 @@ def _brace(power: sp.Expr) -> str:
     return r"\left(" + shown.replace("LOG", r"\operatorname{log1p}(-z)") + r"\right)"
 
 
-@result("F19-bend", uses=("F19-edge",))
+@result("F19-bend")
 def _bend(proof: Proof) -> None:
     r"""Power law: the bend of the trailing edge.
 
@@ -194,6 +187,9 @@ def _error(proof: Proof, asymptote: Asymptote) -> None:
     for part, sum_of in _SHORT.items():
         if asymptote.form.has(part):
             proof.define(part, sum_of, "a shorthand")
+    for part, label in _SOURCES.items():
+        if asymptote.ratio.has(part):
+            proof.recall(label, part)
     proof.define(asymptote.symbol, asymptote.ratio - 1, "asymptote over exact value")
     proof.equal(asymptote.symbol, asymptote.form, "in this form exact also where it is small")
 
@@ -202,11 +198,11 @@ for _each in ASYMPTOTES:
     result(
         f"F19-error-{_each.label}", title=f"Power law: error of the {_each.title}",
         text=f"The asymptote over the exact value is 1 plus this error, which tends to {_each.limit}.",
-        uses=("F19-load", "F19-friction"), asymptote=_each,
+        asymptote=_each,
     )(_error)  # fmt: skip
 
 
-@result("F19-error-monotonic", uses=("F19-monotonic", "F19-balance"))
+@result("F19-error-monotonic")
 def _monotonic(proof: Proof) -> None:
     r"""Power law: the errors are monotonic.
 

@@ -6,19 +6,17 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
     HIGH_COEFFICIENT,
-    LOAD,
     LOW_SLOPE,
-    NUMBER,
     SECTION,
-    SLOPE_POWER,
     SQUARES,
     Q,
     excess,
     in_q,
+    m_n,
     n,
+    phi_n,
+    w_n,
     z,
 )
 from .steady import l, q
@@ -34,7 +32,7 @@ w_rest, m_low, m_high, l_cross = symbols(r"""
 result = Chapter(SECTION)
 
 
-@result("F19-monotonic", uses=("F19-load", "F19-friction"))
+@result("F19-monotonic")
 def _monotonic(proof: Proof) -> None:
     r"""Power law: forces grow with velocity.
 
@@ -42,51 +40,53 @@ def _monotonic(proof: Proof) -> None:
     $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$.
     """
     in_q(proof)
-    state = {l: NUMBER, Q: SLOPE_POWER}
-    load, friction = (form.subs(state) for form in (LOAD, FRICTION_FORCE))
+    proof.recall("F19-load")
+    proof.recall("F19-friction")
 
     def rate(form: sp.Expr) -> sp.Expr:
-        return sp.diff(form, q) / sp.diff(NUMBER, q)
+        return sp.Derivative(form, q) / sp.Derivative(l, q)
 
-    proof.notation |= {"w_n": load, r"\varphi_n": friction}
-    proof.notation |= {"w_n'": rate(load), r"\varphi_n'": rate(friction)}
+    proof.notation |= {"w_n'": rate(w_n), r"\varphi_n'": rate(phi_n)}
     load_rate, friction_rate = n * l * Q, n**2 * SQUARES
-    proof.equal(rate(load), load_rate, "the load grows", left="w_n'")
-    proof.equal(rate(friction), friction_rate, "and so does friction", left=r"\varphi_n'")
+    proof.equal(rate(w_n), load_rate, "the load grows", left="w_n'")
+    proof.equal(rate(phi_n), friction_rate, "and so does friction", left=r"\varphi_n'")
     rest = n * (1 + q + l * q * Q) / (n + 1)
-    proof.equal(LOAD - l * load_rate, rest, "$w_n/l$ falls: positive",
+    proof.equal(w_n - l * load_rate, rest, "$w_n/l$ falls: positive",
                 left="w_n - l w_n'")  # fmt: skip
     less = n**2 * l**2 * Q**2 / 2
-    proof.equal(FRICTION_FORCE - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
+    proof.equal(phi_n - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
                 left=r"\varphi_n - l \varphi_n'")  # fmt: skip
     z, double = n * l * Q, n + excess
     growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
     growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
-    gain = friction_rate * LOAD - FRICTION_FORCE * load_rate
+    gain = friction_rate * w_n - phi_n * load_rate
     proof.equal(
         *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
         left=r"2 (n + 1) (2 n - 1) (w_n \varphi_n' - \varphi_n w_n')",
     )
     proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive")
-    proof.done(LOAD - l * load_rate, rest)
+    proof.done(w_n - l * load_rate, rest)
 
 
-@result("F19-low", uses=("F19-load", "F19-friction"))
+@result("F19-low")
 def _low(proof: Proof) -> None:
     r"""Power law: low velocity.
 
     At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K \delta a$ and
     $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$.
     """
-    rest = {q: 1, Q: 1, l: 0}
-    ratio = sp.cancel(FRICTION_COEFFICIENT / l)
-    proof.define(w_rest, LOAD.subs(rest), "load at rest")
+    rest = (q, Q, l), (1, 1, 0)
+    proof.recall("F19-load")
+    proof.recall("F19")
+    proof.define(w_rest, sp.Subs(w_n, *rest), "load at rest")
     proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
-    proof.define(m_low, ratio.subs(rest), "friction coefficient per $l$")
+    ratio = n * (n + 1) * (SQUARES + l * Q**2 / 2) / (1 + q + l + l**2 * Q)
+    proof.equal(m_n / l, ratio, "friction coefficient per $l$, continuous at rest")
+    proof.define(m_low, sp.Subs(ratio, *rest), "friction coefficient per $l$ at rest")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
 
 
-@result("F19-high", uses=("F19-load", "F19-friction"))
+@result("F19-high")
 def _high(proof: Proof) -> None:
     r"""Power law: high velocity.
 
@@ -94,21 +94,25 @@ def _high(proof: Proof) -> None:
     \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$.
     """
     proof.define(l, z / (n * Q), "$n l Q = 1 - q^n = z$")
+    proof.recall("F19-load")
+    proof.recall("F19-friction")
     fast = {q: 0, Q: 0, z: 1}
     share = n * ((1 + q) * n * Q / z + 1 + z / n) / (n + 1)
     damper = n**2 * (SQUARES + z * Q / (2 * n))
-    proof.equal(LOAD / l, share, "load per $l$")
-    proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
+    proof.equal(w_n / l, share, "load per $l$")
+    proof.equal(phi_n / l, damper, "friction force per $l$")
     proof.equal(share.subs(fast), sp.S.One, "the damper carries the total load")
     proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
     proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
 
 
-@result("F19-crossing", uses=("F19-low", "F19-high"))
+@result("F19-crossing")
 def _crossing(proof: Proof) -> None:
     """Power law: crossing of the asymptotes.
 
     At a given depth; for $n = 2$ this is Eq. (47).
     """
-    proof.root(LOW_SLOPE * l - HIGH_COEFFICIENT, l, n / (n + 1), "the asymptotes meet")
-    proof.define(l_cross, n / (n + 1), r"$V^{*} \tau/a$")
+    proof.recall("F19-low")
+    proof.recall("F19-high")
+    reason = r"the asymptotes meet, at $V^{*} \tau/a$"
+    proof.root(m_low * l_cross - m_high, l_cross, n / (n + 1), reason)

@@ -10,9 +10,7 @@ from ..engine.nomenclature import letter, symbol
 from ..engine.step import Proof, tex
 from .model import C, K, V, delta
 from .power_law import (
-    FRICTION_FORCE,
     HIGH_COEFFICIENT,
-    LOAD,
     LOW_SLOPE,
     NUMBER,
     SECTION,
@@ -24,9 +22,11 @@ from .power_law import (
     in_q,
     m_n,
     n,
+    phi_n,
     w_n,
     z,
 )
+from .power_law_limits import m_high
 from .steady import W, a, l, mu, q
 from .tables import delta_0
 from .theorems import kappa, lam, r, s
@@ -34,6 +34,7 @@ from .theorems import kappa, lam, r, s
 scaled_n = symbol("f_n", "scaled load of a power law that has been lifted, $W/W_0$")
 scaled_n_s = symbol("f_n_s", latex="f_n'")
 letter("L_1", "asymptote of the friction coefficient for low velocity")
+letter("L_2", "asymptote of the friction coefficient for high velocity")
 slip_n = symbol("D_n", "logarithmic slope of the friction coefficient of a power law", real=True)
 T_n = symbol("T_n", "scaled friction of a power law over its asymptote for low velocity", real=True)
 lam_cross = symbol("lambda_cross", "drive number where the asymptotes meet", latex=r"\lambda^{*}")
@@ -52,7 +53,7 @@ SLIP = _DAMPED * (1 + q + l - (2 * n - 1) * l**2 * Q) - n * (2 * n - 1) * l**3 *
 result = Chapter(SECTION)
 
 
-@result("F19-scaled-load", uses=("F19-edge", "F19-load"))
+@result("F19-scaled-load")
 def _scaled_load(proof: Proof) -> None:
     r"""Power law: load of an indenter that has been lifted.
 
@@ -65,11 +66,11 @@ def _scaled_load(proof: Proof) -> None:
     )
     proof.define(lam, s * l, r"$l = V \tau/a$")
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
-    proof.define(q, 1 / Q - n * l, "F19-edge")
+    proof.recall("F19-edge", q)
     proof.equal(scaled_n, SCALED_LOAD, "a sum of positive terms")
 
 
-@result("F19-balance", uses=("F19-scaled-load", "F19-monotonic"))
+@result("F19-balance")
 def _balance(proof: Proof) -> None:
     r"""Power law: a unique depth at a load.
 
@@ -101,7 +102,7 @@ def _balance(proof: Proof) -> None:
     proof.done(elasticity - n, above)
 
 
-@result("F19-exponents", uses=("F19-high", "F19-balance"))
+@result("F19-exponents")
 def _exponents(proof: Proof) -> None:
     r"""Power law: dead weight at high velocity.
 
@@ -112,13 +113,14 @@ def _exponents(proof: Proof) -> None:
     power = 1 - 1 / n
     proof.define(delta, W / (C * V), r"F19-high, $W = C V \delta$")
     proof.define(a, (n * L ** (n - 1) * delta) ** (1 / n), r"$h(a) = \delta$")
-    proof.define(mu, HIGH_COEFFICIENT * delta / a, "F19-high")
+    proof.recall("F19-high")
+    proof.define(mu, m_high * delta / a, "the asymptote for high velocity")
     result = HIGH_COEFFICIENT * n ** (-1 / n) * (W / (C * V * L)) ** power
     shown = r"\frac{n^{2 - 1/n}}{2 n - 1} \left(\frac{W}{C V L}\right)^{1 - 1/n}"
     proof.equal(mu, result, "falls as a power of the velocity", right=shown)
 
 
-@result("F19-crossing-weight", uses=("F19-low", "F19-exponents"))
+@result("F19-crossing-weight")
 def _crossing(proof: Proof) -> None:
     r"""Power law: crossing of the asymptotes at a load.
 
@@ -158,7 +160,7 @@ def _logarithm(expr: sp.Expr) -> sp.Expr:
     return sp.expand_log(sp.log(expr.subs(n, 1 + excess)))
 
 
-@result("F19-at-load", uses=("F19-balance",))
+@result("F19-at-load")
 def _at_load(proof: Proof) -> None:
     """Power law: friction coefficient at a load.
 
@@ -190,7 +192,7 @@ def _at_load(proof: Proof) -> None:
     proof.done(w_n, load)
 
 
-@result("F19-slip", uses=("F19-at-load", "F19-monotonic"))
+@result("F19-slip")
 def _slip(proof: Proof) -> None:
     r"""Power law: friction over velocity at a load.
 
@@ -198,9 +200,11 @@ def _slip(proof: Proof) -> None:
     with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - \frac{1}{n + 1}$.
     """
     proof.notation |= {
-        "w_n": LOAD, "w_n'": n * l * Q, r"\varphi_n": FRICTION_FORCE, r"\varphi_n'": n**2 * SQUARES,
+        "w_n'": n * l * Q, r"\varphi_n'": n**2 * SQUARES,
     }  # fmt: skip
-    rates = (n + 1) * n**2 * SQUARES * LOAD - 2 * n * FRICTION_FORCE * n * l * Q
+    proof.recall("F19-load")
+    proof.recall("F19-friction")
+    rates = (n + 1) * n**2 * SQUARES * w_n - 2 * n * phi_n * n * l * Q
     slip = n**3 * SLIP / (2 * n - 1)
     proof.equal(
         rates,
@@ -211,7 +215,7 @@ def _slip(proof: Proof) -> None:
     proof.define(slip_n, SLIP, "an expression with its sign")
 
 
-@result("F19-maximum", uses=("F19-slip",))
+@result("F19-maximum")
 def _maximum(proof: Proof) -> None:
     """Power law: one friction maximum under a dead weight.
 
@@ -226,8 +230,9 @@ def _maximum(proof: Proof) -> None:
     of_q = form.subs({Q: SLOPE_POWER, z: peeled})
     proof.define(z, peeled, r"$z = n l Q$")
     proof.define(T_n, form, "in this variable")
-    slip_scaled = SLIP * Q / damped
-    proof.notation |= {"D_n": SLIP, "T_n": sp.Lambda(q, of_q)}
+    proof.recall("F19-slip")
+    slip_scaled = slip_n * Q / damped
+    proof.notation |= {"T_n": sp.Lambda(q, of_q)}
     proof.equal(slip_scaled, T_n, "the same sign as $D_n$", left=r"\frac{Q}{1 + q Q^2} D_n")
     rest = excess**2 + n**2 * q * Q**2 + double * q**n * (1 + z + z**2)
     slope = excess * q ** (n - 2) * (q + rest / (n**2 * damped)) + double / n**2 * (

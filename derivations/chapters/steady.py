@@ -3,18 +3,25 @@
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbols
+from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
 from .model import (
     C,
+    F_x,
+    F_z,
     K,
+    N,
     R,
     V,
+    c,
     compression_rate,
     delta,
     delta_t,
     depth_rate,
+    f_x,
+    f_z,
     h,
+    k,
     slope,
     t,
     t_0,
@@ -24,12 +31,11 @@ from .model import (
     x_i,
 )
 
-a, l_r, x_le, x_te, p, W, F, mu, l, q, Lambda = symbols(r"""
+a, l_r, x_le, x_te, W, F, mu, l, q, Lambda = symbols(r"""
     a       -                m        half length of the stationary contact, $\sqrt{2 R \delta}$
     l_r     l_{\mathrm{r}}   m        retardation length, $V \tau$
     x_LE    x_{\mathrm{LE}}  m        leading edge of the contact  negative
     x_TE    x_{\mathrm{TE}}  m        trailing edge of the contact  nonnegative
-    p       -                Pa       contact pressure  real
     W       -                N/m      load in steady sliding per unit width
     F       -                N/m      friction force in steady sliding per unit width
     mu      -                1        friction coefficient, $F/W$
@@ -40,6 +46,8 @@ a, l_r, x_le, x_te, p, W, F, mu, l, q, Lambda = symbols(r"""
     Lambda  -                1        scaled velocity of the dead-weight model, $V \tau (K/(R W))^{1/3}$
     -       O                that of its argument  order of a remainder  from sign
 """)
+
+p = function("p", "contact pressure", "Pa", real=True)(x)
 
 half_length = sp.sqrt(2 * R * delta)
 trailing_edge = sp.sqrt(a**2 + l_r**2) - l_r
@@ -52,9 +60,20 @@ friction_coefficient = a * (1 - q) * (q**2 - q + 4) / 2 / (R * (q**2 - 2 * q + 3
 drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
 """Lambda**3 of the dead-weight indenter."""
 
-_SHAPE = x**2 / (2 * R)
+CONTACT = (x, x_le, x_te)
 SECTION = "Steady sliding"
 result = Chapter(SECTION)
+
+
+def _force_per_area(proof: Proof, labels: tuple[str, ...], depth: sp.Expr, shown: str) -> None:
+    """Define the pressure, and show that it is N times the force of the element at each place."""
+    for label in ("eq3", "eq12", *labels):
+        proof.recall(label)
+    proof.recall("eq22", k, c)
+    whole = K * (depth - h(x)) + C * (depth.diff(t) - V * h(x).diff(x))
+    proof.define(p, whole, "force per area of a dense row", right=shown)
+    reason = "$N$ elements per length, each with this force"
+    proof.equal(sp.Subs(p, x, x_i), N * f_z, reason)
 
 
 @result("pressure", after=("eq29",))
@@ -64,13 +83,38 @@ def _pressure(proof: Proof) -> None:
     Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
     indenters. The retardation length is that of Eq. (29), which follows.
     """
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    whole = K * (delta - h(x)) - C * V * h(x).diff(x)
-    shown = r"K \left(\delta - h\right) - C V h'"
-    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)", right=shown)
+    _force_per_area(proof, ("eq4", "eq5"), delta, r"K \left(\delta - h(x)\right) - C V h'(x)")
+    for label in ("eq22", "eq29"):
+        proof.recall(label)
     proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
+
+
+@result("pressure-moving")
+def _moving_pressure(proof: Proof) -> None:
+    """Pressure under a moving indenter.
+
+    At every instant of every motion.
+    """
+    shown = r"K \left(\delta(t) - h(x)\right) + C \left(\dot\delta(t) - V h'(x)\right)"
+    _force_per_area(proof, ("eq6", "eq7"), delta_t, shown)
+
+
+@result("dense-row")
+def _dense_row(proof: Proof) -> None:
+    r"""A dense row of elements.
+
+    The elements stand $1/N$ apart, and $N$ is so large that sums over those in contact are integrals over the
+    contact: of $p = N f_{zi}$, and by Eq. (13) of $-h' p = N f_{xi}$.
+    """
+    number, along = sp.Symbol("i", integer=True), -h(x).diff(x) * p
+    proof.recall("eq13")
+    proof.define(p.subs(x, x_i), N * f_z, "force per area")
+    proof.equal(-slope * p.subs(x, x_i), N * f_x, "along the foundation, by Eq. (13)")
+    for label, total, name, density in (("eq14", F_z, "f_z", p), ("eq15", F_x, "f_x", along)):
+        every = sp.Sum(sp.IndexedBase(name)[number], (number, 1, sp.oo))
+        proof.define(every, sp.Integral(density, CONTACT), r"a Riemann sum, as $1/N \to 0$")
+        proof.recall(label)
+        proof.equal(total, sp.Integral(density, CONTACT), "the total force")
 
 
 @result("eq26", after=("eq28",), notation={"p": sp.Lambda(x, pressure)})
@@ -254,6 +298,7 @@ _limits(
 
 def _recall_contact(proof: Proof) -> None:
     """Let edges and pressure be rational in q."""
+    proof.recall("eq3")
     proof.recall("eq28")
     proof.recall("eq26")
     proof.recall("pressure")
@@ -269,7 +314,10 @@ def _load(proof: Proof) -> None:
     """Exact load."""
     _recall_contact(proof)
     primitive = K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R))
-    proof.integral(W, p, (x, x_le, x_te), primitive, "Eq. (14) for a dense row", value=load)
+    proof.recall("dense-row", F_z)
+    proof.integral(F_z, p, CONTACT, primitive, "the integral of the pressure", value=load)
+    proof.define(W, F_z, "in steady sliding")
+    proof.equal(W, load, "the load")
 
 
 @result("friction")
@@ -277,8 +325,11 @@ def _friction(proof: Proof) -> None:
     """Exact friction force."""
     _recall_contact(proof)
     primitive = -K / R * (delta * x**2 / 2 - x**4 / (8 * R) - l_r * x**3 / (3 * R))
-    reason = "Eqs. (13) and (15) for a dense row"
-    proof.integral(F, -x / R * p, (x, x_le, x_te), primitive, reason, value=friction)
+    proof.recall("dense-row", F_x)
+    reason = "the integral along the foundation"
+    proof.integral(F_x, -h(x).diff(x) * p, CONTACT, primitive, reason, value=friction)
+    proof.define(F, F_x, "in steady sliding")
+    proof.equal(F, friction, "the friction force")
 
 
 @result("coefficient")

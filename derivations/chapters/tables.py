@@ -9,9 +9,9 @@ from ..engine.record import Table
 from ..engine.step import Proof
 from . import asymptotics as asy
 from . import steady
-from .asymptotics import V_star
-from .model import C, K, M, N, R, V, delta, g, tau
-from .steady import W, a, q
+from .asymptotics import V_star, mu_high, mu_low
+from .model import K, M, N, R, V, delta, g, tau
+from .steady import W, a, mu, q
 
 delta_0 = symbol("delta_0", "static depth", "m", source="scaled-pressure")
 
@@ -100,34 +100,25 @@ def _six_digits(value: sp.Expr, unit: sp.Expr | int) -> str:
     return f"{float(sp.N(value.subs(STANDARD) / unit, 30)):.6g}"
 
 
-@result("table2", uses=("eq42", "eq45", "eq46", "eq47", "eq48"))
+@result("table2")
 def _velocity_dependences(proof: Proof) -> None:
     r"""Velocity dependences of the friction coefficient.
 
-    Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly.
+    Here $\alpha = 2\sqrt{2}/3$; $V^{*}$ is where the two asymptotes meet exactly: Eqs. (47) and (48) give its
+    order.
     """
-    low, meets = asy.low_coefficient, "both asymptotes have this value at $V^{*}$"
-    cases = (
-        (asy.high_coefficient_dead_weight, asy.critical_dead_weight, asy.HIGH_DEAD_WEIGHT),
-        (asy.high_coefficient, asy.critical_fixed, asy.HIGH_FIXED),
-    )
-    for high, critical, shown in cases:
-        at_critical = sp.UnevaluatedExpr(low.subs(V, critical))
-        value = high.subs(V, critical)
-        proof.notation |= {
-            "V^{*}": critical,
-            "C": C,
-            r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
-        }
-        proof.equal(
-            at_critical, value, meets, left=r"\mu(V^{*})", right=shown.replace("C V", "C V^{*}")
-        )
+    proof.asymptote("eq42", mu, mu_low)
+    proof.asymptote("eq45", mu, mu_high)
+    proof.recall("critical-fixed")
+    proof.define(V, V_star, "at the critical velocity")
+    meets = "the crossing of the fixed indenter; that of the dead weight is (critical-dead-weight)"
+    proof.equal(mu_low, mu_high, meets)
     slow = r"$\mu = \frac{C V}{R K}$ (42)"
     rows = (
         (
             "Critical velocity $V^{*}$",
-            rf"$V^{{*}} = {asy.CRITICAL_FIXED}$ (47)",
-            rf"$V^{{*}} = {asy.CRITICAL_DEAD_WEIGHT}$ (48)",
+            rf"$V^{{*}} = {asy.CRITICAL_FIXED}$ (critical-fixed), in order (47)",
+            rf"$V^{{*}} = {asy.CRITICAL_DEAD_WEIGHT}$ (critical-dead-weight), in order (48)",
         ),
         (r"Friction coefficient for $V \ll V^{*}$", slow, slow),
         (
@@ -137,4 +128,4 @@ def _velocity_dependences(proof: Proof) -> None:
         ),
     )
     table = Table(("", "Fixed indenter", "Dead weight"), rows)
-    proof.done(at_critical, value, table=table)
+    proof.done(table=table)

@@ -62,7 +62,7 @@ RATIO = r"$q = x_{\mathrm{TE}}/a$ is the parameter: $l = l_{\mathrm{r}}/a > 0$ i
 result = Chapter(SECTION)
 
 
-@result("F1", uses=("eq3", "eq22", "eq26", "eq27", "eq28", "eq29"))
+@result("F1")
 def _rational(proof: Proof) -> None:
     r"""The steady state is rational in one number.
 
@@ -92,7 +92,7 @@ def _rational(proof: Proof) -> None:
     proof.done(m, FRICTION_COEFFICIENT)
 
 
-@result("F16", uses=("eq27",))
+@result("F16")
 def _cancellation(proof: Proof) -> None:
     r"""Forms without cancellation.
 
@@ -117,22 +117,21 @@ def _cancellation(proof: Proof) -> None:
     proof.done(q, 1 / (l + root))
 
 
-@result("F7", uses=("F16",), notation={r"\hat p": sp.Lambda(xi, PROFILE)})
+@result("F7", notation={r"\hat p": sp.Lambda(xi, PROFILE)})
 def _peak_pressure(proof: Proof) -> None:
     r"""Peak pressure.
 
     The peak is inside the contact, at $x = -l_{\mathrm{r}}$, while $l_{\mathrm{r}} < a$, and at the leading
     edge from $l_{\mathrm{r}} = a$ on.
     """
-    profile = PROFILE
     form = 2 * l + (1 - n) ** 2
-    proof.define(P, profile, r"$p/(K\delta)$ at $x = \xi a$")
+    proof.recall("F16", (P, PROFILE))
     proof.greatest(
-        *(1 + l**2, profile, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$"),
+        *(1 + l**2, P, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$"),
         surplus=(xi + l) ** 2, left=r"\hat p(-l)",
     )  # fmt: skip
     proof.greatest(
-        *(2 * l, profile, (xi, -1), "at the leading edge, else"),
+        *(2 * l, P, (xi, -1), "at the leading edge, else"),
         surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1), left=r"\hat p(-1)",
     )  # fmt: skip
     proof.define(
@@ -143,7 +142,7 @@ def _peak_pressure(proof: Proof) -> None:
     proof.done(P_max, form)
 
 
-@result("scaled-load", uses=("F16",))
+@result("scaled-load")
 def _scaled_load(proof: Proof) -> None:
     r"""Load of an indenter that has been lifted.
 

@@ -18,7 +18,7 @@ from .theorems import kappa, lam
 from .transient_edges import left, right
 from .transient_memory import OF_TIME, SECTION, compression, depth, material, time, travel
 from .transient_motion import CONTACT, f_friction
-from .transient_scaling import PRESSURE, W_0, d, d_s, d_ss, eps, f_normal, xi
+from .transient_scaling import PRESSURE, W_0, P, d, d_s, d_ss, eps, f_normal, xi
 
 letter("U", "integral of the compression over all elements", "m²")
 letter(r"\bar U", r"scaled integral of the compression, $U/(a_0 \delta_0)$")
@@ -65,7 +65,7 @@ def _relaxing(proof: Proof) -> None:
         )  # fmt: skip
 
 
-@result("F14-surface", uses=("F8", "F9"))
+@result("F14-surface")
 def _surface(proof: Proof) -> None:
     """Energy of the surface that relaxes.
 
@@ -93,7 +93,7 @@ def _surface(proof: Proof) -> None:
     )
 
 
-@result("F14-force", uses=("F9",))
+@result("F14-force")
 def _force(proof: Proof) -> None:
     """Normal force from the compression of all elements.
 
@@ -157,28 +157,32 @@ def _momentum(proof: Proof) -> None:
     )
 
 
-@result("F14-power", uses=("scaled-pressure",))
+@result("F14-power")
 def _power(proof: Proof) -> None:
     r"""Power given to the foundation.
 
     In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact
     there is no pressure, and no power.
     """
-    density = sp.expand(_share * PRESSURE * _rate)
+    density = _share * P * _rate
+    proof.recall("scaled-pressure")
     proof.recall("F11")
     proof.recall("F11", f_friction)
-    proof.notation |= {r"\hat p": PRESSURE, "u'": _rate}
-    proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p",
+    proof.notation |= {"u'": _rate}
+    proof.equal(P, _height + _rate, r"$u + u'$ in the contact",
                 right=r"\left(d - \xi^2\right) + \left(d' - 2 \lambda \xi\right)")  # fmt: skip
     whole = sp.Integral(density, CONTACT)
     proof.integral(
-        *(whole, density, CONTACT, sp.integrate(density, xi), "pressure times velocity"),
+        *(whole, density, CONTACT, sp.integrate(_share * sp.expand(PRESSURE * _rate), xi), _POWER),
         left=r"\frac{3}{4} \int_{\ell}^{r} \hat p u' \, d\xi", right=r"d' f_z + \lambda f_x",
         value=d_s * f_normal + lam * f_friction,
     )  # fmt: skip
 
 
-@result("F14-energy", uses=("scaled-form", "F14-power"))
+_POWER = "pressure times velocity"
+
+
+@result("F14-energy")
 def _energy(proof: Proof) -> None:
     r"""Balance of energy.
 

@@ -60,7 +60,7 @@ TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
 result = Chapter(SECTION, notation={"g": SURFACE})
 
 
-@result("F10-peel", uses=("eq33",))
+@result("F10-peel")
 def _peeling(proof: Proof) -> None:
     r"""Edges that peel.
 

@@ -47,7 +47,7 @@ _touching = sp.Function("xi", real=True)(d, d_s)
 result = Chapter(SECTION)
 
 
-@result("F11", uses=("F9", "F10-peel"))
+@result("F11")
 def _forces(proof: Proof) -> None:
     r"""Forces between two edges.
 

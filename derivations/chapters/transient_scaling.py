@@ -107,7 +107,7 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.done(P, PRESSURE)
 
 
-@result("scaled-form", uses=("eq14", "eq17", "scaled-pressure"))
+@result("scaled-form", uses=("scaled-pressure",))
 def _scaled_motion(proof: Proof) -> None:
     r"""Scaled motion of the indenter.
 
@@ -132,7 +132,7 @@ def _scaled_motion(proof: Proof) -> None:
     proof.equal(eps * d_ss, result, "scaled motion", **shown)
 
 
-@result("eq33", uses=("eq6", "eq7"))
+@result("eq33")
 def _peeling_edges(proof: Proof) -> None:
     """Trailing edge of the movable indenter.
 
@@ -143,20 +143,17 @@ def _peeling_edges(proof: Proof) -> None:
     """
     half = K / (2 * R)
     square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
+    proof.recall("pressure-moving", p)
     proof.recall("eq3")
     proof.recall("eq22")
     proof.recall("eq29")
     proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
-    proof.define(
-        *(p, K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)), _KINEMATICS),
-        right=r"K (\delta - h) + C (\dot\delta - V h')",
-    )
     proof.equal(
         *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
         right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
     )
     proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
-    proof.where(sp.Gt(square, 0), "else no element can be pressed")
+    proof.where(sp.Gt(square, 0), "else no element can be pressed", left=_RADICAND)
     proof.equal(
         *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
         right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
@@ -169,6 +166,3 @@ def _peeling_edges(proof: Proof) -> None:
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
         name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
-
-
-_KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"

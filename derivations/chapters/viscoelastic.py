@@ -111,13 +111,18 @@ def _moments(proof: Proof) -> None:
     r"""Any relaxation function: four moments.
 
     The moments weight the memory of an arm at the trailing edge, at the distance $\breve w \breve c$ ahead of
-    it. The weights of the first three are positive; that of the last has no mean, and falls from the trailing
-    edge, so that none of the moments is negative where $G$ falls and is convex.
+    it. The weights of the first three are positive; that of the last has no mean and changes its sign, but by
+    parts its moment is that of a positive weight. For any $G$ that falls F17-sign shows the same.
     """
     for name, (weight, form) in MOMENTS.items():
         integrand = weight * sp.exp(-z * w)
         proof.integral(name, integrand, UNIT, antiderivative(integrand, w),
                        "a moment of $e^{-\\breve z \\breve w}$", value=form)  # fmt: skip
+    positive = z * w * (1 - w) ** 2 * (2 + w) / 24 * sp.exp(-z * w)
+    by_parts = sp.Integral(positive, UNIT)
+    proof.integral(by_parts, positive, UNIT, antiderivative(positive, w), "the last one, by parts",
+                   value=E)  # fmt: skip
+    proof.holds(by_parts, ">=", 0, r"so $\breve E$ is not negative")
     proof.define(A, P + Q, "its mean")
     proof.define(B, (P - Q) / 2, "half of its slant")
     proof.equal(A, (1 - FALL) / z, "mean")

@@ -46,7 +46,7 @@ SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 
 result = Chapter(SECTION)
 
 
-@result("wedge-edge", uses=("eq22", "eq29", "pressure"))
+@result("wedge-edge", uses=("pressure",))
 def _edge(proof: Proof) -> None:
     r"""Wedge: pressure and trailing edge.
 
@@ -65,14 +65,14 @@ def _edge(proof: Proof) -> None:
     proof.equal(behind, 1 - y - l, "at $x = y a$", left=r"\hat p(y a)")
     proof.define(P, 1 - y - l, "behind the tip")
     proof.where(l < 1, "otherwise there is no contact behind the tip")
-    proof.root(P, y, 1 - l, "the trailing edge")
+    proof.root(P, y, 1 - l, "the trailing edge", name=q)
 
 
 def _forces(
     proof: Proof, state: dict[sp.Symbol, sp.Expr], edge: sp.Expr, load: sp.Expr, friction: sp.Expr
 ) -> None:
     if edge != 0:
-        proof.define(q, 1 - l, "wedge-edge")
+        proof.recall("wedge-edge")
     ahead, behind = (y - y**2 / 2 + side * l * y for side in (1, -1))
     proof.integral(w_ahead, 1 - y + l, (y, 0, 1), ahead, "ahead of the tip")
     proof.integral(w_behind, 1 - y - l, (y, 0, edge), behind, "behind it")
@@ -97,28 +97,28 @@ def _forces(
 
 
 result("wedge-peeling", title="Wedge: slow sliding", text=r"For $l < 1$, with $q = 1 - l$.",
-       uses=("wedge-edge", "F19"), state=PEELING, edge=q, load=1 + l**2 / 2,
+       state=PEELING, edge=q, load=1 + l**2 / 2,
        friction=2 * l - l**2 / 2)(_forces)  # fmt: skip
-result("wedge-peeled", title="Wedge: fast sliding", uses=("wedge-edge", "F19"),
+result("wedge-peeled", title="Wedge: fast sliding",
        text=r"For $l \ge 1$: the contact ends at the tip.", state=PEELED, edge=sp.S.Zero,
        load=l + sp.Rational(1, 2), friction=l + sp.Rational(1, 2))(_forces)  # fmt: skip
 
 
-@result("wedge-low", uses=("wedge-peeling",))
+@result("wedge-low")
 def _slow(proof: Proof) -> None:
     r"""Wedge: low velocity.
 
     For $l \to 0$, in units of $c$; the error of the asymptote is $l/4$ at first order.
     """
-    coefficient = (2 * l - l**2 / 2) / (1 + l**2 / 2)
-    proof.leading_order(coefficient, 2 * l, l, 0, "the asymptote", eps=l)
+    proof.recall("wedge-peeling")
+    proof.leading_order(m_n, 2 * l, l, 0, "the asymptote", eps=l)
     proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
-    proof.notation["m_n'"] = sp.diff(coefficient, l)
+    proof.notation["m_n'"] = sp.Derivative(m_n, l)
     slope = 4 * (1 - l) * (2 + l) / (2 + l**2) ** 2
-    proof.equal(sp.diff(coefficient, l), slope, r"$\mu$ grows until $l = 1$",
+    proof.equal(sp.Derivative(m_n, l), slope, r"$\mu$ grows until $l = 1$",
                 left="m_n'")  # fmt: skip
     proof.sign(slope, ">", 0, (l, 0, 1), "strictly")
-    proof.done(coefficient, 2 * l)
+    proof.done(m_n, 2 * l)
 
 
 @result("wedge")
@@ -160,5 +160,5 @@ for _regime, _sliding, _edge_at, _name, _root, _balance in (
     ("peeled", "fast", {r: 0}, s_peeled, SCALED_PEELED, s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
 ):
     result(f"wedge-weight-{_regime}", title=f"Wedge: depth at a load, {_sliding} sliding", text=_WEIGHT,
-           uses=("F19-balance", "wedge-edge"), edge=_edge_at, name=_name, root=_root,
+           uses=("wedge-edge",), edge=_edge_at, name=_name, root=_root,
            balance=_balance)(_depth)  # fmt: skip

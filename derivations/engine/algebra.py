@@ -3,15 +3,14 @@
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import sympy as sp
+from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
-from sympy.functions.elementary.hyperbolic import HyperbolicFunction
 
 from .conditions import (
-    NONE,
     Conditions,
     Interval,
     demands,
@@ -41,15 +40,13 @@ DISTANCE = sp.Dummy("h", positive=True)
 """The distance from the point of a limit: no other letter, whatever its name, is this one."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
+KINKS = (*_CONTINUOUS, sp.sign, sp.Piecewise)
+"""What need not be smooth."""
 _WRITTEN = {
     sp.tan: lambda u: sp.sin(u) / sp.cos(u),
     sp.asinh: lambda u: sp.log(u + sp.sqrt(u**2 + 1)),
-    sp.acosh: lambda u: sp.log(u + sp.sqrt(u - 1) * sp.sqrt(u + 1)),
-    sp.atanh: lambda u: (sp.log(1 + u) - sp.log(1 - u)) / 2,
-    sp.re: lambda u: (u + sp.conjugate(u)) / 2,
-    sp.im: lambda u: (u - sp.conjugate(u)) / (2 * sp.I),
 }
-"""Functions by others; true of all complex numbers, of the inverse ones for principal values."""
+"""Functions by others."""
 
 
 @lru_cache(maxsize=4096)
@@ -61,8 +58,6 @@ def normalise(expr: sp.Expr) -> sp.Expr:
     """
     for kind, written in _WRITTEN.items():
         expr = expr.replace(kind, written)
-    if expr.has(sp.conjugate):
-        expr = expr.replace(_is_square_of_size, lambda e: _size_squared(e) ** (e.exp / 2))
     if expr.has(sp.Max):
         expr = expr.replace(_is_of_two, _by_distance)
     expr = expr.replace(sp.Min, lambda *args: sp.Min(*args).rewrite(sp.Piecewise))
@@ -70,15 +65,6 @@ def normalise(expr: sp.Expr) -> sp.Expr:
         lambda e: e.is_Pow and e.exp.is_Rational and not e.exp.is_Integer,
         lambda e: sp.expand_power_base(sp.factor(sp.together(e.base)) ** e.exp),
     )
-
-
-def _is_square_of_size(expr: sp.Expr) -> bool:
-    return bool(expr.is_Pow and isinstance(expr.base, sp.Abs) and expr.exp.is_even)
-
-
-def _size_squared(power: sp.Pow) -> sp.Expr:
-    (number,) = power.base.args
-    return number * sp.conjugate(number)
 
 
 def in_one_angle(*expressions: sp.Expr) -> tuple[sp.Expr, ...]:
@@ -138,7 +124,25 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     numerator over the common denominator is expanded, with every root an algebraic generator; a
     number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
     """
-    if left == right or vanishes(left - right):
+    if left == right:
+        return sp.S.Zero
+    letters = {node: _letter_of(node) for node in (left - right).atoms(sp.Integral)}
+    back = {letter: node for node, letter in letters.items()}
+    return _difference(*(_masked(side, letters) for side in (left, right))).xreplace(back)
+
+
+@lru_cache(maxsize=4096)
+def _letter_of(integral: sp.Integral) -> sp.Dummy:
+    """Return a letter for an integral, which no rule of algebra may split: its parts may diverge."""
+    return sp.Dummy(real=True)
+
+
+def _masked(expr: sp.Expr, letters: Mapping[sp.Expr, sp.Dummy]) -> sp.Expr:
+    return expr.xreplace(letters) if letters else expr
+
+
+def _difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
+    if vanishes(left - right):
         return sp.S.Zero
     numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
     rest = expanded(normalise(numerator))
@@ -150,8 +154,6 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest.has(sp.sin, sp.cos) and vanishes(in_one_angle(rest)[0]):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
-    if rest.has(sp.Integral):
-        rest = rest.replace(sp.Integral, _constants_out)
     return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
 
 
@@ -177,11 +179,32 @@ def _by_primes(number: sp.Rational) -> sp.Expr:
     return sp.Add(*(power * sp.log(prime) for prime, power in sp.factorrat(number).items()))
 
 
-def _constants_out(integrand: sp.Expr, *limits: sp.Tuple) -> sp.Expr:
-    """Write the factors that do not depend on its variables before an integral."""
-    variables = [limit[0] for limit in limits]
-    factor, rest = sp.factor(integrand).as_independent(*variables, as_Add=False)
-    return factor * sp.Integral(rest, *limits)
+def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
+    """Write constants before an integral; split it where each part exists: continuous, between finite ends.
+
+    >>> x, f = sp.Symbol("x", real=True), sp.Function("f", real=True)
+    >>> parted(sp.Integral(2 + 3 * f(x), (x, 0, 1)), NONE)
+    3*Integral(f(x), (x, 0, 1)) + 2
+    """
+    variable, *ends = integral.limits[0]
+    if len(integral.limits) != 1 or len(ends) != 2:
+        return integral
+    low, high = ends
+    terms = sp.Add.make_args(expanded(integral.function))
+    ordered = proves_nonnegative(high - low, known)
+    over = (variable, low, high) if ordered else (variable, -sp.oo, sp.oo)
+    finite = low.is_finite and high.is_finite
+    exist = finite and all(is_continuous(term, over, known) for term in terms)
+    terms = terms if exist else (sp.factor(integral.function),)
+    total = sp.S.Zero
+    for term in terms:
+        factor, rest = term.as_independent(variable, as_Add=False)
+        base, power = (variable, sp.S.Zero) if rest == 1 else rest.as_base_exp()
+        if exist and base == variable and power.is_Integer and power >= 0:
+            total += factor * (high ** (power + 1) - low ** (power + 1)) / (power + 1)
+        else:
+            total += factor * sp.Integral(rest, integral.limits[0])
+    return total
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -221,12 +244,18 @@ def _less(one: sp.Expr, other: sp.Expr) -> bool:
         return one != other
     if one == sp.oo or other == -sp.oo:
         return False
-    variable = sp.Dummy()
-    if sp.minimal_polynomial(one, variable) == sp.minimal_polynomial(other, variable):
-        digits = 60  # far more than the distance of two roots of the small polynomials here
-        if abs(sp.N(one, digits) - sp.N(other, digits)) < sp.Float(10, digits) ** -40:
-            return False
-    return bool(sp.N(one, 60) < sp.N(other, 60))
+    variable, gap = sp.Dummy(), other - one
+    if sp.minimal_polynomial(gap, variable) == variable:
+        return False
+    for digits in _DIGITS:
+        value = sp.N(gap, digits, maxn=10 * digits)
+        if value.is_comparable and abs(value) > sp.Float(10, digits) ** (-digits // 2):
+            return bool(value > 0)
+    raise UndecidedError(f"{one} and {other} are too close")
+
+
+_DIGITS = 30, 300, 3000
+"""Digits with which two numbers that differ are compared, until their difference shows."""
 
 
 def sign_between(expr: sp.Expr, over: Interval) -> str:
@@ -314,45 +343,6 @@ def leading_term(
     return _leading(near(expr, variable, point, h, side), h)
 
 
-def limit_at(
-    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions = NONE
-) -> sp.Expr:
-    """Return the limit that an expression has from one side, by its leading term there.
-
-    Only rational functions and power series decide: all else may oscillate. What must not vanish, or be
-    negative, for the expression to be defined must not do so near the point, whatever the other letters are.
-
-    >>> x = sp.Symbol("x", real=True)
-    >>> limit_at(sp.sin(x) / x, x, 0, 1), limit_at((x + 1) / (x**2 + 1), x, sp.oo, -1)
-    (1, 0)
-    """
-
-    def leading(part: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        found = _lowest_powers(part, DISTANCE) or leading_of_series(part, DISTANCE)
-        if found is None:
-            raise UndecidedError(f"{part} has no known power series")
-        return found
-
-    def is_sure(base: sp.Expr, proves: Callable[..., bool]) -> bool:
-        return proves(leading(near(base, variable, point, DISTANCE, side))[0], known)
-
-    nonzero, nonnegative = demands(expr)
-    roots = nonnegative - {base for base in nonnegative if base.is_nonnegative}
-    local = near(expr, variable, point, DISTANCE, side)
-    top, bottom = sp.fraction(local)
-    weight, order = leading(bottom)
-    defined = all(is_sure(base, proves_nonzero) for base in nonzero)
-    defined = defined and all(is_sure(base, proves_positive) for base in roots)
-    if not defined or not proves_nonzero(weight, known):
-        raise UndecidedError(f"{expr} may not be defined near {variable} = {point}")
-    if top == 0:
-        return sp.S.Zero
-    factor, power = leading(top)
-    if power < order:
-        raise UndecidedError(f"{expr} is not known to stay finite as {variable} -> {point}")
-    return factor / weight if power == order else sp.S.Zero
-
-
 def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
     """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
@@ -404,7 +394,7 @@ def near(
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = 1 / h if point == sp.oo else point + side * h
-    local = _reduced(put(expr, {variable: place}))
+    local = _reduced(_in_exponentials(put(expr, {variable: place}), h))
     if not local.has(sp.exp):
         return local
     power, shown = _without_faded(local, h)
@@ -413,10 +403,36 @@ def near(
     return shown
 
 
+def _in_exponentials(expr: sp.Expr, h: sp.Symbol) -> sp.Expr:
+    """Write by exponentials what may grow or fade as they do: then nothing else does."""
+    expr = expr.replace(sp.sinh, lambda u: (sp.exp(u) - sp.exp(-u)) / 2 if u.has(h) else sp.sinh(u))
+    expr = expr.replace(expm1, lambda u: sp.exp(u) - 1)
+    return expr.replace(
+        lambda node: node.is_Pow and node.base != sp.E and node.exp.has(h),
+        lambda node: sp.exp(node.exp * sp.log(node.base)),
+    )
+
+
+def _refuse_growth(expr: sp.Expr, h: sp.Symbol) -> None:
+    """Refuse what may grow beside an exponential that fades, or have poles without end."""
+    for node in sp.preorder_traversal(expr):
+        if not node.has(h) or node.is_Add or node.is_Mul or node == h:
+            continue
+        slow = isinstance(node, (sp.log, sp.atan, sp.asinh, sp.Abs, sp.Max, sp.Min))
+        slow = slow or (node.is_Pow and not node.exp.has(h))
+        bounded = (
+            isinstance(node, (sp.exp, sp.sin, sp.cos))
+            and not _leading(node.args[0], h)[1].is_negative
+        )
+        if not (slow or bounded):
+            raise UndecidedError(f"{node} may grow as fast as {expr} fades")
+
+
 def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     """Return n, f with local = T**n (f + what is smaller than any power of h), T = exp(-c/h**k).
 
-    All exponentials with an exponent without bound must be whole powers of one, T. A quotient of
+    All exponentials with an exponent without bound must be whole powers of one, T, and nothing else may
+    grow faster than a power. A quotient of
     polynomials in T has the series of the quotient of their lowest coefficients.
     """
     exponents = {node.exp: _leading(sp.cancel(node.exp), h) for node in local.atoms(sp.exp)}
@@ -428,9 +444,13 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
         raise UndecidedError(f"{sp.exp(least)} has no known limit")
     least = least if fading[least].is_negative else -least
     powers = {each: sp.cancel(each / least) for each in fading}
-    if not all(power.is_Integer for power in powers.values()):
+    if not all(power.is_Rational for power in powers.values()):
         raise UndecidedError(f"{local} has exponentials that are no powers of one another")
-    shown = sp.together(local.xreplace({sp.exp(each): faded ** powers[each] for each in fading}))
+    order = sp.ilcm(1, 1, *(power.q for power in powers.values()))
+    shown = sp.together(
+        local.xreplace({sp.exp(each): faded ** (order * powers[each]) for each in fading})
+    )
+    _refuse_growth(shown, h)
     (top, one), (bottom, other) = (_lowest(part, faded) for part in sp.fraction(shown))
     return int(one - other), sp.cancel(top / bottom)
 
@@ -450,13 +470,9 @@ def next_order(
     the last one that is written bounds the rest.
     """
     approached = sides(variable, point, known)
-    try:
-        found = [_next_on(ratio, eps, variable, point, side) for side in approached]
-    except UndecidedError:
-        inner = _in_small(ratio, eps, variable, point, known)
-        if inner is None:
-            raise
-        found = [_next_on(*inner, 0, 1)]
+    for side in approached:
+        _uniform(ratio, variable, point, side, known)
+    found = [_next_on(ratio, eps, variable, point, side) for side in approached]
     c, k, rest, _ = found[0]
     if not any(positive for *_, positive in found):
         raise UndecidedError(f"{eps} is not a small positive quantity")
@@ -466,30 +482,21 @@ def next_order(
     return c, k, rest
 
 
-def _in_small(
-    ratio: sp.Expr, eps: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
-) -> tuple[sp.Expr, sp.Expr, sp.Symbol] | None:
-    """Write a ratio that is a function of the small quantity alone in a variable of which that is a power.
+def _uniform(
+    ratio: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions
+) -> None:
+    """Refuse a ratio in which something begins with a coefficient that vanishes for some parameters.
 
-    The small quantity is a power of the variable, or an exponential: of unknown order, but known to fade.
+    There it would begin with another power, and what was left out be larger.
     """
-    ratio = ratio.rewrite(sp.exp) if ratio.has(HyperbolicFunction) else ratio
-    ratio, small = sp.powsimp(expanded(ratio), deep=True), sp.Dummy("small", positive=True)
-    if eps.is_Pow and eps.base == variable and variable.is_positive and point in (0, sp.oo):
-        fades = proves_positive(eps.exp if point == 0 else -eps.exp, known)
-        nodes = {node: node.exp for node in ratio.atoms(sp.Pow) if node.base == variable}
-        nodes[variable] = sp.S.One
-    elif isinstance(eps, sp.exp) and variable.is_positive and point == sp.oo:
-        rate, order = eps.exp.as_coeff_exponent(variable)
-        fades = not rate.has(variable) and proves_positive(-rate, known) and order.is_positive
-        nodes = {node: node.exp for node in ratio.atoms(sp.exp) if node.has(variable)}
-    else:
-        return None
-    powers = {node: sp.cancel(exponent / eps.exp) for node, exponent in nodes.items()}
-    whole = {node: power for node, power in powers.items() if power.is_Rational}
-    order = sp.ilcm(1, 1, *(power.q for power in whole.values()))
-    inner = ratio.xreplace({node: small ** (order * power) for node, power in whole.items()})
-    return (inner, small**order, small) if fades and not inner.has(variable) else None
+    nonzero, nonnegative = demands(ratio)
+    for base in nonzero | nonnegative:
+        if base.has(variable) and base != variable:
+            first = _leading(near(base, variable, point, DISTANCE, side), DISTANCE)[0]
+            if not proves_nonzero(first, known):
+                raise UndecidedError(
+                    f"{first} may vanish, with which {base} begins; say where it does not"
+                )
 
 
 def _next_on(
@@ -570,9 +577,9 @@ def is_continuous(
     inside = known.with_interval(over)
     if expr.is_Pow:
         return _is_continuous_power(expr, over, known, smooth)
-    if isinstance(expr, (sp.tan, sp.atanh, sp.acosh)):
+    if isinstance(expr, sp.tan):
         return is_continuous(_WRITTEN[expr.func](*expr.args), over, known, smooth=smooth)
-    if isinstance(expr, (sp.log, sp.asin, sp.acos)):
+    if isinstance(expr, (sp.log, sp.asin)):
         (argument,) = expr.args
         if isinstance(expr, sp.log):
             real = _throughout(proves_positive, argument, over, inside)
@@ -631,7 +638,7 @@ def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
 
     For inverse functions of one real letter, smooth wherever the letter can be: on one interval.
     """
-    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.acos, sp.asinh, sp.log):
+    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.asinh, sp.log):
         return False
     (letter,) = expr.free_symbols
     place = _place(letter, known)
@@ -680,9 +687,8 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
         infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
         if infinite or not all(_under_integral(node, variable, known) for variable in variables):
             return False
-    kinks = (*_CONTINUOUS, sp.sign, sp.Piecewise, sp.Heaviside, sp.floor, sp.ceiling, sp.Mod)
     for variable in variables:
-        if any(node.has(variable) for node in inner.atoms(*kinks)):
+        if any(node.has(variable) for node in inner.atoms(*KINKS)):
             everywhere = variable, -sp.oo, sp.oo
             slope = expanded(inner.diff(variable)).replace(_is_distance, _distance)
             if len(derivative.variables) > 1 or not all(

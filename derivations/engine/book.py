@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
-from .algebra import difference, is_constant_zero, is_continuous, is_differentiable
+from .algebra import difference, is_constant_zero, is_continuous, is_differentiable, parted
 from .conditions import (
     Conditions,
     Interval,
@@ -29,6 +29,7 @@ from .conditions import (
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
 from .identity import letters_of
+from .language import foreign, parts
 from .letters import letters, printed, told
 from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
@@ -47,6 +48,8 @@ class Finished:
     derivation: Derivation
     exact: Mapping[tuple[sp.Expr, sp.Expr], Fact]
     result: tuple[sp.Expr, sp.Expr]
+    leading: Mapping[tuple[sp.Expr, sp.Expr], Fact]
+    """What was proved to leading order, with the leading term, in the way that needs the fewest premises."""
 
 
 _finished: dict[str, Finished] = {}
@@ -71,6 +74,10 @@ def forget(prefix: str) -> None:
     """Forget the results whose labels begin so: those of another document, which names its own alike."""
     for label in [each for each in _finished if each.startswith(prefix)]:
         del _finished[label]
+
+
+_SAID = "What is used of {} is said in words, and recalled by no step."
+"""Of labels that a record declares to rest on, though no step recalls them."""
 
 
 class StepError(ValueError):
@@ -138,9 +145,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
         try:
             with _limited():
                 for argument in arguments.values():
-                    book._meant(
-                        argument, complex_too=name in _ALGEBRAIC, limits_too=name == "equal"
-                    )
+                    book._meant(argument)
                 return check(*args, **kwargs)
         except StepError:
             raise
@@ -161,9 +166,6 @@ _SHORT = 8
 
 _BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
 """What has a variable of its own."""
-
-_ALGEBRAIC = {"equal", "define", "recall", "where", "equivalent", "leading_order"}
-"""The checks that complex letters may enter."""
 
 
 class _Printer(LatexPrinter):
@@ -274,8 +276,8 @@ def _bare(expr: sp.Expr) -> sp.Expr:
 
 
 def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """Put in values, and carry out what does not need to be believed."""
-    return expr.subs(at).doit(integrals=False, sums=False)
+    """Put in values, all at once, and carry out what does not need to be believed."""
+    return expr.subs(at, simultaneous=True).doit(integrals=False, sums=False)
 
 
 def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
@@ -334,16 +336,26 @@ class Book:
         self._read: dict[str, sp.Expr] = {}
         """The other forms that the display of the step in hand shows of its sides."""
         self._steps: list[Step] = []
+        self._named: dict[str, sp.Symbol] = {}
+        """The letters by their names."""
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
         self._last: tuple[sp.Expr, sp.Expr] = sp.nan, sp.nan
         """The sides of the relation that was kept last."""
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+        self._leading: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
-        """Define the left side by the right side: a name, or a law of the model."""
+        """Define the left side by the right side: a name, or a law of the model.
+
+        What a proof that this one uses has defined alike is recalled from there.
+        """
+        sides = sp.sympify(lhs), sp.sympify(rhs)
+        if source := next((each for each in self._declared if sides in _source(each).exact), ""):
+            self._recall(source, *sides, reason, at=None)
+            return
         self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
             raise StepError(f"{self.label}: {lhs} has a value already")
@@ -353,7 +365,7 @@ class Book:
         self._premise(lhs, rhs, fact)
 
     @asked
-    def where(self, condition: Relational, reason: str = "") -> None:
+    def where(self, condition: Relational, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Restrict what follows to where an inequality holds: part of the domain of the result."""
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
             raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
@@ -362,19 +374,21 @@ class Book:
         if proves_positive(-gap, self._conditions) or gap.is_nonpositive:
             raise StepError(f"{self.label}: {condition} contradicts what is given")
         sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
-        latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
+        self._displayed(condition.lhs, condition.rhs, shown)
+        left, right = (
+            shown.get("left") or tex(condition.lhs),
+            shown.get("right") or tex(condition.rhs),
+        )
+        latex = f"{left} {sign} {right}"
         for form in (gap, raw):
             self._demand(form, latex)
         premises = merged(fact.premises for fact in self._origins.values())
-        if not has_witness(
-            tuple((each.lhs, each.rhs) for each in premises), self._conditions.positive
-        ):
+        if not has_witness(tuple((each.lhs, each.rhs) for each in premises), self._conditions.gaps):
             raise StepError(
                 f"{self.label}: no point was found where {condition} and all else holds"
             )
         claim = self._claim(condition.lhs, condition.rhs)
-        sides = tex(condition.lhs), sign, tex(condition.rhs)
-        self._steps.append(Step(*sides, reason, "definition", claim=claim))
+        self._steps.append(Step(left, sign, right, reason, "definition", claim=claim))
 
     def recall(
         self,
@@ -410,13 +424,42 @@ class Book:
         if at:
             lhs, rhs, fact = self._placed(fact, lhs, rhs, at)
             shown = {}
+        self._use(label, lhs, rhs, fact)
+        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
+
+    @asked
+    def asymptote(
+        self, label: str, of: sp.Expr, name: sp.Symbol, reason: str = "the leading term"
+    ) -> sp.Expr:
+        """Give a name to the leading term that the derivation with this label has proved; return the term.
+
+        That is an exact fact about the term, and not about what it approaches.
+        """
+        found = [key for key in _source(label).leading if key[0] == of]
+        if len(found) != 1 or not name.is_Symbol:
+            raise StepError(f"{self.label}: {label} has no one leading term of {of} for {name}")
+        fact, leading = _source(label).leading[found[0]], found[0][1]
+        right = fact.step.right.rpartition(r" \left(1 ")[0] or tex(leading)
+        worth = "proved" if fact.step.status == "proved-leading-order" else fact.step.status
+        step = replace(fact.step, left=tex(name), right=right, status=worth)
+        fact = replace(fact, step=step)
+        self._use(label, name, leading, fact)
+        shown: Shown = {"left": step.left, "right": step.right}
+        self._write(name, "=", leading, reason, worth, shown, source=label, fact=fact)
+        return leading
+
+    def _use(self, label: str, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
+        """Take over a fact of another proof as a rule."""
         self._rule(lhs, rhs)
         if label not in self._uses:
             self._uses.append(label)
         self._carry(fact)
+        if not has_witness((), self._conditions.gaps):
+            raise StepError(
+                f"{self.label}: no point was found where the conditions of {label} and all else hold"
+            )
         self._origins[lhs] = fact
         self._consistent(lhs, rhs, label)
-        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
 
     def done(
         self, lhs: sp.Expr = None, rhs: sp.Expr | int = None, *, table: Table | None = None
@@ -428,17 +471,19 @@ class Book:
             raise StepError(f"{self.label}: no step established {key[0]} and {key[1]}")
         steps = self._stated()
         new = letters(self.label, self._section)
-        cited = {step.source for step in steps} | set(self._declared)
+        cited = {step.source for step in steps}
+        said = [label for label in self._declared if label not in cited]
+        text = f"{self._text} {ARGUED} {_SAID.format(', '.join(said))}" if said else self._text
         found = Derivation(
             label=self.label,
             equation=self.equation,
             section=self._section,
             title=told(self._title, new),
-            text=told(self._text, new),
+            text=told(text.strip(), new),
             latex=printed(result.step.latex, new),
-            status=self._status(),
+            status=self._status(by_words=bool(said)),
             steps=tuple(self._lettered(step) for step in steps),
-            uses=tuple(label for label in self._uses if label in cited),
+            uses=tuple(label for label in self._uses if label in {*cited, *said}),
             table=_table(table, new),
             domain=tuple(printed(each, new) for each in result.domain),
             premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
@@ -446,7 +491,12 @@ class Book:
         before = _finished.get(self.label)
         if before is not None and before.derivation != found:
             raise StepError(f"{self.label} names another result already")
-        _finished[self.label] = Finished(found, dict(self._exact), key)
+        printed_ones = {id(step) for step in steps}
+        exact, leading = (
+            {sides: fact for sides, fact in facts.items() if id(fact.step) in printed_ones}
+            for facts in (self._exact, self._leading)
+        )
+        _finished[self.label] = Finished(found, exact, key, leading)
         self.finished = found
         return found
 
@@ -503,55 +553,54 @@ class Book:
     def pair(
         self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
     ) -> Derivation:
-        """End the proof with two established relations, side by side."""
+        """End the proof with two established equalities, side by side."""
+        self._pair(one, other, reason)
+        return self.done()
+
+    @asked
+    def _pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> None:
         facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
-        if None in facts:
-            raise StepError(f"{self.label}: no step established {one} and {other}")
+        if any(fact is None or fact.step.relation != "=" for fact in facts):
+            raise StepError(f"{self.label}: no step established {one} = {other}")
         left, right = (
             r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
             for side in ("left", "right")
         )
         status = weakest(fact.step.status for fact in facts if fact)
-        step = Step(left, "=", right, reason, status)
         premises = merged(fact.premises for fact in facts if fact)
         domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
         key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        step = Step(left, "=", right, reason, status, claim=self._claim(*key))
+        self._needed |= {one[0], other[0]} & self._rules.keys()
         self._keep(*key, Fact(step, premises, self._conditions, domain), exact=False)
-        return self.done(*key)
 
-    def _status(self) -> str:
+    def _status(self, *, by_words: bool) -> str:
         """Return the weakest status of the steps and of what they rest on; argued, if words prove the title.
 
+        They do where the text says so, and where it uses what no step recalls: only that is a premise.
         Words count here alone: what others use of this proof are its lines.
         """
         used = (_finished[label].derivation.status for label in self._uses)
         weak = [status for status in used if status == "sampled"]
-        words = ["argued"] if ARGUED in self._text else []
+        words = ["argued"] if by_words or ARGUED in self._text else []
         return weakest([*(step.status for step in self._steps), *weak, *words])
 
-    def _meant(
-        self, argument: object, *, complex_too: bool = False, limits_too: bool = False
-    ) -> None:
-        """Refuse what is no exact real value, and letters bound to places where they cannot be."""
+    def _meant(self, argument: object) -> None:
+        """Refuse what is not in the language, letters of one name, and places where a letter cannot be."""
+        if isinstance(argument, Mapping):
+            argument = [*argument, *argument.values()]
         if isinstance(argument, tuple | list):
             for part in argument:
-                self._meant(part, complex_too=complex_too, limits_too=limits_too)
-        if not isinstance(argument, sp.Basic) or not argument.args:
+                self._meant(part)
+        if not isinstance(argument, sp.Basic):
             return
-        for node in sp.preorder_traversal(argument):
-            inexact = isinstance(node, sp.Float | sp.Order | sp.AccumBounds)
-            if (
-                inexact
-                or node in (sp.zoo, sp.nan)
-                or (isinstance(node, sp.Limit) and not limits_too)
-            ):
-                raise StepError(f"{self.label}: {node} is no exact value")
-            if (
-                isinstance(node, sp.Symbol)
-                and node.is_extended_real is not True
-                and not complex_too
-            ):
-                raise StepError(f"{self.label}: {node} is not known to be real")
+        if found := foreign(argument):
+            raise StepError(f"{self.label}: {found}")
+        for node in parts(argument):
+            if isinstance(node, sp.Symbol) and self._named.setdefault(node.name, node) != node:
+                raise StepError(f"{self.label}: there are two letters {node.name}")
             if isinstance(node, sp.Integral | sp.Sum | sp.Product):
                 places = [(limit[0], end) for limit in node.limits for end in limit[1:]]
             elif isinstance(node, sp.Subs):
@@ -631,6 +680,10 @@ class Book:
             gap = case.gts - case.lts
             positive = (*self._conditions.positive, self._resolve(gap), gap)
             self._conditions = Conditions(self._conditions.intervals, positive)
+            premises = merged(fact.premises for fact in self._origins.values())
+            pairs = tuple((each.lhs, each.rhs) for each in premises)
+            if not has_witness(pairs, self._conditions.gaps):
+                raise StepError(f"{self.label}: no point was found where {case} and all else holds")
         elif case != sp.true:
             raise StepError(f"{self.label}: {case} is no equality and no strict inequality")
         try:
@@ -646,6 +699,16 @@ class Book:
         value = self._resolve(self._rules[name])
         if name.is_integer and not value.is_integer:
             raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
+        signed = name.is_nonnegative or name.is_nonpositive
+        both = sp.sympify(self._rules[name]), value
+        if (
+            name.is_nonzero
+            and not signed
+            and not any(proves_nonzero(form, self._conditions) for form in both)
+        ):
+            raise StepError(
+                f"{self.label}: {name} is not zero, but {value} may be; say where it is not"
+            )
         raw = demands(self._rules[name])[1]
         settled = {
             self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)
@@ -705,7 +768,7 @@ class Book:
         if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
-        return has_witness(pairs, self._conditions.positive)
+        return has_witness(pairs, self._conditions.gaps)
 
     def _placed(
         self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
@@ -730,7 +793,7 @@ class Book:
         gaps = [
             gap for variable, value in at.items() for gap in self._open_admissions(variable, value)
         ]
-        for gap in (*gaps, *(each.subs(at) for each in (*ends, *fact.conditions.positive))):
+        for gap in (*gaps, *(_put(each, at) for each in (*ends, *fact.conditions.positive))):
             if gap != sp.oo and not proves_positive(gap, self._conditions):
                 self._demand(gap, tex_condition(gap))
         return lhs, rhs, Fact(fact.step, premises, self._conditions, self._domain)
@@ -869,16 +932,23 @@ class Book:
                     continue
                 self._read.setdefault(side, link)
                 read, checked = map(evaluated, map(self._resolve, (link, expr)))
-                if difference(read, checked) != 0:
+                if difference(self._parted(read), self._parted(checked)) != 0:
                     raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
         self._used = used
 
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: "Said | str") -> None:
-        rest = difference(lhs, rhs)
+        rest = difference(self._parted(lhs), self._parted(rhs))
         if rest != 0 and rest.has(sp.Abs, sp.Max, sp.Min):
             rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
         if rest != 0 and not is_constant_zero(rest, self._conditions):
             raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _parted(self, expr: sp.Expr) -> sp.Expr:
+        """Write each integral as the sum of its parts, where these exist."""
+        return expr.replace(
+            lambda node: isinstance(node, sp.Integral),
+            lambda node: parted(node, self._conditions),
+        )
 
     def _signed(self, inner: sp.Expr) -> sp.Expr:
         """Write an absolute value without its bars, where the conditions say the sign."""

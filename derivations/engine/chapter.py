@@ -66,8 +66,9 @@ class Chapter:
         Title and text are those of its docstring, after the `text` that is stated here; with a `title`, as
         for a function that proves several records, they are those stated here alone. A paragraph that begins
         with ``Argued:`` holds what no step states, and the record is "argued". A record ``eq27`` is
-        the paper's equation 27. `uses` are labels on which the record rests besides those that it recalls;
-        `after` are those of the chapter that are printed later than it, but must be proved before.
+        the paper's equation 27. `uses` are labels whose definitions it shares, or on which it rests in words,
+        which makes it "argued"; `after` are those of the chapter that are printed later than it, but must be
+        proved before.
         """
 
         def register(prove: Callable[..., None]) -> Callable[..., None]:

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import sympy as sp
+from sympy.codegen.cfunctions import log1p
 
-from .forms import coefficients, derivative, expanded, factors, put, reduced, sign_of_terms
+from .forms import derivative, expanded, factors, put, reduced, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -35,6 +36,15 @@ class Conditions:
     def with_interval(self, over: Interval) -> "Conditions":
         """Return these conditions, with one variable inside an interval as well."""
         return Conditions((*self.intervals, over), self.positive)
+
+    @property
+    def gaps(self) -> tuple[sp.Expr, ...]:
+        """All that is positive: the expressions, and how far a variable is from the ends of its interval."""
+        ends = (
+            gap for name, low, high in self.intervals for gap in (name - low, high - name)
+            if not gap.has(sp.oo, -sp.oo)
+        )  # fmt: skip
+        return (*self.positive, *ends)
 
 
 NONE = Conditions()
@@ -62,8 +72,6 @@ def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
             return True
     elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
         return _is_nonnegative_integral(expr, known)
-    if _by_ends(expr, known, proves_nonnegative) or _is_definite(expr, known, strict=False):
-        return True
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
 
 
@@ -73,7 +81,20 @@ def _is_nonnegative_integral(expr: sp.Integral, known: Conditions) -> bool:
     bound = sp.Dummy(variable.name, real=True)
     inside = known.with_interval((bound, low, high))
     integrand = expr.function.subs(variable, bound)
-    return proves_nonnegative(high - low, known) and proves_nonnegative(integrand, inside)
+    return (
+        _exists(integrand, (bound, low, high), known)
+        and proves_nonnegative(high - low, known)
+        and proves_nonnegative(integrand, inside)
+    )
+
+
+def _exists(integrand: sp.Expr, over: Interval, known: Conditions) -> bool:
+    """Tell whether an integral is known to exist: of what is continuous, between finite ends."""
+    from .algebra import is_continuous
+
+    return all(sp.sympify(end).is_finite for end in over[1:]) and is_continuous(
+        integrand, over, known
+    )
 
 
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
@@ -99,17 +120,15 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 
 @lru_cache(maxsize=8192)
-def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return for each way
+def _sign(expr: sp.Expr, known: Conditions) -> int:
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
     seen = signs(expr, known.intervals, known.positive)
     if len(seen) == 2:
         return 0
     if sign := known_sign(expr):
         return sign
-    if isinstance(expr, (sp.sin, sp.cos)):
-        sign = _sign_of_wave(expr, known)
-    elif isinstance(expr, (sp.Min, sp.Max)):
-        sign = _sign_of_extreme(expr, known)
+    if isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+        sign = _sign_of_integral(expr, known)
     elif expr.is_Add and known.positive:
         sign = next((side for side in _sides(seen) if _outweighs(side * expr, known)), 0)
     elif expr.is_Mul:
@@ -126,62 +145,22 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:  # noqa: PLR0911 one return 
     several = sum(bool(part.free_symbols) for part in sp.Mul.make_args(factored)) > 1
     if factored != expr and several and (sign := _sign(factored, known)):
         return sign
-    for side in _sides(seen):
-        one = side * expr
-        if (
-            _by_ends(one, known, proves_positive)
-            or _is_definite(one, known, strict=True)
-            or _by_slope(one)
-            or _by_coefficients(one)
-        ):
-            return side
-    return _by_scale(expr)
+    return next((side for side in _sides(seen) if _by_slope(side * expr)), 0)
+
+
+def _sign_of_integral(expr: sp.Integral, known: Conditions) -> int:
+    """Return the sign of the integrand, between ends in order."""
+    variable, low, high = expr.limits[0]
+    bound = sp.Dummy(variable.name, real=True)
+    integrand, over = expr.function.subs(variable, bound), (bound, low, high)
+    if not (_exists(integrand, over, known) and proves_positive(high - low, known)):
+        return 0
+    return _sign(integrand, known.with_interval(over))
 
 
 def _sides(seen: frozenset[int]) -> tuple[int, ...]:
     """Return the signs that may be proved: the one that was seen, or else both."""
     return tuple(seen) or (1, -1)
-
-
-def _sign_of_wave(expr: sp.Expr, known: Conditions) -> int:
-    """Decide the sign of a sine in (-pi, pi) and of a cosine in (-pi/2, pi/2)."""
-    (angle,) = expr.args
-    right = sp.pi / 2 if isinstance(expr, sp.cos) else sp.S.Zero
-    for side in (1, -1) if right == 0 else (1,):
-        phase = side * angle + right
-        if proves_positive(phase, known) and proves_positive(sp.pi - phase, known):
-            return side
-    return 0
-
-
-def _sign_of_extreme(expr: sp.Expr, known: Conditions) -> int:
-    signs = [_sign(arg, known) for arg in expr.args]
-    decides = 1 if isinstance(expr, sp.Max) else -1
-    return decides if decides in signs else signs[0] if len(set(signs)) == 1 else 0
-
-
-def _by_ends(expr: sp.Expr, known: Conditions, proves: Callable[..., bool]) -> bool:
-    """Decide what is affine in a sine or cosine by its values at -1 and 1, between which it lies."""
-    for wave in sorted(expr.atoms(sp.sin, sp.cos), key=str):
-        name = sp.Dummy(real=True)
-        named = expr.xreplace({wave: name})
-        slope = derivative(named, name)
-        if wave.is_real and not slope.has(name) and not named.atoms(sp.sin, sp.cos):
-            return all(proves(named.subs(name, end), known) for end in (-1, 1))
-    return False
-
-
-def _is_definite(expr: sp.Expr, known: Conditions, *, strict: bool) -> bool:
-    """Decide a quadratic polynomial by its leading coefficient and its discriminant."""
-    proves = proves_positive if strict else proves_nonnegative
-    for letter in sorted(expr.free_symbols, key=str):
-        if not letter.is_real or not expr.is_polynomial(*expr.free_symbols):
-            return False
-        coefficients = sp.Poly(expr, letter).all_coeffs()
-        if len(coefficients) == 3:
-            lead, middle, rest = coefficients
-            return proves_positive(lead, known) and proves(4 * lead * rest - middle**2, known)
-    return False
 
 
 _DERIVATIVES, _LONGEST = 6, 60
@@ -243,36 +222,12 @@ def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
     return end is not None and bool(sp.limit(whole, letter, end).is_nonnegative)
 
 
-def _by_scale(expr: sp.Expr) -> int:
-    """Decide what two positive letters enter by their ratio alone, but for a factor."""
-    letters = sorted(expr.free_symbols, key=str)
-    if len(letters) != 2 or not expr.has(sp.atan) or not all(each.is_positive for each in letters):
-        return 0
-    one, other = letters
-    scaled = sp.Mul(*factors(expanded(expr.subs(one, one * other))))
-    scale, rest = scaled.as_independent(one, as_Add=False)
-    return known_sign(scale) * _sign(rest, NONE) if rest.free_symbols == {one} else 0
-
-
-def _by_coefficients(expr: sp.Expr) -> bool:
-    """Decide a polynomial in a positive letter by its coefficients, none of which is negative."""
-    for letter in sorted(expr.free_symbols, key=str):
-        if letter.is_positive and len(expr.free_symbols) > 1 and expr.is_polynomial(letter):
-            found = coefficients(expr, letter)
-            if len(found) > 1 and all(_sign(each, NONE) == 1 for each in found.values()):
-                return True
-    return False
-
-
 def _never_below(slope: sp.Expr, left: int) -> bool:
     """Tell whether a slope is never negative, after positive factors have been left out."""
     forms = [slope, sp.Mul(*factors(slope))]
     forms.append(sp.Mul(*(part for part in sp.Mul.make_args(forms[1]) if not part.is_positive)))
     return any(
-        _product_sign(form, strict=False) == 1
-        or _by_ends(form, NONE, proves_nonnegative)
-        or _by_slope(expanded(form), left)
-        for form in forms
+        _product_sign(form, strict=False) == 1 or _by_slope(expanded(form), left) for form in forms
     )
 
 
@@ -321,8 +276,6 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
         if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
         if power.base.is_positive
     }
-    if expr.has(sp.cosh):
-        yield expr.replace(sp.cosh, lambda angle: 1 + 2 * sp.sinh(angle / 2) ** 2)
     if squares and not known.intervals and not known.positive:
         yield expr.subs(squares)  # roots of letters are letters too
     for place, (variable, *ends) in enumerate(known.intervals):
@@ -564,13 +517,8 @@ def _demands_of_power(base: sp.Expr, exponent: sp.Expr) -> _Demands:
 _OWN_DEMANDS: dict[type, Callable[..., _Demands]] = {
     sp.Pow: _demands_of_power,
     sp.log: lambda u: ((u,), (u,)),
-    sp.gamma: lambda u: ((u,), (u,)),  # more than it needs: the poles are at 0, -1, -2 and so on
+    log1p: lambda u: ((1 + u,), (1 + u,)),
     sp.asin: lambda u: ((), (1 - u**2,)),
-    sp.acos: lambda u: ((), (1 - u**2,)),
-    sp.acosh: lambda u: ((), (u - 1,)),
-    sp.atanh: lambda u: ((1 - u**2,), (1 - u**2,)),
-    **dict.fromkeys((sp.coth, sp.csch), lambda u: ((u,), ())),
-    **dict.fromkeys((sp.tan, sp.sec), lambda u: ((sp.cos(u),), ())),
-    **dict.fromkeys((sp.cot, sp.csc), lambda u: ((sp.sin(u),), ())),
+    sp.tan: lambda u: ((sp.cos(u),), ()),
 }
 """What a node demands of its arguments."""

@@ -30,7 +30,7 @@ _SPACING = {r"\,", r"\!", r"\;", r"\:", r"\ ", r"\left", r"\right", r"\limits", 
 _ARGUMENTS = {r"\frac", r"\sqrt", r"\dot", r"\ddot", r"\hat", r"\bar", r"\breve", r"\check"}
 _FUNCTIONS = {
     r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\log": sp.log,
-    r"\max": sp.Max, r"\min": sp.Min,
+    r"\arctan": sp.atan, r"\max": sp.Max, r"\min": sp.Min,
 }  # fmt: skip
 _OPEN, _CLOSE = {"(": ")", "[": "]", "{": "}"}, {")", "]", "}"}
 _TIME = {"s", "t", "zeta", "sigma"}

@@ -15,9 +15,9 @@ from sympy.polys.rings import PolyElement
 
 from .identity import LARGEST, Polynomials, letters_of
 
-SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh)
+SMOOTH = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.atan, sp.asinh)
 """Functions that have all derivatives wherever their argument is real."""
-_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin, sp.acos)
+_ELEMENTARY = (*SMOOTH, sp.log, sp.tan, sp.asin)
 
 
 @lru_cache(maxsize=16384)
@@ -263,5 +263,6 @@ def _sign_of_power(base: sp.Expr, exponent: sp.Rational, strict: bool) -> int:
         return max(sign, 0)
     if exponent.is_odd:
         return sign
-    may_vanish = base.is_real and exponent.is_positive and not strict
+    real = base.expr.is_real if isinstance(base, sp.Derivative) else base.is_real
+    may_vanish = real and exponent.is_positive and not strict
     return 1 if sign or may_vanish or (base.is_Symbol and base.is_nonzero) else 0

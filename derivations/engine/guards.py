@@ -4,8 +4,9 @@ from collections.abc import Callable, Iterable
 from typing import Unpack
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
-from .algebra import UndecidedError, in_one_angle, is_continuous, leading_term, normalise
+from .algebra import KINKS, UndecidedError, in_one_angle, is_continuous, leading_term, normalise
 from .book import Book, Said, Shown, StepError, asked
 from .conditions import (
     Conditions,
@@ -47,7 +48,10 @@ class Guarded(Book):
             self._vanish(self._resolve(derivative), found, f"{derivative} = {slope}")
         inside = self._conditions.with_interval(over)
         forms = (steep, found) if slope is not None else (found,)
-        signs = (sign for form in forms for sign in (1, -1) if proves_positive(sign * form, inside))
+        # An analytic function that never falls, and is not constant, takes each value once.
+        analytic = not found.has(AppliedUndef, sp.Integral, sp.Derivative, *KINKS)
+        proves = proves_nonnegative if analytic else proves_positive
+        signs = (sign for form in forms for sign in (1, -1) if proves(sign * form, inside))
         rises = next(signs, 0)
         names = [name for name in sp.sympify(expr).free_symbols if name in self._rules]
         calls = {each: sp.Function(each.name, **each.assumptions0)(over[0]) for each in names}

@@ -1,14 +1,12 @@
 """Whether a value is the only root of an expression within the domain of the variable."""
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import sympy as sp
 
-from .algebra import UndecidedError, difference, is_continuous, normalise, roots_between
+from .algebra import UndecidedError, difference, normalise, roots_between
 from .conditions import (
-    NONE,
     Conditions,
     Interval,
     proves_nonnegative,
@@ -16,7 +14,7 @@ from .conditions import (
     proves_positive,
     proves_real,
 )
-from .forms import derivative, expanded
+from .forms import expanded
 
 
 @dataclass(frozen=True)
@@ -85,39 +83,10 @@ def only_root(
         raise UndecidedError(f"{expr} is not defined there")
     numerator = _without_bars(numerator, x)
     numerator, x, value, domain = _without_roots(expanded(numerator), x, value, domain)
-    if not numerator.is_polynomial(x) and _by_monotony(numerator, x, value, domain, known):
-        return
     if not numerator.is_polynomial(x):
         raise UndecidedError(f"{expr} is no polynomial in {variable}: other roots are not excluded")
     if not _alone(sp.Poly(numerator, x), x, value, domain, known):
         raise UndecidedError("other roots are not excluded")
-
-
-def _by_monotony(
-    expr: sp.Expr, x: sp.Symbol, value: sp.Expr, domain: Domain, known: Conditions
-) -> bool:
-    """Tell whether each factor has no zero, or rises or falls throughout and vanishes at the value."""
-    sign = {"nonnegative": domain.low.is_nonnegative, "nonpositive": domain.high.is_nonpositive}
-    strict = sign["nonnegative"] and not domain.low_included
-    kinds = {"positive": True} if strict else {kind: True for kind, is_so in sign.items() if is_so}
-    there = sp.Dummy("x", real=True, **kinds)
-    over = (
-        (there, -sp.oo, sp.oo)
-        if domain.low.is_zero and strict
-        else (there, domain.low, domain.high)
-    )
-    for factor in sp.Mul.make_args(sp.factor(expr).subs(x, there)):
-        if not factor.has(there) or proves_nonzero(factor, known):
-            continue
-        if isinstance(factor, (sp.sin, sp.cos)):
-            if _zeros_of_wave(factor, there, domain) not in ({value}, set()):
-                return False
-            continue
-        rising = proves_nonzero(derivative(factor, there), known.with_interval(over))
-        at_root = difference(factor.subs(there, value), sp.S.Zero) == 0
-        if not (rising and at_root and is_continuous(factor, over, known)):
-            return False
-    return True
 
 
 def _without_bars(expr: sp.Expr, x: sp.Symbol) -> sp.Expr:
@@ -134,27 +103,6 @@ def _without_bars(expr: sp.Expr, x: sp.Symbol) -> sp.Expr:
 
 
 _MOST_BARS = 2
-
-
-def _zeros_of_wave(wave: sp.Expr, x: sp.Symbol, domain: Domain) -> set[sp.Expr] | None:
-    """Return the zeros of a sine or cosine in a bounded domain, if its angle is affine; None if not."""
-    slope, start = wave.args[0].diff(x), wave.args[0].subs(x, 0)
-    numbers = slope, start, domain.low, domain.high
-    if (
-        not all(each.is_number and each.is_finite and each.is_real for each in numbers)
-        or slope == 0
-    ):
-        return None
-    first = sp.Rational(1, 2) if isinstance(wave, sp.cos) else sp.S.Zero
-    turns = sorted(float(wave.args[0].subs(x, end) / sp.pi) for end in (domain.low, domain.high))
-    if turns[1] - turns[0] > _MOST_ZEROS:
-        return None
-    counts = range(math.floor(turns[0]) - 1, math.ceil(turns[1]) + 2)
-    places = [((first + count) * sp.pi - start) / slope for count in counts]
-    return {place for place in places if not domain.excludes(place, NONE)}
-
-
-_MOST_ZEROS = 100
 
 
 def _without_roots(

@@ -20,13 +20,12 @@ from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
 from .algebra import (
-    DISTANCE,
     UndecidedError,
     difference,
     is_continuous,
     leading_term,
-    limit_at,
     next_order,
+    normalise,
     roots_between,
     sign_between,
     value_at,
@@ -80,39 +79,11 @@ class Proof(Guarded):
         """Prove an identity: wherever one side is defined, so is the other, and they are equal.
 
         With `cases` it is proved in each of them, and they are its domain: one of them must hold.
-        A limit is that from the side which it names, and exists; later proofs cannot recall it.
         """
-        limits = any(sp.sympify(side).has(sp.Limit) for side in (lhs, rhs))
         for case in cases or (sp.true,):
             with self._case(case):
-                self._identical(*map(self._without_limits, (lhs, rhs)))
-        exact = not cases and not limits
-        self._record(lhs, "=", rhs, reason, "proved", shown, exact=exact, cases=cases)
-
-    def _without_limits(self, expr: sp.Expr) -> sp.Expr:
-        """Put in the values of limits, whose own variable no rule may touch."""
-        expr = sp.sympify(expr)
-        around = expr.atoms(sp.Limit, sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
-        if any(part.has(sp.Limit) for node in around for part in node.args):
-            raise StepError(
-                f"{self.label}: {expr} has a limit within a limit, integral or derivative"
-            )
-        return expr.xreplace({node: self._limit(*node.args) for node in expr.atoms(sp.Limit)})
-
-    def _limit(
-        self, expr: sp.Expr, variable: sp.Symbol, point: sp.Expr, direction: sp.Symbol
-    ) -> sp.Expr:
-        whole, point = self._resolve_free(expr, variable), self._resolve(point)
-        infinite = point == sp.oo
-        found = []
-        for side in (-1,) if infinite else {"+": (1,), "-": (-1,)}.get(str(direction), (1, -1)):
-            place = 1 / DISTANCE if infinite else point + side * DISTANCE
-            if variable.is_integer or self._open_admissions(variable, place):
-                raise StepError(f"{self.label}: {variable} does not reach {point} from this side")
-            found.append(limit_at(whole, variable, point, side, self._conditions))
-        if difference(found[0], found[-1]) != 0:
-            raise StepError(f"{self.label}: {expr} has another limit on each side of {point}")
-        return found[0]
+                self._identical(lhs, rhs)
+        self._record(lhs, "=", rhs, reason, "proved", shown, exact=not cases, cases=cases)
 
     def _identical(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
         claim = Said(lhs, "=", rhs)
@@ -122,6 +93,25 @@ class Proof(Guarded):
         found = refutation(left, right, self._conditions.positive)
         if found:
             raise StepError(f"{self.label}: {claim} fails {found}")
+
+    @asked
+    def proportional(
+        self,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        factor: sp.Expr,
+        reason: str,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that `lhs` is a number times `rhs`, and print that it goes as that: lhs ~ rhs."""
+        if not (factor.is_number and factor.is_positive):
+            raise StepError(f"{self.label}: {factor} is no positive number")
+        self._identical(lhs, factor * rhs)
+        self._displayed(lhs, rhs, shown)
+        self._asked = "equal", {"lhs": lhs, "rhs": factor * rhs}, self._asked[2]
+        shown.setdefault("right", tex(rhs))
+        self._record(lhs, r"\sim", factor * rhs, reason, "proved", shown, exact=False, trusted=True,
+                     note=f"up to the factor ${tex(factor)}$")  # fmt: skip
 
     @asked
     def integral(
@@ -163,11 +153,15 @@ class Proof(Guarded):
             not (plain or signs(found)) and found.is_real is False
         ):
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
-        if lhs in self._rules:
-            self._same_integral(self._rules.pop(lhs), whole)
+        defined = lhs in self._rules
+        if defined:
+            self._same_integral(self._unnamed(lhs), whole)
+            del self._rules[lhs]
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
-        premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
+        known = defined or lhs == whole
+        premise = None if known else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
@@ -215,6 +209,11 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim}: {called} cannot have this value")
         if called != variable and not domain_of(called, None).holds(found, self._conditions):
             raise StepError(f"{self.label}: {claim}: {called} is not known to reach this value")
+        for base in (each.subs(variable, found) for each in demands(whole)[0]):
+            if not base.is_nonzero and not proves_nonzero(base, self._conditions):
+                raise StepError(
+                    f"{self.label}: {claim}: {base} may vanish there; say where it does not"
+                )
         try:
             only_root(whole, variable, found, domain_of(variable, over), self._conditions)
         except (UndecidedError, sp.PolynomialError) as error:
@@ -468,8 +467,14 @@ class Proof(Guarded):
             series = _series(c, eps, k)
             self._displayed(1 + c * eps**k, sp.S.Zero, {"left": series})
             shown["right"] = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
-        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True,
-                     note=rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$")  # fmt: skip
+        note = rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$"
+        fact = self._record(
+            *(expr, "=", leading, reason, "proved-leading-order", shown),
+            exact=False,
+            trusted=True,
+            note=note,
+        )
+        self._leading.setdefault((sp.sympify(expr), sp.sympify(leading)), fact)
         return c, k
 
     @asked
@@ -486,6 +491,24 @@ class Proof(Guarded):
         if found:
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
+
+    def _defined_alike(self, integral: sp.Expr, *forms: tuple[sp.Expr, sp.Expr]) -> None:
+        """Refuse an antiderivative or a value with a pole in a parameter that the integral has not."""
+        shared = {normalise(base) for base in demands(integral)[0]}
+        bases = {base for raw, form in forms for base in self._undefined(sp.sympify(raw), form)}
+        for base in bases:
+            varies = isinstance(integral, sp.Integral) and base.has(*integral.variables)
+            if not (varies or normalise(base) in shared or proves_nonzero(base, self._conditions)):
+                raise StepError(
+                    f"{self.label}: {base} may vanish, but not in {integral}; say where it does not"
+                )
+
+    def _unnamed(self, name: sp.Expr) -> sp.Expr:
+        """Return what a name stands for that was given to another name, and use its definitions."""
+        while name in self._rules:
+            self._used.add(name)
+            name = self._rules[name]
+        return name
 
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""

@@ -1,6 +1,6 @@
 """A point at which premises and conditions hold together: without one they prove nothing.
 
-Letters are drawn, the equations solved one after the other with 50 digits, at changes of sign. Values,
+Letters are drawn, the equations solved one after the other with 120 digits, at changes of sign. Values,
 slopes and integrals of unknown functions are letters of their own.
 """
 
@@ -13,13 +13,17 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .conditions import known_sign, linear
+from .conditions import known_sign, linear, proves_nonnegative, proves_positive
 from .identity import letters_of
 from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
-_TRIES, _DIGITS, _NONE = 200, 50, mpmath.mpf(10) ** -30
-_GRID = [mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)]
+_TRIES, _DIGITS, _NONE = 200, 120, mpmath.mpf(10) ** -90
+_GRID = [
+    *(mpmath.mpf(10) ** k for k in range(-20, -4)),
+    *(mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)),
+    *(mpmath.mpf(10) ** k for k in range(5, 21)),
+]
 
 
 Pairs = tuple[tuple[sp.Expr, sp.Expr], ...]
@@ -49,7 +53,7 @@ def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> 
     above = {*gaps, *signed}
     draw = random.Random(2020)
     with mpmath.workdps(_DIGITS):
-        for attempt in range(_TRIES):
+        for attempt in range(2 if laws and len(order) == 1 else _TRIES):  # then nothing is drawn
             # Some conditions are met by letting them be equal to something positive.
             forced = draw.sample(gaps, draw.randrange(len(gaps) + 1)) if attempt % 2 else []
             start = {slack[gap]: _drawn(slack[gap], draw, above) for gap in forced}
@@ -122,7 +126,7 @@ def _inside(node: sp.Expr, values: Pairs) -> sp.Expr:
 def _lettered(expr: sp.Expr) -> sp.Expr:
     """Write letters for what depends on unknown functions, with their sign."""
     if isinstance(expr, _OPAQUE):
-        known = {"positive": expr.is_positive, "nonnegative": expr.is_nonnegative}
+        known = {"positive": proves_positive(expr), "nonnegative": proves_nonnegative(expr)}
         return sp.Dummy(real=True, **{k: v for k, v in known.items() if v})
     return expr.func(*map(_lettered, expr.args)) if expr.has(*_OPAQUE) else expr
 

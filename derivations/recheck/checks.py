@@ -200,7 +200,7 @@ class Record:
             left, right = _sides(premise)
             if premise["kind"] == left.op == "integral":
                 proved.add(left)
-            if left.op in {"symbol", "call", "integral"}:
+            if left.op in {"symbol", "call", "integral", "sum"}:
                 values[left] = right
             else:
                 equations.append(left - right)
@@ -222,7 +222,7 @@ class Record:
             if all(
                 a is b or (places and _equal(plain, a, b).status == "confirmed") for a, b in pairs
             ):
-                for condition in (put(read(each), places) for each in other["domain"]):
+                for condition in (_placed(read(each), places) for each in other["domain"]):
                     stated = condition in question.conditions
                     for point in () if stated else question.points(condition):
                         if not point.truth(condition):
@@ -231,6 +231,32 @@ class Record:
                     "confirmed", "as in its source" + (", at one place" if places else "")
                 )
         return Verdict("refuted", "its source does not establish it")
+
+    def leading_term(self, claim: Claim, _: Question) -> Verdict:
+        """Check that the source has proved this leading term."""
+        source = self.others.get(claim["source"], {"claims": ()})
+        found = any(
+            each["kind"] == "limit"
+            and (each["expression"], each["leading"]) == (claim["of"], claim["right"])
+            for each in source["claims"]
+        )
+        return (
+            Verdict("confirmed", "as in its source")
+            if found
+            else Verdict("refuted", "its source does not establish it")
+        )
+
+    def pair(self, claim: Claim, _: Question) -> Verdict:
+        """Return what is found about both relations, which stand in this record."""
+        found = []
+        for relation in (claim["one"], claim["other"]):
+            each = next(
+                (each for each in self.claims.values() if _relation(each) == relation), None
+            )
+            if each is None:
+                return Verdict("refuted", "no claim of this record")
+            found.append(self.verdict(each))
+        return _worst(found)
 
     def equality(self, claim: Claim, question: Question) -> Verdict:
         """Compare both sides, in each case; sides that are the same tree claim nothing."""
@@ -357,16 +383,32 @@ class Record:
         return _signed(question, read(claim["nonnegative"]) / (left - right), ">")
 
 
+def _placed(relation: Tree, places: Mapping[Tree, Tree]) -> Tree:
+    """Return a relation at other places."""
+    return Tree(relation.op, *(put(side, places) for side in relation.args))
+
+
 def _sides(claim: Claim) -> tuple[Tree, Tree]:
     if claim["kind"] == "root":
         return read(claim.get("name", claim["variable"])), read(claim["value"])
     return read(claim["left"]), read(claim["right"])
 
 
+def _relation(claim: Claim) -> list[Any] | None:
+    """Return the sides of an equality, or of what holds to leading order."""
+    if claim["kind"] == "limit":
+        return [claim["expression"], claim["leading"]]
+    if claim["kind"] == "root":
+        return [claim.get("name", claim["variable"]), claim["value"]]
+    return [claim["left"], claim["right"]] if claim["kind"] in _ESTABLISHING else None
+
+
 _PREMISES = {"definition", "condition"}
 _ESTABLISHING = {"definition", "recalled", "equality", "integral", "root"}
 _CHECKS: dict[str, Callable[[Record, Claim, Question], Verdict]] = {
     "recalled": Record.recalled,
+    "leading term": Record.leading_term,
+    "pair": Record.pair,
     "equality": Record.equality,
     "inequality": Record.inequality,
     "integral": Record.integral,

@@ -18,6 +18,7 @@ Tree = str | list[Any]
 KINDS = {
     "define": "definition",
     "recall": "recalled",
+    "asymptote": "leading term",
     "where": "condition",
     "equal": "equality",
     "holds": "inequality",
@@ -29,6 +30,9 @@ KINDS = {
 }
 """The kinds of claims by the checks that prove them; others keep the name of their check."""
 
+_TWO_SIDED = {
+    *("define", "recall", "asymptote", "equal", "holds", "sign", "integral", "equivalent"),
+}
 _NAMES = {"expr": "expression", "eps": "small"}
 _OMITTED = {"lhs", "rhs", "label", "short"}
 _FACTS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer", "real")
@@ -137,7 +141,7 @@ def claims(derivation: Derivation, names: Names) -> dict[str, Any]:
             continue
         label = f"{derivation.label}/{index}"
         found.append({"id": label, **_claim(claim, step.source, names, rules)})
-        if claim.check in {"define", "recall", "integral", "root"}:
+        if claim.check in {"define", "recall", "asymptote", "integral", "root"}:
             rules[claim.lhs] = label
     return {**names.facts(), "claims": found}
 
@@ -151,7 +155,7 @@ def _claim(claim: Claim, source: str, names: Names, rules: Mapping[sp.Expr, str]
     condition = claim.arguments.get("condition")
     if isinstance(condition, Relational):
         arguments = {"condition": names.tree(condition)}
-    elif claim.check in {"define", "recall", "equal", "holds", "sign", "integral", "equivalent"}:
+    elif claim.check in _TWO_SIDED:
         arguments = {"left": names.tree(claim.lhs), "right": names.tree(claim.rhs), **arguments}
         arguments.setdefault("relation", ">=" if claim.check == "equivalent" else "=")
     ends = [pair for name, low, high in claim.intervals for pair in ((low, name), (name, high))]

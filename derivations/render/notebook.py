@@ -23,7 +23,8 @@ _IMPORTED = (
     "Symbol, acos, asin, asinh, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
 )
 _ALSO = "from sympy.codegen.cfunctions import expm1, log1p"
-_GIVEN = {"define", "recall"}
+_GIVEN, _SEEN = {"define", "recall", "asymptote"}, {"pair"}
+"""Checks whose relation is a premise, and those whose relations stand in lines of their own."""
 
 
 class _Code(StrPrinter):
@@ -117,7 +118,7 @@ def _steps(derivation: Derivation) -> str:
     code = _Code(names)
     lines = [*_declared(names), f'steps = Steps("{derivation.label}")']
     for step in derivation.steps:
-        if step.claim is not None:
+        if step.claim is not None and step.claim.check not in _SEEN:
             lines += _call(step, step.claim, code)
     return "\n".join(lines)
 

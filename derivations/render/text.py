@@ -10,7 +10,7 @@ r"""The common part of the renderers: the text of a record and the order of its 
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 from ..engine.record import Calculation, Derivation, Step
@@ -206,13 +206,7 @@ def _lines(derivation: Derivation) -> list[Line]:
     The result is the step with the same formula; if there is none, an additional line ends the list.
     """
     tag = number(derivation.label)
-    found = []
-    for step in derivation.steps:
-        is_result = step.latex == derivation.latex
-        argued = is_result and derivation.status == "argued"
-        found.append(
-            Line(replace(step, status="argued") if argued else step, tag if is_result else "")
-        )
+    found = [Line(step, tag if step.latex == derivation.latex else "") for step in derivation.steps]
     if not any(line.tag for line in found):
         found.append(Line(Step(derivation.latex, "", "", "", derivation.status), tag))
     return found
