@@ -82,6 +82,7 @@ def test_labels_are_understood_as_people_write_them():
         (["--shape", "c*x**3"], "is not even"),
         (["--shape", "__import__('os')"], "is not read"),
         (["--shape", "c*x**4", "--only", "eq27"], "does not go with --only"),
+        (["--label-prefix", "a b%"], "--label-prefix 'a b%': expected up to 30"),
         (["--set", "drive.velocity=1 m/s"], "go with --numbers"),
         (["--numbers", "--set", "drive.velocity=0 m/s"], "drive.velocity is 0"),
         (["--numbers", "--set", "indenter.shape=circle"],

@@ -305,9 +305,10 @@ def compiled(directory: Path, names: list[str], references: str = "") -> str:
 def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, tmp_path, kind):
     write(everything, tmp_path, ["tex"])
     names = [f"{each.label}{kind}.tex" for each in everything]
+    references = " ".join(rf"\eqref{{kv:{each.label}}}" for each in everything)
     written = {path.name for path in (tmp_path / "fragments").iterdir()}
     assert written == {f"{each.label}{end}.tex" for each in everything for end in ("", "-steps")}
-    log = compiled(tmp_path, names, " ".join(rf"\eqref{{{each.label}}}" for each in everything))
+    log = compiled(tmp_path, names, references)
     assert not re.search(r"LaTeX Warning", log)
     assert overfull(log) == []
 
@@ -317,14 +318,25 @@ def test_a_fragment_stands_alone(everything, tmp_path):
     assert not re.search(r"LaTeX Warning|undefined", compiled(tmp_path, ["eq46-steps.tex"]))
 
 
+def test_fragments_keep_to_labels_of_their_own(everything, tmp_path):
+    """A document may have a section of the same name; `--label-prefix` keeps two editions apart."""
+    write(everything, tmp_path, ["tex"], only=["load", "F3"])
+    own = r"\section{Load}\label{load} Section~\ref{load}, Eqs.~\eqref{kv:load} and \eqref{kv:F3}"
+    assert "LaTeX Warning" not in compiled(tmp_path, ["load.tex", "F3-steps.tex"], own)
+    other = edition(everything, ["eq27"], label_prefix="nk-")
+    text = fragments.with_steps(other.derivations[0], other)
+    assert r"\label{nk-eq27}" in text
+    assert r"\derivationref{nk-eq28}" in text
+
+
 def test_the_document_counts_the_equations_of_a_fragment(everything):
     printing = edition(everything)
     texts = {each.label: fragments.with_steps(each, printing) for each in everything}
     for each in everything:
-        for text in (fragments.equation(each), texts[each.label]):
+        for text in (fragments.equation(each, printing), texts[each.label]):
             assert r"\tag" not in text
-            assert text.count(rf"\label{{{each.label}}}") == 1
-    assert r"\derivationref{eq28}{28 of Nakano and Kono}" in texts["eq27"]
+            assert text.count(rf"\label{{kv:{each.label}}}") == 1
+    assert r"\derivationref{kv:eq28}{28 of Nakano and Kono}" in texts["eq27"]
     assert not re.search(r"(?<![\w}])\(\d+\)", texts["eq27"])
     assert r"\item[$l_{\mathrm{r}}$] retardation length, $V \tau$ [m]," in texts["eq27"]
     assert "It holds for $" in texts["eq27"]

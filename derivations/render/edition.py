@@ -17,6 +17,10 @@ from .text import conclusion, reference
 _ARGUMENT = re.compile(r"(?:(?:\{?\\left)?\(.{1,12}\)\}?)?")
 
 
+PREFIX = "kv:"
+_PREFIX = re.compile(r"[A-Za-z0-9:.+/-]{0,30}")
+
+
 @dataclass(frozen=True)
 class Edition:
     """The derivations to print and the surrounding text."""
@@ -35,6 +39,8 @@ class Edition:
     """The scene of the numbers, in words."""
     letters: Mapping[str, str] = field(default_factory=dict)
     """New LaTeX by the symbol that it replaces."""
+    label_prefix: str = PREFIX
+    """What each label of a fragment begins with."""
 
     @property
     def labels(self) -> set[str]:
@@ -75,6 +81,7 @@ def edition(
     values: Mapping[str, str] | None = None,
     scene: str = "",
     symbols: Sequence[Symbol] = (),
+    label_prefix: str = PREFIX,
 ) -> Edition:
     """Select derivations, with those that they depend on if wanted, and write them in other letters.
 
@@ -103,7 +110,17 @@ def edition(
         values = {notation.get(symbol, symbol): value for symbol, value in values.items()}
         chosen = tuple(_in_letters(each, notation.get) for each in chosen)
         listed = tuple(_row_in_letters(each, notation.get) for each in listed)
-    return Edition(chosen, listed, command, version, title, values, scene, notation or {})
+    return Edition(
+        chosen, listed, command, version, title, values, scene, notation or {}, label_prefix
+    )
+
+
+def check_prefix(prefix: str) -> None:
+    """Raise `ValueError` for a prefix that a label of LaTeX cannot have."""
+    if not _PREFIX.fullmatch(prefix):
+        raise ValueError(
+            f"--label-prefix {prefix!r}: expected up to 30 of A-Z a-z 0-9 : . + / -, as in 'kv:'"
+        )
 
 
 def introductions(derivations: Iterable[Derivation]) -> dict[str, str]:
