@@ -67,6 +67,18 @@ def test_labels_are_understood_as_people_write_them():
         assert label in find([label.upper()], CONTENTS)
 
 
+def test_a_range_is_of_one_kind_and_both_its_ends_are_known():
+    numbered = {f"eq{number}" for number in range(26, 49)}
+    for name in ("eq26-eq48", "26-48", "Eqs. (26)-(48)", "eq48\u2013eq26", "Eq. 26 - Eq. 48"):
+        assert set(find([name], CONTENTS)) == numbered
+    families = {label.split("-")[0] for label in find(["F1-F4"], CONTENTS)}
+    assert families == {"F1", "F2", "F3", "F4"}
+    with pytest.raises(ValueError, match="unknown label 'eq60'; the nearest is 'eq6'"):
+        find(["eq26-eq60"], CONTENTS)
+    with pytest.raises(ValueError, match="unknown label 'eq26-F3'"):
+        find(["eq26-F3"], CONTENTS)
+
+
 # Mistakes
 
 

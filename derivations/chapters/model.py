@@ -185,22 +185,19 @@ def _depth_rate(proof: Proof) -> None:
                 left=r"\dot{\delta}(t)", right=r"-\dot{z}_{\mathrm{A}}(t)")  # fmt: skip
 
 
-@result("eq20", after=("eq21",))
-def _free(proof: Proof) -> None:
-    """Relaxation of a free element.
-
-    The retardation time is that of Eq. (21), which follows.
-    """
-    proof.recall("eq12")
-    proof.recall("eq21")
-    reason = r"without contact $f_{zi} = 0$, which is linear in $\dot{u}_i$"
-    proof.root(f_z, compression_rate, -u_i / tau, reason, left=_RATE, right=r"-\frac{u_i}{\tau}")
-
-
 @result("eq21")
 def _element_time(proof: Proof) -> None:
     """Retardation time of an element."""
     proof.define(tau, c / k)
+
+
+@result("eq20")
+def _free(proof: Proof) -> None:
+    """Relaxation of a free element."""
+    proof.recall("eq12")
+    proof.recall("eq21")
+    reason = r"without contact $f_{zi} = 0$, which is linear in $\dot{u}_i$"
+    proof.root(f_z, compression_rate, -u_i / tau, reason, left=_RATE, right=r"-\frac{u_i}{\tau}")
 
 
 @result("eq22")

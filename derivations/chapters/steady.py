@@ -1,9 +1,9 @@
-"""Steady sliding: edges, pressure, load and friction, exactly (Eqs. 26-32 and 34-39)."""
+"""Steady sliding: edges, pressure, load and friction, exactly (Eqs. 26-39)."""
 
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbols
+from ..engine.nomenclature import symbol, symbols
 from ..engine.step import Proof
 from .model import (
     C,
@@ -52,63 +52,18 @@ friction_coefficient = a * (1 - q) * (q**2 - q + 4) / 2 / (R * (q**2 - 2 * q + 3
 drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
 """Lambda**3 of the dead-weight indenter."""
 
+_half = sp.sqrt(2 * R * delta_t)
+_x_minus = symbol("x_-", "smaller zero of the pressure", "m", latex="x_{-}", real=True)
+_x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
+"""Zeros of the pressure; x_TE may be negative under an indenter that moves."""
+TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+"""Eq. 33: the zeros of the pressure."""
+LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+_RADICAND = r"a^2 \left(1 + \tau \frac{\dot\delta}{\delta}\right) + l_{\mathrm{r}}^2"
+
 _SHAPE = x**2 / (2 * R)
 SECTION = "Steady sliding"
 result = Chapter(SECTION)
-
-
-@result("pressure", after=("eq29",))
-def _pressure(proof: Proof) -> None:
-    """Pressure in the contact.
-
-    Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
-    indenters. The retardation length is that of Eq. (29), which follows.
-    """
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    whole = K * (delta - h(x)) - C * V * h(x).diff(x)
-    shown = r"K \left(\delta - h\right) - C V h'"
-    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)", right=shown)
-    proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
-
-
-@result("eq26", after=("eq28",), notation={"p": sp.Lambda(x, pressure)})
-def _leading_edge(proof: Proof) -> None:
-    """Leading edge.
-
-    The leading edge is where the undisturbed surface meets the indenter. The half length and the retardation
-    length are those of Eqs. (28) and (29), which follow.
-    """
-    proof.recall("eq28")
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
-    at_edge = pressure.subs(x, -a)
-    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
-    s = sp.Symbol("s", positive=True)
-    reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
-    proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
-    proof.done(x_le, -a)
-
-
-@result("eq27", notation={"p": sp.Lambda(x, pressure)})
-def _trailing_edge(proof: Proof) -> None:
-    """Trailing edge.
-
-    The trailing edge is where the pressure vanishes; it is the only such point of the contact. The half
-    length is that of Eq. (28), which follows.
-    """
-    proof.recall("eq28")
-    proof.recall("pressure")
-    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
-    ahead = pressure.subs(x, -a)
-    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
-    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
-    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
-               over=(x, -a, sp.oo), name=x_te,
-               right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
 
 
 @result("eq28")
@@ -145,6 +100,58 @@ def _retardation_length(proof: Proof) -> None:
     proof.recall("eq22")
     proof.equal(C, K * l_r / V, "with Eq. (22), solved for the damping")
     proof.done(l_r, V * tau)
+
+
+@result("pressure")
+def _pressure(proof: Proof) -> None:
+    """Pressure in the contact.
+
+    Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
+    indenters.
+    """
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    whole = K * (delta - h(x)) - C * V * h(x).diff(x)
+    shown = r"K \left(\delta - h\right) - C V h'"
+    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)", right=shown)
+    proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
+
+
+@result("eq26", notation={"p": sp.Lambda(x, pressure)})
+def _leading_edge(proof: Proof) -> None:
+    """Leading edge.
+
+    The leading edge is where the undisturbed surface meets the indenter.
+    """
+    proof.recall("eq28")
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
+    at_edge = pressure.subs(x, -a)
+    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
+    s = sp.Symbol("s", positive=True)
+    reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
+    proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
+    proof.done(x_le, -a)
+
+
+@result("eq27", notation={"p": sp.Lambda(x, pressure)})
+def _trailing_edge(proof: Proof) -> None:
+    """Trailing edge.
+
+    The trailing edge is where the pressure vanishes; it is the only such point of the contact.
+    """
+    proof.recall("eq28")
+    proof.recall("pressure")
+    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
+    ahead = pressure.subs(x, -a)
+    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
+    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
+    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
+               over=(x, -a, sp.oo), name=x_te,
+               right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
 
 
 @result("scaling")
@@ -213,6 +220,49 @@ def _moving_leading_edge(proof: Proof) -> None:
         right=r"\frac{C a}{R} \left(V - \dot{x}_{\mathrm{LE}}\right)",
     )
     proof.done(x_le, -half)
+
+
+@result("eq33", uses=("eq6", "eq7"))
+def _peeling_edges(proof: Proof) -> None:
+    """Trailing edge of the movable indenter.
+
+    It holds while the edge peels, that is, while elements leave the contact there because their pressure
+    vanishes. The paper gives one zero of the pressure; the other is a leading edge that peels, as occurs when
+    the indenter is lifted faster than the edge advances onto undisturbed ground. If there is no zero, no
+    element can be pressed and the indenter has left the foundation.
+    """
+    half = K / (2 * R)
+    square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
+    proof.define(
+        *(
+            p,
+            K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)),
+            r"$K u + C \dot u$ with Eqs. (6) and (7)",
+        ),
+        right=r"K (\delta - h) + C (\dot\delta - V h')",
+    )
+    proof.equal(
+        *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
+        right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
+    )
+    proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
+    proof.where(sp.Gt(square, 0), "else no element can be pressed")
+    proof.equal(
+        *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
+        right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
+    )
+    proof.root(
+        *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
+        over=(x, -sp.oo, -l_r), name=_x_minus, right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+    )  # fmt: skip
+    proof.root(
+        *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
+        name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+    )  # fmt: skip
 
 
 @result("eq34")

@@ -1,10 +1,10 @@
-"""Transient sliding: the scaled equations with their three numbers, and the edges that peel (Eq. 33)."""
+"""Transient sliding: the scaled equations with their three numbers."""
 
 import sympy as sp
 
 from ..engine.book import Shown
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol
+from ..engine.nomenclature import function, symbol
 from ..engine.step import Proof
 from .groups import k_s
 from .model import (
@@ -23,18 +23,16 @@ from .model import (
     t,
     tau,
     u_i,
-    x,
     x_i,
 )
 from .power_law_weight import a_0
-from .steady import a, l_r, p
+from .steady import p
 from .tables import delta_0
 from .theorems import kappa, lam
 
 z_a = function(
     "z_A", "height of the lowest point of the indenter", "m", printed=r"z_{\mathrm{A}}", real=True
 )(t)
-letter("x_{-}", "smaller zero of the pressure", "m")
 W_0 = symbol("W_0", "static load per unit width", "N/m")
 d = symbol("d", r"scaled depth, $\delta/\delta_0$")
 d_s = symbol("d_s", latex="d'", real=True)
@@ -50,15 +48,6 @@ P = symbol("P", r"scaled pressure, $p/(K \delta_0)$", latex=r"\hat p", printed=r
 PRESSURE = d + d_s - xi**2 - 2 * lam * xi
 """p/(K delta_0) in the contact."""
 
-_half = sp.sqrt(2 * R * delta_t)
-_x_minus = symbol("x_-", latex="x_{-}", real=True)
-_x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
-"""Zeros of the pressure; x_TE may be negative under an indenter that moves."""
-TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
-"""Eq. 33: the zeros of the pressure."""
-LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
-
-_RADICAND = r"a^2 \left(1 + \tau \frac{\dot\delta}{\delta}\right) + l_{\mathrm{r}}^2"
 result = Chapter("Transient sliding")
 
 
@@ -130,45 +119,3 @@ def _scaled_motion(proof: Proof) -> None:
     result = 1 - f_normal - kappa * (d - 1)
     shown: Shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
     proof.equal(eps * d_ss, result, "scaled motion", **shown)
-
-
-@result("eq33", uses=("eq6", "eq7"))
-def _peeling_edges(proof: Proof) -> None:
-    """Trailing edge of the movable indenter.
-
-    It holds while the edge peels, that is, while elements leave the contact there because their pressure
-    vanishes. The paper gives one zero of the pressure; the other is a leading edge that peels, as occurs when
-    the indenter is lifted faster than the edge advances onto undisturbed ground. If there is no zero, no
-    element can be pressed and the indenter has left the foundation.
-    """
-    half = K / (2 * R)
-    square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
-    proof.define(
-        *(p, K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)), _KINEMATICS),
-        right=r"K (\delta - h) + C (\dot\delta - V h')",
-    )
-    proof.equal(
-        *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
-        right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
-    )
-    proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
-    proof.where(sp.Gt(square, 0), "else no element can be pressed")
-    proof.equal(
-        *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
-        right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
-    )
-    proof.root(
-        *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
-        over=(x, -sp.oo, -l_r), name=_x_minus, right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
-    )  # fmt: skip
-    proof.root(
-        *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
-        name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
-    )  # fmt: skip
-
-
-_KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"

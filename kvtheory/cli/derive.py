@@ -44,7 +44,7 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 )  # fmt: skip
 @click.option(
     "--only", default="", metavar="eq27,F3,...",
-    help="Labels of the derivations to print, such as eq27, 27 or F3.",
+    help="Labels of the derivations to print, such as eq27, 27, F3 or eq26-eq48.",
 )  # fmt: skip
 @click.option("--closure", is_flag=True, help="Add all derivations that these depend on, in order.")
 @click.option(
