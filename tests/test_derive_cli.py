@@ -217,6 +217,30 @@ def test_the_name_of_a_scene_is_no_markup(tmp_path):
     assert all(line.startswith("Made by") and ": `` " in line for line in lines)
 
 
+def test_markdown_and_latex_are_tame(tmp_path):
+    """No sign before a letter is a tag, and a file may have any name."""
+    mine = tmp_path / "中\u202e.toml"
+    mine.write_text('V = "v"', encoding="utf-8")
+    given = (
+        "--only",
+        "27,29",
+        "--notation",
+        str(mine),
+        "--format",
+        "md,tex,bib",
+        "-o",
+        str(tmp_path),
+    )
+    run(*given)
+    text = (tmp_path / "derivations.md").read_text(encoding="utf-8")
+    assert not re.search(r"<(?!https://doi)", re.sub("`.*`", "", text))
+    assert r"\lt" in text
+    for kind in ("tex", "bib"):
+        assert not re.search(
+            "[中\u202e]", (tmp_path / f"derivations.{kind}").read_text(encoding="utf-8")
+        )
+
+
 def test_numbers_stand_in_every_format_that_carries_text(tmp_path):
     run("--only", "29", "--numbers", "--format", "tex,html,md,ipynb,json", "-o", str(tmp_path))
     for name in ("derivations.tex", "derivations.md", "derivations.ipynb", "derivations.json",
@@ -247,6 +271,22 @@ def test_letters_are_applied_everywhere(tmp_path):
         ('a = "V"', "that letter already stands for V"),
         ('a = "e"\nx = "e"', "that letter already stands for"),
         ('a = "b + 1"', "expected one symbol"),
+        *(
+            (f"V = '{letter}'", "expected one symbol")
+            for letter in (
+                "x_{&}",
+                "x_{%}",
+                "x_{a_b_c}",
+                "x_{^}",
+                "x^*_1^*",
+                "l_{\u202er}",
+                "x_ä",
+                r"\varalpha",
+                r"x_{\foo}",
+                r"x_{\input{a}}",
+                "x_{<img src=x onerror=alert(1)>}",
+            )
+        ),
         ("a = 1", "expected text"),
         ("a = ", "not TOML"),
     ],

@@ -23,7 +23,7 @@ def document(edition: Edition) -> str:
     """Return the page, for Sphinx or Jupyter Book with the extensions `dollarmath` and `amsmath`."""
     labels = edition.labels
     told = [*frame.INTRODUCTION, *([frame.numbers_of(edition.scene)] if edition.scene else [])]
-    parts = [f"# {edition.title}", *(_text(paragraph, labels) for paragraph in told)]
+    parts = [f"# {_escape(edition.title)}", *(_text(paragraph, labels) for paragraph in told)]
     parts += [f"*{status}*: {meaning}" for status, meaning in frame.VOCABULARY.items()]
     if edition.command:
         parts.append(
@@ -47,7 +47,7 @@ def _derivation(derivation: Derivation, edition: Edition) -> str:
     if derivation.numbers:
         parts.append(frame.WITH_NUMBERS)
         for each in derivation.numbers:
-            parts += [f"$$\n{calculation(each)}\n$$", _text(each.note, labels)]
+            parts += [f"$$\n{_tame(calculation(each))}\n$$", _text(each.note, labels)]
     if derivation.uses:
         uses = ", ".join(_printed([citation(label, labels)]) for label in derivation.uses)
         parts.append(f"Rests on {uses}.")
@@ -60,7 +60,7 @@ def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
     mark = f" ({label})" if block.tag else ""
     reason = _printed(remark(block.step, labels))
     worth = f"{reason} — *{block.step.status}*" if reason else f"*{block.step.status}*"
-    return f"$$\n{block.step.latex}\n$${mark}\n\n{worth}"
+    return f"$$\n{_tame(block.step.latex)}\n$${mark}\n\n{worth}"
 
 
 def _table(table: Table, labels: Collection[str]) -> str:
@@ -75,7 +75,7 @@ def _text(text: str, labels: Collection[str]) -> str:
 def _printed(content: Iterable[Piece]) -> str:
     write = {
         "words": lambda piece: _escape(piece.content),
-        "math": lambda piece: f"${piece.content}$",
+        "math": lambda piece: f"${_tame(piece.content)}$",
         "link": lambda piece: f"[{_escape(piece.content)}](#{piece.target})",
     }
     return "".join(write[piece.kind](piece) for piece in content)
@@ -83,3 +83,12 @@ def _printed(content: Iterable[Piece]) -> str:
 
 def _escape(words: str) -> str:
     return "".join(f"\\{char}" if char in "\\`*_#<>|[]$" else char for char in words)
+
+
+def _tame(latex: str) -> str:
+    """Write mathematics so that no reader of Markdown takes a sign for the beginning of a tag.
+
+    >>> _tame("0<q < 1")
+    '0\\\\lt q \\\\lt  1'
+    """
+    return latex.replace("<", r"\lt ")
