@@ -1,6 +1,7 @@
 """`kvtheory derive`: labels as people write them, mistakes before the work, numbers, letters, shapes."""
 
 import json
+import re
 import shlex
 from functools import partial
 

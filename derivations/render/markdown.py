@@ -86,7 +86,7 @@ def _escape(words: str) -> str:
 
 
 def _tame(latex: str) -> str:
-    """Write mathematics so that no reader of Markdown takes a sign for the beginning of a tag.
+    r"""Write mathematics so that no reader of Markdown takes a sign for the beginning of a tag.
 
     >>> _tame("0<q < 1")
     '0\\\\lt q \\\\lt  1'
