@@ -1,5 +1,7 @@
 """The catalogue is complete, sound and agrees with independent numerical work."""
 
+import re
+
 import mpmath as mp
 import pytest
 import sympy as sp
@@ -184,11 +186,21 @@ def test_printed_remainders(by_label):
         "eq43": r"1 + \frac{2 a}{3 l_{\mathrm{r}}}",
         "eq44": r"1 + \frac{3 a}{8 l_{\mathrm{r}}}",
         "eq45": r"1 - \frac{7 a}{24 l_{\mathrm{r}}}",
-        "eq46": r"1 - \frac{15 \left(V^{*}\right)^{3/2}}{16 V^{3/2}}",
-        "eq49": r"1 - \frac{\left(V^{*}\right)^{3/2}}{V^{3/2}}",
+        "eq46": r"1 - \frac{15}{16} \left(\frac{V^{*}}{V}\right)^{3/2}",
+        "eq49": r"1 - \left(\frac{V^{*}}{V}\right)^{3/2}",
     }
     for label, series in printed.items():
         assert series in by_label[label].latex
+
+
+def test_a_sum_begins_with_a_positive_term(by_label):
+    """W - C V delta, not -C V delta + W; only what was written by hand may differ."""
+    opening = re.compile(r"- [^+(]*(?<![\^{(]) \+ ")
+    shown = {step.right for each in by_label.values() for step in each.steps}
+    assert {right for right in shown if opening.match(right) and "{" not in right} == set()
+    steps = {step.right for step in by_label["F21-steady"].steps}
+    assert r"\frac{l_{\mathrm{r}} \left(W - C V \delta\right)}{R}" in steps
+    assert by_label["eq48"].latex == r"V^{*} = \frac{\alpha^{2/3} \sqrt[3]{K^{2} R W}}{C}"
 
 
 def test_asymptotes_meet_at_the_critical_velocities():

@@ -57,7 +57,7 @@ def _condition(proof: Proof) -> None:
     margin = sp.exp(time) * (now - h(place)) - sp.exp(earlier) * (then - h(place - m))
     form = sp.exp(time) * ((now - E * then) + (-h(place) + E * h(place - m)))
     proof.notation |= {"D_1": margin, "f": sp.Lambda(place, E * h(place - m) - h(place))}
-    proof.define(E, sp.exp(earlier - time), "less than 1", right="e^{-(s - s_1)}")
+    proof.define(E, sp.exp(earlier - time), "less than 1")
     proof.equal(
         margin,
         form,

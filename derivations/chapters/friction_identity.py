@@ -41,12 +41,11 @@ def _any_shape(proof: Proof) -> None:
     """
     inner = K * (delta - h(x)) + C * (depth_rate_now - V * sp.Derivative(h(x), x))
     bending = C * V * sp.Derivative(h(x), (x, 2))
-    proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row",
-                 right=r"K (\delta - h) + C (\dot\delta - V h')")  # fmt: skip
+    proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row")  # fmt: skip
     proof.define(l_r, C * V / K, "Eqs. (22) and (29)")
     work = -sp.Derivative(h(x), x) * _pressure(x)
     result = sp.Derivative(_pressure(x) ** 2, x) / (2 * K) + bending / K * _pressure(x)
-    proof.equal(work, result, "the integrand of Eq. (15)", left="-h' p",
+    proof.equal(work, result, "the integrand of Eq. (15)",
                 right=r"\frac{1}{2 K} \frac{d}{d x} p^2 + l_{\mathrm{r}} h'' p")  # fmt: skip
 
 

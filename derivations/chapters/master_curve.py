@@ -144,20 +144,17 @@ def _expansion(
     first: sp.Expr,
     second: sp.Expr,
     last: sp.Expr,
-    shown: str,
 ) -> None:
     proof.recall("scaling", reason=RATIO)
     proof.recall("F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
-    proof.leading_order(m - first - second, last, q, end, "the remainder after two terms", eps=small,
-                        left=shown)  # fmt: skip
+    proof.leading_order(m - first - second, last, q, end, "what two terms leave", eps=small)
 
 
 result("F4-low", title="Friction coefficient at low velocity: series", end=1, small=l, first=l,
-       second=-3 * l**2 / 4, last=9 * l**4 / 16, shown=r"m - l + \frac{3}{4} l^2")(_expansion)  # fmt: skip
+       second=-3 * l**2 / 4, last=9 * l**4 / 16)(_expansion)  # fmt: skip
 result("F4-high", title="Friction coefficient at high velocity: series", end=0, small=1 / l,
-       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2),
-       shown=r"m - \frac{2}{3} + \frac{7}{36 l}")(_expansion)  # fmt: skip
+       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2))(_expansion)  # fmt: skip
 
 
 @result("F5", uses=("eq42", "eq45", "eq46"))
@@ -171,13 +168,13 @@ def _intersections(proof: Proof) -> None:
     fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
     proof.define(C, K * tau, "Eq. (22)")
     proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
-    proof.root(Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed,
-               right=r"\alpha")  # fmt: skip
+    reason = r"$V^{*} \tau/\sqrt{R \delta}$"
+    proof.root(Lambda / alpha - 1, Lambda, alpha, reason, name=Lambda_fixed)
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
     proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
     proof.root(
         *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
-        name=Lambda_weight, right=r"\alpha^{2/3}",
+        name=Lambda_weight,
     )  # fmt: skip
     proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3

@@ -145,21 +145,15 @@ def _peeled(proof: Proof) -> None:
     proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
     for power in (edge, slope):
         proof.notation[rf"\operatorname{{expm1}} {_brace(power)}"] = power
-    proof.define(
-        logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
-    )
+    proof.define(logarithm, sp.log(1 - z), "accurate for small $z$")
     for power in (edge, slope):
-        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments",
-                     left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
+        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments")  # fmt: skip
     in_q(proof)
     proof.define(z, 1 - q**n, "$z = n l Q$")
     proof.define(gap_edge, 1 - q, "the peeled part of the outlet side")
-    proof.equal(
-        gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
-    )
+    proof.equal(gap_edge, -edge, "without a difference")
     proof.define(gap_slope, 1 - Q, "the decrease of the slope there")
-    proof.equal(gap_slope, -slope, "without a difference",
-                right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
+    proof.equal(gap_slope, -slope, "without a difference")  # fmt: skip
 
 
 def _brace(power: sp.Expr) -> str:

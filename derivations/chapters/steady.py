@@ -59,9 +59,7 @@ _x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
 TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
 """Eq. 33: the zeros of the pressure."""
 LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
-_RADICAND = r"a^2 \left(1 + \tau \frac{\dot\delta}{\delta}\right) + l_{\mathrm{r}}^2"
 
-_SHAPE = x**2 / (2 * R)
 SECTION = "Steady sliding"
 result = Chapter(SECTION)
 
@@ -75,7 +73,6 @@ def _half_length(proof: Proof) -> None:
         *(h(x) - delta, x, half_length, reason),
         over=(x, 0, sp.oo),
         name=a,
-        right=r"\sqrt{2 R \delta}",
     )
     proof.equal(delta, a**2 / (2 * R), "solved for the depth")
     proof.done(a, half_length)
@@ -113,8 +110,7 @@ def _pressure(proof: Proof) -> None:
     proof.recall("eq22")
     proof.recall("eq29")
     whole = K * (delta - h(x)) - C * V * h(x).diff(x)
-    shown = r"K \left(\delta - h\right) - C V h'"
-    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)", right=shown)
+    proof.define(p, whole, "$N f_{zi}$ of Eqs. (12), (4) and (5)")
     proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
 
 
@@ -145,13 +141,12 @@ def _trailing_edge(proof: Proof) -> None:
     """
     proof.recall("eq28")
     proof.recall("pressure")
-    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
+    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$")
     ahead = pressure.subs(x, -a)
     proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
     proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
     proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
-               over=(x, -a, sp.oo), name=x_te,
-               right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
+               over=(x, -a, sp.oo), name=x_te)  # fmt: skip
 
 
 @result("scaling")
@@ -236,18 +231,16 @@ def _peeling_edges(proof: Proof) -> None:
     proof.recall("eq3")
     proof.recall("eq22")
     proof.recall("eq29")
-    proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
+    proof.define(a, _half, "now depends on time")
     proof.define(
         *(
             p,
             K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)),
             r"$K u + C \dot u$ with Eqs. (6) and (7)",
         ),
-        right=r"K (\delta - h) + C (\dot\delta - V h')",
     )
     proof.equal(
         *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
-        right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
     )
     proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
     proof.where(sp.Gt(square, 0), "else no element can be pressed")
@@ -257,27 +250,26 @@ def _peeling_edges(proof: Proof) -> None:
     )
     proof.root(
         *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
-        over=(x, -sp.oo, -l_r), name=_x_minus, right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+        over=(x, -sp.oo, -l_r), name=_x_minus,
     )  # fmt: skip
     proof.root(
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
-        name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+        name=_x_plus,
     )  # fmt: skip
 
 
 @result("eq34")
 def _steadiness(proof: Proof) -> None:
     """Steady sliding."""
-    proof.define(depth_rate, sp.S.Zero, "the depth no longer changes", left=r"\dot{\delta}")
+    proof.define(depth_rate, sp.S.Zero, "the depth no longer changes")
 
 
 @result("eq35")
 def _steady_compression(proof: Proof) -> None:
     """Compression in steady sliding."""
     proof.recall("eq6")
-    proof.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
-    proof.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", left="u_i(t)",
-                right=r"-h(x_i) + \delta")  # fmt: skip
+    proof.define(delta_t, delta, "constant, by Eq. (34)")
+    proof.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)")
 
 
 @result("eq36")
@@ -285,8 +277,7 @@ def _steady_rate(proof: Proof) -> None:
     """Compression rate in steady sliding."""
     proof.recall("eq7")
     proof.recall("eq34")
-    proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)", left=r"\dot{u}_i(t)",
-                right="-h'(x_i) V")  # fmt: skip
+    proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)")
 
 
 @result("eq37")
@@ -347,5 +338,5 @@ def _dead_weight(proof: Proof) -> None:
         proof.recall(label)
     proof.recall("scaling", V, l_r, l)
     drive = V * tau * (K / (R * W)) ** sp.Rational(1, 3)
-    proof.define(Lambda, drive, right=r"V \tau \left(\frac{K}{R W}\right)^{1/3}")
+    proof.define(Lambda, drive)
     proof.equal(Lambda**3, drive_cubed, "$\\delta$ cancels: one number describes the state")

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from ..engine.book import Shown
+from ..engine.book import Shown, tex
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbol
 from ..engine.record import Table
@@ -10,7 +10,7 @@ from ..engine.step import Proof
 from . import asymptotics as asy
 from . import steady
 from .asymptotics import V_star
-from .model import C, K, M, N, R, V, delta, g, tau
+from .model import K, M, N, R, V, delta, g, tau
 from .steady import W, a, q
 
 delta_0 = symbol("delta_0", "static depth", "m", source="scaled-pressure")
@@ -108,32 +108,29 @@ def _velocity_dependences(proof: Proof) -> None:
     """
     low, meets = asy.low_coefficient, "both asymptotes have this value at $V^{*}$"
     cases = (
-        (asy.high_coefficient_dead_weight, asy.critical_dead_weight, asy.HIGH_DEAD_WEIGHT),
-        (asy.high_coefficient, asy.critical_fixed, asy.HIGH_FIXED),
+        (asy.high_coefficient_dead_weight, asy.critical_dead_weight),
+        (asy.high_coefficient, asy.critical_fixed),
     )
-    for high, critical, shown in cases:
+    for high, critical in cases:
         at_critical = sp.UnevaluatedExpr(low.subs(V, critical))
         value = high.subs(V, critical)
         proof.notation |= {
             "V^{*}": critical,
-            "C": C,
             r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
         }
-        proof.equal(
-            at_critical, value, meets, left=r"\mu(V^{*})", right=shown.replace("C V", "C V^{*}")
-        )
+        proof.equal(at_critical, value, meets, left=r"\mu(V^{*})")
     slow = r"$\mu = \frac{C V}{R K}$ (42)"
     rows = (
         (
             "Critical velocity $V^{*}$",
-            rf"$V^{{*}} = {asy.CRITICAL_FIXED}$ (47)",
-            rf"$V^{{*}} = {asy.CRITICAL_DEAD_WEIGHT}$ (48)",
+            rf"$V^{{*}} = {tex(asy.critical_fixed)}$ (47)",
+            rf"$V^{{*}} = {tex(asy.critical_dead_weight)}$ (48)",
         ),
         (r"Friction coefficient for $V \ll V^{*}$", slow, slow),
         (
             r"Friction coefficient for $V \gg V^{*}$",
-            rf"$\mu = {asy.HIGH_FIXED}$ (45)",
-            rf"$\mu = {asy.HIGH_DEAD_WEIGHT}$ (46)",
+            rf"$\mu = {tex(asy.high_coefficient)}$ (45)",
+            rf"$\mu = {tex(asy.high_coefficient_dead_weight)}$ (46)",
         ),
     )
     table = Table(("", "Fixed indenter", "Dead weight"), rows)

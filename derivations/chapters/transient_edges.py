@@ -134,10 +134,7 @@ def _touching(proof: Proof) -> None:
     speed = sp.Derivative(edge_path, time)
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
     proof.notation[r"X_{\mathrm{e}}"] = edge_path
-    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason, right=_SPEED)
-
-
-_SPEED = r"2 (\xi - E \eta) X_{\mathrm{e}}'"
+    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason)
 
 
 @result("F10-signs", uses=("F9", "F10-peel"))
@@ -192,7 +189,6 @@ def _at_once(proof: Proof) -> None:
         *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
         r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
         left=r"\int_{s_0}^{s} e^{\zeta} \left(d(\zeta) + d'(\zeta)\right) d\zeta",
-        right=r"e^{s} d(s) - e^{s_0} d(s_0)",
         value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
@@ -255,13 +251,11 @@ def _gradually(proof: Proof) -> None:
     proof.define(E, sp.exp(sigma - time))
     proof.define(
         *(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$"),
-        left=r"d'(\sigma)", right=r"\eta^2 + 2 Y'(\sigma) \eta - d(\sigma)",
     )  # fmt: skip
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
         left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "
         r"g(X_{\mathrm{e}}(\sigma), \sigma)\right]",
-        right=r"-2 e^{s} (\xi - E \eta) X_{\mathrm{e}}'(\sigma)",
     )
 
 

@@ -65,7 +65,10 @@ def replaced(latex: str, new: Callable[[str], str | None]) -> str:
     for atom in atoms(latex):
         other = new(atom.symbol)
         if other is not None:
-            dotted = f"{atom.dots}{{{other}}}" if atom.dots else other
+            letter, index = (
+                re.fullmatch(r"(\\?[^_]*)(.*)", other, re.S).groups() if atom.dots else (other, "")
+            )
+            dotted = f"{atom.dots}{{{letter}}}{index}" if atom.dots else other
             script = latex[: atom.start].endswith(("_", "^")) and len(other) > 1
             dotted = f"{{{dotted}}}" if script else dotted
             before = latex[done : atom.start]

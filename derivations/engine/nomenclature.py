@@ -38,6 +38,8 @@ BY_LATEX: dict[str, Symbol] = {}
 """The rows by what is printed, complete once the chapters are imported (`catalogue`)."""
 TEX: dict[sp.Symbol, str] = {}
 """How symbols are printed where SymPy's own choice differs from the paper's."""
+SYMBOLS: set[str] = set()
+"""What SymPy prints for the declared letters that are no functions."""
 CONSTANTS: dict[str, sp.Expr] = {}
 """Numbers with a letter of their own, which every display may use."""
 DECLARED: set[object] = set()
@@ -67,6 +69,7 @@ def symbol(
     another one (`letters`). Without a meaning it is no row: a derivative, or a letter declared elsewhere.
     """
     found = sp.Symbol(name, **(assumptions or {"positive": True}))
+    SYMBOLS.add(sp.latex(found))
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")
     return _declared(found, meaning, unit, printed or latex or sp.latex(found), source)

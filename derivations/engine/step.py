@@ -513,7 +513,7 @@ def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr) -> str:
 
     >>> q = sp.Symbol("q")
     >>> _series(sp.Rational(3, 2), 1 - q, sp.S.One), _series(-sp.S.One, 1 - q, sp.S.One)
-    ('1 + \\frac{3 \\left(1 - q\\right)}{2}', '1 - \\left(1 - q\\right)')
+    ('1 + \\frac{3}{2} \\left(1 - q\\right)', '1 - \\left(1 - q\\right)')
     """
     size = sp.factor(c) if c.free_symbols else c
     negative = size.could_extract_minus_sign()

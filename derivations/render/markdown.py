@@ -89,6 +89,6 @@ def _tame(latex: str) -> str:
     r"""Write mathematics so that no reader of Markdown takes a sign for the beginning of a tag.
 
     >>> _tame("0<q < 1")
-    '0\\\\lt q \\\\lt  1'
+    '0\\lt q \\lt  1'
     """
     return latex.replace("<", r"\lt ")
