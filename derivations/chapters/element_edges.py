@@ -166,10 +166,14 @@ def _bent(proof: Proof) -> None:
     slope = 2 * _slope + _spacing * _bend * (1 - 2 * _share)
     proof.where(slope > 0, "the overlap grows inward")
     result = -(_spacing**3) * _bend * rest / (24 * slope)
-    proof.equal(due, result, "the exact value less that of the scheme", left=_DUE)
+    proof.equal(due, result, "the exact value less that of the scheme", left=_DUE, right=_LEFT)
 
 
 _DUE = (
     r"\int_{\vartheta \Delta}^{\Delta} w(x) \, dx - \frac{\Delta w_1}{2} + \frac{\Delta^2}{12} w'(\Delta) "
     r"- \frac{\Delta w_1 w_0}{2 (w_1 - w_0)} - \frac{\Delta (w_1 - w_0)}{12}"
+)
+_LEFT = (
+    r"-\frac{\Delta^3 w_2}{24} \cdot \frac{2 m (1 - 6 \vartheta^2 + 4 \vartheta^3) + \Delta w_2 (1 - 2 "
+    r"\vartheta + 4 \vartheta^3 - 2 \vartheta^4)}{2 m + \Delta w_2 (1 - 2 \vartheta)}"
 )

@@ -13,7 +13,7 @@ from ..engine.step import Proof
 from .asymptotics import alpha
 from .model import C, K, R, V, delta, tau
 from .steady import Lambda, W, a, l, l_r, mu, q
-from .theorems import RATIO, SECTION, UNIT, A, B, m, w
+from .theorems import SECTION, UNIT, A, B, m, w
 
 Lambda_peak, mu_peak, Lambda_fixed, Lambda_weight, X, Y, T, mu_max, V_max = symbols(r"""
     Lambda_peak  \Lambda_{\max}    1    scaled velocity at the friction maximum of a dead weight
@@ -56,8 +56,12 @@ def _master_curve(proof: Proof) -> None:
     """
     quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
     relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
-    proof.crossing(DRIVE_CUBED - X, UNIT, "one state for each velocity: this falls with $q$")
-    proof.recall("scaling", reason=RATIO)
+    proof.crossing(
+        DRIVE_CUBED - X,
+        UNIT,
+        r"it falls from $\infty$ at $q = 0$: exactly one root, one state for each velocity",
+    )
+    proof.recall("scaling")
     proof.recall("F1", w)
     proof.recall("F1")
     proof.define(V, l * a / tau, "Eq. (29)")
@@ -91,7 +95,7 @@ def _peak(proof: Proof) -> None:
     proof.recall("F2", Y)
     proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
     proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
-    proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
+    proof.unique_root(parabola, UNIT, "positive at $q = 0$, negative at $q = 1$")
     proof.root(parabola, q, PEAK, "friction maximum", over=UNIT)
 
 
@@ -100,7 +104,7 @@ def _peak_values(proof: Proof) -> None:
     """Values at the friction maximum."""
     third = sp.cbrt(3 - sp.sqrt(3))
     proof.recall("F3")
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
     proof.recall("F1")
     proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
@@ -145,7 +149,7 @@ def _expansion(
     second: sp.Expr,
     last: sp.Expr,
 ) -> None:
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.recall("F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
     proof.leading_order(m - first - second, last, q, end, "what two terms leave", eps=small)

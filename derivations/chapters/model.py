@@ -106,7 +106,7 @@ def _inclination(proof: Proof) -> None:
     """
     proof.define(sp.tan(theta), -slope)
     proof.where(sp.cos(theta) > 0, "the surface is not vertical")
-    proof.equal(slope, -sp.tan(theta), "the same")
+    proof.equal(slope, -sp.tan(theta), "solved for the slope")
     proof.done(sp.tan(theta), -slope)
 
 
@@ -196,8 +196,8 @@ def _free(proof: Proof) -> None:
 def _retardation_time(proof: Proof) -> None:
     """Retardation time of the foundation."""
     proof.recall("eq21")
-    proof.define(k, K / N, "there are $N$ elements per unit length")
-    proof.define(c, C / N, "likewise")
+    proof.define(k, K / N, "stiffness of one of $N$ elements per unit length")
+    proof.define(c, C / N, "and its damping")
     proof.equal(tau, C / K, "$N$ cancels")
 
 

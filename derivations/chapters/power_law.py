@@ -174,7 +174,7 @@ def _coefficient(proof: Proof) -> None:
     proof.define(W, K * delta * a * w_n, "load")
     proof.recall("eq37")
     proof.define(m_n, mu * a / delta, r"$\mu$ in units of $\delta/a$")
-    proof.equal(m_n, phi_n / w_n, "the same")
+    proof.equal(m_n, phi_n / w_n, r"$\mu = F/W$")
     proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")
 
 

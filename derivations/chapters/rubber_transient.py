@@ -106,12 +106,12 @@ def _moments(proof: Proof) -> None:
     for name, power in ((S_i, 0), (T_i, 1)):
         proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact")  # fmt: skip
     for n, name in enumerate(I_n):
-        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "likewise")  # fmt: skip
+        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "moments of the contact")  # fmt: skip
     for name in (S_i, T_i):
         proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge")  # fmt: skip
     for n, name in enumerate(I_n):
         value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
-        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "evaluated",
+        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "an integral of a power",
                        value=value)  # fmt: skip
     proof.done(T_i.diff(t), MOMENTS[T_i])
 

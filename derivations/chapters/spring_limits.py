@@ -88,7 +88,11 @@ def _flutter(proof: Proof) -> None:
     proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
     proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
     proof.define(lag_minus, S_z - T_z * Omega_minus)
-    proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z), "likewise")
+    proof.equal(
+        lag_minus,
+        (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z),
+        "a sum of positive terms",
+    )
     proof.done(SQUARE, form)
 
 

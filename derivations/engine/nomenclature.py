@@ -32,6 +32,23 @@ class Symbol:
     source: str | None = ""
     """Label of the derivation that introduces it, or another source; empty if a scene gives it; None for
     the first derivation that defines it, or else prints it."""
+    sign: str = ""
+    """What is assumed of it, if not that it is a positive number."""
+
+
+def sign_of(letter: sp.Expr) -> str:
+    """Return what is assumed of a letter, in words; nothing for a positive one.
+
+    >>> [sign_of(sp.Symbol("x", **{fact: True})) for fact in ("positive", "negative", "real")]
+    ['', 'negative', 'of either sign']
+    """
+    known = (
+        ("positive", ""),
+        ("nonnegative", "not negative"),
+        ("negative", "negative"),
+        ("real", "of either sign"),
+    )
+    return next((words for fact, words in known if getattr(letter, f"is_{fact}")), "complex")
 
 
 BY_LATEX: dict[str, Symbol] = {}
@@ -47,9 +64,11 @@ DECLARED: set[object] = set()
 HEADS = ("Symbol", "Meaning", "Unit", "From")
 
 
-def letter(latex: str, meaning: str, unit: str = "1", source: str | None = None) -> None:
+def letter(
+    latex: str, meaning: str, unit: str = "1", source: str | None = None, sign: str = ""
+) -> None:
     """Declare a letter that is printed: an index, or one that a symbol prints elsewhere."""
-    if BY_LATEX.setdefault(latex, row := Symbol(latex, meaning, unit, source)) != row:
+    if BY_LATEX.setdefault(latex, row := Symbol(latex, meaning, unit, source, sign)) != row:
         raise ValueError(f"{latex} has two meanings: {BY_LATEX[latex].meaning}, and {meaning}")
 
 
@@ -143,5 +162,6 @@ def constant(latex: str, value: sp.Expr, meaning: str) -> sp.Expr:
 def _declared(found: sp.Expr, meaning: str, unit: str, latex: str, source: str | None) -> sp.Expr:
     DECLARED.add(found)
     if meaning:
-        letter(next(atoms(latex)).symbol, meaning, unit, source)
+        sign = sign_of(found) if isinstance(found, sp.Symbol) else ""
+        letter(next(atoms(latex)).symbol, meaning, unit, source, sign)
     return found

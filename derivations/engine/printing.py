@@ -28,6 +28,8 @@ _TALL = sp.Integral, sp.Sum, sp.Product, sp.Subs, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
 _CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
 _MOST_PRIMES = 3
+_MOST_TERMS = 5
+"""Of a sum in a bracket of its own: in a longer one a line could not be broken."""
 _ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check|math[a-z]+) ?\{?")
 
 # A function of time is printed without its argument, unless its letter alone is also that of a number.
@@ -102,7 +104,7 @@ class Printer(LatexPrinter):
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:  # noqa: N802
         content, rest = _primitive(expr)
-        if abs(content) != 1:
+        if abs(content) != 1 and len(expr.args) <= _MOST_TERMS:
             return self._product(content, [rest])
         return self._sum(expr)
 
@@ -157,6 +159,7 @@ class Printer(LatexPrinter):
             called
             or (isinstance(base, _CLOSED) and "^" not in shown and "'" not in shown)
             or (base.is_Integer and base.is_nonnegative)
+            or isinstance(base, sp.NumberSymbol)
             or (shown.startswith(r"\dot") and base.is_Derivative)
         )
         text = (

@@ -75,10 +75,15 @@ def _where(table: Table, labels: Collection[str], link: Link) -> list[str]:
     items = []
     for symbol, meaning, unit, source, *value in table.rows:
         shown = "".join(f", {each}" for each in value if each)
-        text = f"{meaning} [{unit}], {source}{shown}"
+        text = f"{meaning} [{unit}]{source and ', '}{source}{shown}"
         items.append(rf"\item[{symbol}] {words(text, labels, link)}")
     start = r"\begin{description}\itemsep=0pt\parsep=0pt"
-    return [r"\par where", start, *items, r"\end{description}"]
+    return [
+        r"\par where, positive unless another sign is given,",
+        start,
+        *items,
+        r"\end{description}",
+    ]
 
 
 def _comment(derivation: Derivation) -> str:
@@ -104,8 +109,8 @@ def _block(block: Given | Line, label: str, labels: Collection[str], link: Link)
     if isinstance(block, Given):
         return printed(sentence(block, labels), link)
     reason = printed(remark(block.step, labels), link)
-    told = rf"\par {reason[:1].upper()}{reason[1:]}:\nopagebreak" if reason else ""
-    return told + "\n" + _display(block.step.latex, label if block.tag else "").rstrip()
+    told = rf"\nopagebreak {reason[:1].upper()}{reason[1:]}.\par" if reason else ""
+    return _display(block.step.latex, label if block.tag else "").rstrip() + told
 
 
 def _reference(prefix: str, piece: Piece) -> str:
