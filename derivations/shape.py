@@ -43,16 +43,16 @@ def derive_shape(text: str) -> tuple[Derivation, ...]:
         For text that is no shape, and for a shape that does not rise or is not convex.
     """
     shape = read_shape(text)
-    premises = [each for each in steady_premises() if each.label in PREMISES]
+    steady_premises()
     forget("shape-")
     try:
-        return (*premises, *_Chapter(shape).derive())
+        return tuple(_Chapter(shape).derive())
     except StepError as error:
         raise ValueError(f'the shape "{text}": a step is not shown: {error}') from error
 
 
 def steady_premises() -> tuple[Derivation, ...]:
-    """Derive what the chapter recalls."""
+    """Derive what the chapter recalls: relations of the paper, which it cites."""
     from .catalogue import catalogue
 
     return catalogue(PREMISES)

@@ -65,10 +65,8 @@ def replaced(latex: str, new: Callable[[str], str | None]) -> str:
     for atom in atoms(latex):
         other = new(atom.symbol)
         if other is not None:
-            letter, index = (
-                re.fullmatch(r"(\\?[^_]*)(.*)", other, re.S).groups() if atom.dots else (other, "")
-            )
-            dotted = f"{atom.dots}{{{letter}}}{index}" if atom.dots else other
+            letter, mark, index = other.partition("_") if atom.dots else (other, "", "")
+            dotted = f"{atom.dots}{{{letter}}}{mark}{index}" if atom.dots else other
             script = latex[: atom.start].endswith(("_", "^")) and len(other) > 1
             dotted = f"{{{dotted}}}" if script else dotted
             before = latex[done : atom.start]

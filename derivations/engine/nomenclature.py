@@ -56,7 +56,7 @@ BY_LATEX: dict[str, Symbol] = {}
 TEX: dict[sp.Symbol, str] = {}
 """How symbols are printed where SymPy's own choice differs from the paper's."""
 SYMBOLS: set[str] = set()
-"""What SymPy prints for the declared letters that are no functions."""
+"""How the declared letters that are no functions are printed."""
 CONSTANTS: dict[str, sp.Expr] = {}
 """Numbers with a letter of their own, which every display may use."""
 DECLARED: set[object] = set()
@@ -88,7 +88,7 @@ def symbol(
     another one (`letters`). Without a meaning it is no row: a derivative, or a letter declared elsewhere.
     """
     found = sp.Symbol(name, **(assumptions or {"positive": True}))
-    SYMBOLS.add(sp.latex(found))
+    SYMBOLS.add(latex or sp.latex(found))
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")
     return _declared(found, meaning, unit, printed or latex or sp.latex(found), source)

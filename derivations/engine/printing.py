@@ -124,11 +124,11 @@ class Printer(LatexPrinter):
         """Return the terms: powers of one letter fall, what has two terms begins with the number."""
         terms = list(self._as_ordered_terms(expr))
         numbers = [term for term in terms if term.is_Rational]
-        powers = expr.free_symbols
-        rising = len(terms) == 2 or (len(powers) == 1 and _is_negative(terms[0]))
-        if rising and numbers and expr.is_polynomial(*powers) and len(powers) == 1:
+        letters = expr.free_symbols
+        rising = len(terms) == 2 or (len(letters) == 1 and _is_negative(terms[0]))
+        if rising and numbers and expr.is_polynomial(*letters) and len(letters) == 1:
             terms.reverse()
-        elif numbers and (len(terms) == 2 or _is_negative(terms[0])):
+        elif numbers and (len(terms) == 2 or len(letters) > 1 or _is_negative(terms[0])):
             terms = [*numbers, *(term for term in terms if term not in numbers)]
         first = next((term for term in terms if not _is_negative(term)), terms[0])
         return [first, *(term for term in terms if term is not first)]
@@ -231,6 +231,8 @@ class Printer(LatexPrinter):
         if isinstance(factor, _Root):
             return False
         base = factor.as_base_exp()[0]
+        if isinstance(factor, sp.Derivative):
+            return str(self._print(factor)).startswith(r"\frac")
         return isinstance(factor, _TALL) or (
             base.is_Add and any(mark in self._sum(base) for mark in (r"\frac", r"\int"))
         )
@@ -269,7 +271,8 @@ class Printer(LatexPrinter):
         members: list[tuple[sp.Expr, sp.Rational]],
     ) -> tuple[sp.Rational, _Root]:
         """Write powers with one denominator as one root, with the number that it can take up."""
-        above, below = [], []
+        above: list[sp.Expr] = []
+        below: list[sp.Expr] = []
         for base, exponent in members:
             lone = len(members) == 1 or order > 2 or not base.is_Integer
             if not lone and exponent > 0 and number.q % base == 0:
@@ -334,7 +337,7 @@ class Printer(LatexPrinter):
         """Print a function at its place, with a dot for each derivative to time, else a prime."""
         name = self._print(sp.Symbol(call.func.__name__))
         running = all(each.is_Symbol for each in call.args) and str(call.args[-1]) in {"t", "s"}
-        if running and (order or (len(call.args) == 1 and name not in SYMBOLS)):
+        if running and name + "'" * order not in SYMBOLS and (order or len(call.args) == 1):
             inner = ""
         else:
             inner = f"({', '.join(map(self._print, call.args))})"

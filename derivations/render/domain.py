@@ -34,7 +34,8 @@ def domain(derivation: Derivation) -> str:
     ]
     having: dict[str, list[str]] = {}
     for each, latex in shown.items():
-        if (sign := sign_of(each)) != _listed(latex) and signed[each] not in assumed:
+        real = each.is_extended_real  # else the name of a row of numbers
+        if real and (sign := sign_of(each)) != _listed(latex) and signed[each] not in assumed:
             having.setdefault(sign, []).append(latex)
     signs = [
         f"${', '.join(each)} {_RELATIONS[sign]}$"
