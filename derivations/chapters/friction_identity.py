@@ -41,7 +41,7 @@ def _any_shape(proof: Proof) -> None:
     """
     inner = K * (delta - h(x)) + C * (depth_rate_now - V * sp.Derivative(h(x), x))
     bending = C * V * sp.Derivative(h(x), (x, 2))
-    proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row")  # fmt: skip
+    proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row")
     proof.define(l_r, C * V / K, "Eqs. (22) and (29)")
     work = -sp.Derivative(h(x), x) * _pressure(x)
     result = sp.Derivative(_pressure(x) ** 2, x) / (2 * K) + bending / K * _pressure(x)
@@ -74,7 +74,7 @@ def _instant(proof: Proof) -> None:
     proof.define(F_z, load, "Eq. (14)")
     proof.define(_pressure(x_le), p_le, "at the leading edge")
     proof.define(_pressure(x_te), p_te, "at the trailing edge")
-    proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term")  # fmt: skip
+    proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term")
     proof.equal(F_x, whole, "friction without an integral")
 
 

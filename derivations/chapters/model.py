@@ -115,7 +115,7 @@ def _normal(proof: Proof) -> None:
     """Normal force on an element."""
     proof.recall("eq8")
     proof.where(sp.cos(theta) > 0, "the surface is not vertical")
-    proof.equal(f_n, _FORCE / sp.cos(theta), r"divide by $\cos\theta_i > 0$")  # fmt: skip
+    proof.equal(f_n, _FORCE / sp.cos(theta), r"divide by $\cos\theta_i > 0$")
 
 
 @result("eq12")

@@ -63,8 +63,7 @@ MOMENTS = {
 
 
 def _slide(proof: Proof) -> None:
-    proof.notation |= {r"x_{\mathrm{LE}}": le_t(t), r"x_{\mathrm{TE}}": te_t(t), "s_i": stress_i}
-    proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element")  # fmt: skip
+    proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element")
 
 
 @result("F23-stress")
@@ -77,7 +76,7 @@ def _stress(proof: Proof) -> None:
     """
     _slide(proof)
     compression = delta_t - (xi + Y_t) ** 2 / (2 * R)
-    proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact")  # fmt: skip
+    proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact")
     for name in (alpha_i, beta_i):
         proof.define(name(t).diff(t), ACCUMULATE[name], "an accumulator")
     proof.define(E_i, sp.exp(-(t_1 - t_in) / tau_i), "what is left at $t_1$ of a stress at entry")
@@ -101,14 +100,14 @@ def _moments(proof: Proof) -> None:
     """
     _slide(proof)
     stress, over = stress_i(xi, t), (xi, le_t(t) - Y_t, te_t(t) - Y_t)
-    proof.define(stress.diff(t), K_i * RATE - stress / tau_i, "the arm is strained, and relaxes")  # fmt: skip
-    proof.define(stress_i(le_t(t) - Y_t, t), sp.S.Zero, "an element enters without stress")  # fmt: skip
+    proof.define(stress.diff(t), K_i * RATE - stress / tau_i, "the arm is strained, and relaxes")
+    proof.define(stress_i(le_t(t) - Y_t, t), sp.S.Zero, "an element enters without stress")
     for name, power in ((S_i, 0), (T_i, 1)):
-        proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact")  # fmt: skip
+        proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact")
     for n, name in enumerate(I_n):
-        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "moments of the contact")  # fmt: skip
+        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "moments of the contact")
     for name in (S_i, T_i):
-        proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge")  # fmt: skip
+        proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge")
     for n, name in enumerate(I_n):
         value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
         proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "an integral of a power",

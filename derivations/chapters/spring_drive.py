@@ -57,7 +57,7 @@ def _scaled(proof: Proof) -> None:
     damper, in units of $a_0$, $\tau$ and $W_0 \delta_0/a_0$. For $\kappa_x \to \infty$ the drive is rigid.
     """
     proof.define(along_s, tau * x_a.diff(t) / a_0)
-    proof.define(along_ss, tau**2 * x_a.diff(t, 2) / a_0)  # fmt: skip
+    proof.define(along_ss, tau**2 * x_a.diff(t, 2) / a_0)
     proof.define(lam_0, V * tau / a_0)
     proof.define(lam, (V - x_a.diff(t)) * tau / a_0)
     proof.equal(lam, lam_0 - along_s, "the foundation slides under an indenter that gives way")
@@ -67,7 +67,7 @@ def _scaled(proof: Proof) -> None:
     proof.define(damper, C_x * a_0 / (_unit * tau))
     proof.define(kappa_x, k_x * a_0 / _unit)
     force = F_x - C_x * x_a.diff(t) - k_x * x_a
-    proof.define(x_a.diff(t, 2), force / M_x, "friction, damper and spring")  # fmt: skip
+    proof.define(x_a.diff(t, 2), force / M_x, "friction, damper and spring")
     result = f_friction - damper * along_s - kappa_x * along
     proof.equal(eps_x * along_ss, result, "scaled motion")
 

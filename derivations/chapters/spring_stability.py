@@ -179,7 +179,7 @@ def _onset(proof: Proof) -> None:
     real = _a4 * Omega**2 - _a2 * Omega + _a0
     proof.equal(real, -ONSET, r"its real part does not hold $\vartheta_x$ and $\varrho_x$")
     lag = S_z - T_z * Omega
-    proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "complete square")  # fmt: skip
+    proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "complete square")
     proof.done(real, -ONSET)
 
 

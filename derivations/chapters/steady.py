@@ -239,9 +239,7 @@ def _peeling_edges(proof: Proof) -> None:
             r"$K u + C \dot u$ with Eqs. (6) and (7)",
         ),
     )
-    proof.equal(
-        *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
-    )
+    proof.equal(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$")
     proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
     proof.where(sp.Gt(square, 0), "else no element can be pressed")
     proof.equal(

@@ -55,7 +55,6 @@ def _both_sides(density: str) -> str:
 
 def _relaxing(proof: Proof) -> None:
     """Define the known properties of the surface outside the contact."""
-    proof.notation |= {"u": _u, "u'": _u_s}
     proof.notation[r"\lambda"] = _IN_TIME[lam]
     proof.define(_u_s, -_u, "outside there is no pressure, Eq. (20)")
     for edge in (_left, _right):
@@ -79,9 +78,7 @@ def _surface(proof: Proof) -> None:
     change = -2 * energy + _share / 2 * (handed[0] - handed[1])
     _relaxing(proof)
     proof.define(energy, _share / 2 * _outside(_u**2), "the springs on both sides")
-    proof.equal(
-        *(_share * _outside(_u_s**2), 2 * energy, "the dampers there"),
-    )  # fmt: skip
+    proof.equal(_share * _outside(_u_s**2), 2 * energy, "the dampers there")
     proof.equal(
         *(sp.Derivative(energy, time), change, "the ends of the integrals move with the edges"),
         right=r"-2 E + \frac{3}{8} \left[(d - \ell^2)^2 (\ell' - \lambda) "
@@ -101,7 +98,7 @@ def _force(proof: Proof) -> None:
     _relaxing(proof)
     _let_move(proof)
     under = _under(proof, _height.subs(_IN_TIME), "under the indenter", _COMPRESSION, _COMPRESSED)
-    proof.define(total, _outside(_u) + under, "all elements")  # fmt: skip
+    proof.define(total, _outside(_u) + under, "all elements")
     proof.recall("F11")
     proof.equal(f_normal, force, _CONTINUOUS)
 
@@ -124,7 +121,7 @@ def _obey(proof: Proof) -> None:
     proof.recall("scaled-form")
 
 
-@result("F14", notation={"d": depth})
+@result("F14")
 def _momentum(proof: Proof) -> None:
     """Balance of momentum.
 

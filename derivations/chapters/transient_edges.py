@@ -133,7 +133,6 @@ def _touching(proof: Proof) -> None:
     )  # fmt: skip
     speed = sp.Derivative(edge_path, time)
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
-    proof.notation[r"X_{\mathrm{e}}"] = edge_path
     proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason)
 
 
@@ -149,8 +148,7 @@ def _signs(proof: Proof) -> None:
     margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     other = margin.subs(material, material - b)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
-    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
-    proof.notation |= {r"\xi - E \eta": slope}
+    proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
     proof.recall("F10-touch")
     proof.holds(2 * rho * speed, "<", 0,
                 "F10-peel: an element that detaches on the right loses its pressure",
@@ -249,9 +247,7 @@ def _gradually(proof: Proof) -> None:
     proof.define(xi, element + travel, "where the element is now")
     proof.define(eta, element + moved, r"and where it was at $\sigma$")
     proof.define(E, sp.exp(sigma - time))
-    proof.define(
-        *(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$"),
-    )  # fmt: skip
+    proof.define(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$")
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
         left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, letter, symbol, symbols
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .theorems import lam
 from .transient_scaling import PRESSURE, d, d_s, xi
 
@@ -109,7 +109,7 @@ def _memory(proof: Proof) -> None:
     value = sp.exp(sigma - time) * g(sigma)
     proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
     since = kept - sp.exp(sigma) * u(sigma)
-    proof.root(*(since, u(time), value, r"the free element since $\sigma$"))  # fmt: skip
+    proof.root(*(since, u(time), value, r"the free element since $\sigma$"))
 
 
 _BOUND = (
@@ -118,7 +118,7 @@ _BOUND = (
 )
 
 
-@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})
+@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE})
 def _update(proof: Proof) -> None:
     r"""Memory from one instant to the next.
 
@@ -210,7 +210,7 @@ def _interval(proof: Proof) -> None:
     """
     margin = _margin(material)
     curvature = sp.Derivative(margin, (material, 2))
-    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")  # fmt: skip
+    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")
     proof.define(eta, sp.exp(time - earlier))
     proof.equal(
         *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
@@ -232,7 +232,6 @@ def _between(proof: Proof) -> None:
     """Prove what a difference is between two elements where it is not negative."""
     first, second = sp.symbols("D_1 D_2", real=True)
     for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
-        proof.notation[tex(name)] = name
         proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
     between = _margin(mix * _one + (1 - mix) * _other)
     proof.equal(

@@ -111,7 +111,7 @@ def _edges(proof: Proof) -> None:
     per_depth = 1 / (2 * (_touching - E * eta))
     for variable, value in ((d, per_depth), (d_s, sp.S.Zero)):
         slope = sp.Derivative(_touching, variable)
-        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches")  # fmt: skip
+        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches")
     proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
     proof.notation["r"] = START[right]
     for variable in (d, d_s):

@@ -110,8 +110,6 @@ def _scaled_motion(proof: Proof) -> None:
     proof.define(eps, M * delta_0 / (W_0 * tau**2), "inertia number")
     proof.define(kappa, k_s * delta_0 / W_0, "support number")
     proof.define(g, W_0 / M, "the weight is the load at rest")
-    proof.define(
-        *(z_a.diff(t, 2), force / M, "Eq. (17) with the force of the spring"),
-    )
+    proof.define(z_a.diff(t, 2), force / M, "Eq. (17) with the force of the spring")
     result = 1 - f_normal - kappa * (d - 1)
     proof.equal(eps * d_ss, result, "scaled motion")

@@ -1,4 +1,4 @@
-r"""The letters of the printed document: each has one meaning throughout.
+r"""The letters of the catalogue: each has one meaning; an edition drops the accents that a section can spare.
 
 A derivation is written in the letters that suit it best; where two chapters use one letter for two
 things, one of them prints another. A renaming of symbols keeps every equality that was checked.

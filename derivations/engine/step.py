@@ -63,8 +63,8 @@ class Greatest(sp.Expr):
 class Proof(Guarded):
     """Collect checked steps and end in a `record.Derivation`.
 
-    In every step `left` and `right` replace the LaTeX of a side where SymPy's own is clumsy; what is
-    checked is the SymPy expression.
+    A step is printed as `printing` has it; `left` and `right` are for the LaTeX of a side that says more by a
+    name than by the expression, which is what is checked.
     """
 
     @asked
