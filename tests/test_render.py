@@ -360,10 +360,10 @@ def test_the_document_counts_the_equations_of_a_fragment(everything):
         for text in (fragments.equation(each, printing), texts[each.label]):
             assert r"\tag" not in text
             assert text.count(rf"\label{{kv:{each.label}}}") == 1
-    assert r"\derivationref{kv:eq28}{28 of Nakano and Kono}" in texts["eq27"]
+    assert r"\derivationref{kv:eq28}{(28 of Nakano and Kono)}" in texts["eq27"]
     assert not re.search(r"(?<![\w}])\(\d+\)", texts["eq27"])
     assert r"\item[$l_{\mathrm{r}}$] retardation length, $V \tau$ [m]," in texts["eq27"]
-    assert "where, positive unless another sign is given," in texts["eq27"]
+    assert "Symbols, positive unless another sign is given:" in texts["eq27"]
     assert "It holds for $q < 1$." in texts["eq42"]
 
 

@@ -176,7 +176,8 @@ class Printer(LatexPrinter):
         """Print a product: sign, fraction, and what stands beside it."""
         number, named, factors = _named(number, list(factors))
         number, above, below, roots = self._parted(number, factors)
-        above += named
+        above += [each for each in named if each.as_base_exp()[1] > 0]
+        below += [1 / each for each in named if each.as_base_exp()[1] < 0]
         beside: list[str] = []
         upper: list[sp.Expr | _Root] = [*above]
         lower: list[sp.Expr | _Root] = [*below]
@@ -390,10 +391,11 @@ def _named(
     surds = [each for each in factors if each.is_Pow and each.is_number and each.base.is_Rational]
     value = number * sp.Mul(*surds)
     for letter, constant in CONSTANTS.items() if surds else ():
-        for power in (sp.S.One, sp.Rational(2, 3)):
+        for power in (sp.S.One, sp.Rational(2, 3), sp.S.NegativeOne):
             known = constant**power
             ratio, low = value / known, known.as_coeff_Mul()[0].q
-            if ratio.is_Rational and value.as_coeff_Mul()[0].q % low == 0:
+            whole = ratio.is_Integer or (ratio.is_Rational and power > 0)
+            if whole and value.as_coeff_Mul()[0].q % low == 0:
                 rest = [each for each in factors if each not in surds]
                 return ratio, [sp.Symbol(letter, positive=True) ** power], rest
     return number, [], factors

@@ -33,7 +33,7 @@ SIZES = ((1.0, ""), (1.05, "small"), (1.15, "footnotesize"), (1.4, "scriptsize")
 """What cannot be broken is set smaller: by width in lines, the size."""
 
 _REFER = (
-    r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname\ref{#1}\else#2\fi}"
+    r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname(\ref{#1})\else#2\fi}"
     " % the number in this document or, if it is not there, the name\n"
 )
 
@@ -79,7 +79,7 @@ def _where(table: Table, labels: Collection[str], link: Link) -> list[str]:
         items.append(rf"\item[{symbol}] {words(text, labels, link)}")
     start = r"\begin{description}\itemsep=0pt\parsep=0pt"
     return [
-        r"\par where, positive unless another sign is given,",
+        r"\par Symbols, positive unless another sign is given:",
         start,
         *items,
         r"\end{description}",
@@ -109,14 +109,14 @@ def _block(block: Given | Line, label: str, labels: Collection[str], link: Link)
     if isinstance(block, Given):
         return printed(sentence(block, labels), link)
     reason = printed(remark(block.step, labels), link)
-    told = rf"\nopagebreak {reason[:1].upper()}{reason[1:]}.\par" if reason else ""
+    told = rf"\nopagebreak ({reason})\par" if reason else ""
     return _display(block.step.latex, label if block.tag else "").rstrip() + told
 
 
 def _reference(prefix: str, piece: Piece) -> str:
-    """Print a reference: a number if the document contains the equation, else a name."""
+    """Print a reference: the number in parentheses if the document contains the equation, else a name."""
     label = piece.target
     name = number(label)
     name = f"{escape(name)} of Nakano and Kono" if name.isdigit() else escape(name)
-    shown = rf"\derivationref{{{prefix}{label}}}{{{name}}}"
-    return f"({shown})" if piece.content.startswith("(") else shown
+    name = f"({name})" if piece.content.startswith("(") else name
+    return rf"\derivationref{{{prefix}{label}}}{{{name}}}"
