@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
+from sympy.core.function import UndefinedFunction
 
 from .atoms import atoms
 
@@ -62,6 +63,16 @@ CONSTANTS: dict[str, sp.Expr] = {}
 DECLARED: set[object] = set()
 """The symbols and functions that the chapters have declared."""
 HEADS = ("Symbol", "Meaning", "Unit", "From")
+
+
+def shared_letters() -> str:
+    """Return the letters that a number shares with a function, which then is printed with its argument."""
+    names = {
+        sp.latex(sp.Symbol(each.__name__))
+        for each in DECLARED
+        if isinstance(each, UndefinedFunction)
+    }
+    return " ".join(sorted({each for each in SYMBOLS if each.rstrip("'") in names} | {*CONSTANTS}))
 
 
 def letter(
