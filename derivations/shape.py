@@ -68,6 +68,7 @@ def symbols(text: str) -> tuple[Symbol, ...]:
         for sign, side in (("a", "ahead of"), ("b", "behind")):
             meaning = f"part of the {name} that is carried {side} the lowest line"
             rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit, None))
+    rows.append(Symbol(tex(distance), "distance from the lowest line", "m", "shape-rise"))
     return (*rows, Symbol("a", "half length of the contact at rest", "m", None))
 
 
