@@ -4,6 +4,7 @@ import gc
 from collections.abc import Callable, Collection
 from functools import cache
 from importlib import import_module
+from itertools import pairwise
 from types import ModuleType
 
 from .engine.book import StepError, finished, restore
@@ -94,10 +95,12 @@ def catalogue(
     """
     derived: list[Derivation] = []
     total = wanted_up_to(until)
+    following = {one: other.result.section for one, other in pairwise(CHAPTERS)}
     for chapter in CHAPTERS:
         derived += _chapter(chapter)
         if report is not None:
             report(min(len(derived) / total, 1.0), f"{len(derived)} records")
-        if until and set(until) <= {derivation.label for derivation in derived}:
-            break
+        ends = following.get(chapter) != chapter.result.section
+        if until and ends and set(until) <= {derivation.label for derivation in derived}:
+            break  # a section is derived to its end, for its letters follow from all of it
     return tuple(derived)

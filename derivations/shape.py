@@ -43,16 +43,16 @@ def derive_shape(text: str) -> tuple[Derivation, ...]:
         For text that is no shape, and for a shape that does not rise or is not convex.
     """
     shape = read_shape(text)
-    premises = [each for each in steady_premises() if each.label in PREMISES]
+    steady_premises()
     forget("shape-")
     try:
-        return (*premises, *_Chapter(shape).derive())
+        return tuple(_Chapter(shape).derive())
     except StepError as error:
         raise ValueError(f'the shape "{text}": a step is not shown: {error}') from error
 
 
 def steady_premises() -> tuple[Derivation, ...]:
-    """Derive what the chapter recalls."""
+    """Derive what the chapter recalls: relations of the paper, which it cites."""
     from .catalogue import catalogue
 
     return catalogue(PREMISES)
@@ -68,6 +68,7 @@ def symbols(text: str) -> tuple[Symbol, ...]:
         for sign, side in (("a", "ahead of"), ("b", "behind")):
             meaning = f"part of the {name} that is carried {side} the lowest line"
             rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit, None))
+    rows.append(Symbol(tex(distance), "distance from the lowest line", "m", "shape-rise"))
     return (*rows, Symbol("a", "half length of the contact at rest", "m", None))
 
 

@@ -17,15 +17,20 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from .engine.nomenclature import symbol
+from .engine.nomenclature import TEX, symbol
 
 distance = symbol("x_abs", latex=r"\bar x")
 """Distance from the lowest line of the indenter."""
 
 LONGEST, MOST_TERMS, HIGHEST = 200, 6, 12
 """Characters of a shape, terms of its sum, and its highest power."""
-TAKEN = {*"adeihpqCFKVW", "delta", "mu", "tau", "l_r", "x_LE", "x_TE"}
-"""Letters that already have a meaning in the derivation."""
+MOST_SPREAD, MOST_BITS = 200, 1000
+"""Terms of a product that is multiplied out on the way, and bits of a number."""
+TAKEN = {
+    *"adehipquxCFKOVW", r"\delta", r"\mu", r"\tau", r"\pi", r"\infty", r"\barx", r"\hatq",
+    "l_r", "x_LE", "x_TE", "W_a", "W_b", "F_a", "F_b",
+}  # fmt: skip
+"""Letters that already have a meaning in the derivation, as they are printed, without braces and spaces."""
 
 _OPERATORS: dict[type[ast.operator], Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
     ast.Add: lambda one, other: one + other,
@@ -71,11 +76,16 @@ def read_shape(text: str) -> Shape:
     """
     if len(text) > LONGEST:
         raise ValueError(f"the shape has {len(text)} characters; at most {LONGEST} are read")
+    if strange := re.search(r"[^A-Za-z0-9_ .+*/^|()-]", text):
+        raise ValueError(f"the shape {text!r} is not read: it has the character {strange[0]!r}")
     try:
         tree = ast.parse(_python(text), mode="eval")
     except (SyntaxError, ValueError) as error:
         raise ValueError(f'the shape "{text}" is not a formula such as "c*x**4"') from error
-    formula = sp.expand(_expression(tree.body, text))
+    written = _expression(tree.body, text)
+    if _spread(written) > MOST_SPREAD:
+        raise ValueError(f'the shape "{text}" has too many terms; at most {MOST_TERMS} are read')
+    formula = sp.expand(written)
     if sp.expand(formula - formula.subs(_X, -_X)) != 0:
         raise ValueError(
             f'the shape "{text}" is not even: write abs(x) or |x| where x has an odd power'
@@ -111,7 +121,7 @@ def _expression(node: ast.expr, text: str) -> sp.Expr:
             found = _OPERATORS[type(operator)](_expression(left, text), _expression(right, text))
         case ast.Call(func=ast.Name(id="abs"), args=[argument], keywords=[]):
             found = sp.Abs(_expression(argument, text))
-    if found is not None and found.is_finite is not False:
+    if found is not None and found.is_finite is not False and _is_small(found):
         return found
     raise ValueError(
         f'the shape "{text}": {ast.unparse(node)!r} is not read; expected numbers, names, x, abs(x), '
@@ -119,15 +129,35 @@ def _expression(node: ast.expr, text: str) -> sp.Expr:
     )
 
 
+def _spread(expr: sp.Expr) -> int:
+    """Return how many terms there are at most once everything is multiplied out."""
+    parts = [_spread(part) for part in expr.args]
+    if expr.is_Add:
+        return sum(parts)
+    if expr.is_Pow and parts[0] > 1:
+        power = math.ceil(abs(expr.exp))
+        return math.comb(parts[0] + power - 1, power)
+    return math.prod(parts)
+
+
+def _is_small(expr: sp.Expr) -> bool:
+    """Tell whether the numbers and the powers that were built so far are no burden."""
+    numbers = (part for each in expr.atoms(sp.Rational) for part in (each.p, each.q))
+    return all(abs(part).bit_length() <= MOST_BITS for part in numbers)
+
+
 def _plain(number: float) -> bool:
     return not isinstance(number, bool) and math.isfinite(number)
 
 
 def _parameter(name: str, text: str) -> sp.Symbol:
-    if not _NAME.fullmatch(name) or name in TAKEN:
-        why = "already has a meaning" if name in TAKEN else "is no name"
+    found = sp.Symbol(name, positive=True)
+    printed = re.sub(r"\\mathrm|[{} ]", "", sp.latex(found))
+    taken = name in TAKEN or printed in TAKEN or found in TEX
+    if taken or not _NAME.fullmatch(name):
+        why = "already has a meaning" if taken else "is no name"
         raise ValueError(f'the shape "{text}": {name!r} {why}; choose another letter, such as c')
-    return sp.Symbol(name, positive=True)
+    return found
 
 
 def _exponent(node: ast.expr, text: str) -> sp.Rational:

@@ -1,6 +1,7 @@
 """`kvtheory derive`: labels as people write them, mistakes before the work, numbers, letters, shapes."""
 
 import json
+import re
 import shlex
 from functools import partial
 
@@ -67,6 +68,18 @@ def test_labels_are_understood_as_people_write_them():
         assert label in find([label.upper()], CONTENTS)
 
 
+def test_a_range_is_of_one_kind_and_both_its_ends_are_known():
+    numbered = {f"eq{number}" for number in range(26, 49)}
+    for name in ("eq26-eq48", "26-48", "Eqs. (26)-(48)", "eq48\u2013eq26", "Eq. 26 - Eq. 48"):
+        assert set(find([name], CONTENTS)) == numbered
+    families = {label.split("-")[0] for label in find(["F1-F4"], CONTENTS)}
+    assert families == {"F1", "F2", "F3", "F4"}
+    with pytest.raises(ValueError, match="unknown label 'eq60'; the nearest is 'eq6'"):
+        find(["eq26-eq60"], CONTENTS)
+    with pytest.raises(ValueError, match="unknown label 'eq26-F3'"):
+        find(["eq26-F3"], CONTENTS)
+
+
 # Mistakes
 
 
@@ -82,6 +95,7 @@ def test_labels_are_understood_as_people_write_them():
         (["--shape", "c*x**3"], "is not even"),
         (["--shape", "__import__('os')"], "is not read"),
         (["--shape", "c*x**4", "--only", "eq27"], "does not go with --only"),
+        (["--label-prefix", "a b%"], "--label-prefix 'a b%': expected up to 30"),
         (["--set", "drive.velocity=1 m/s"], "go with --numbers"),
         (["--numbers", "--set", "drive.velocity=0 m/s"], "drive.velocity is 0"),
         (["--numbers", "--set", "indenter.shape=circle"],
@@ -99,7 +113,8 @@ def test_only_what_is_needed_is_derived_and_how_much_that_is(monkeypatch, tmp_pa
     used, whole = [], chapters._chapter
     monkeypatch.setattr(chapters, "_chapter", lambda one: used.append(one.__name__) or whole(one))
     told = run("--only", "27", "--format", "json", "-o", str(tmp_path)).stderr
-    assert used == ["kvtheory.derivations.chapters.model", "kvtheory.derivations.chapters.steady"]
+    # To the end of the section, whose letters follow from all of it.
+    assert [name.rpartition(".")[2] for name in used] == ["model", "steady", "one_contact"]
     assert f"deriving {list(CONTENTS).index('eq27') + 1} records for the 1 asked for" in told
 
 
@@ -204,6 +219,20 @@ def test_the_name_of_a_scene_is_no_markup(tmp_path):
     assert all(line.startswith("Made by") and ": `` " in line for line in lines)
 
 
+def test_markdown_and_latex_are_tame(tmp_path):
+    """No sign before a letter is a tag, and a file may have any name."""
+    mine = tmp_path / "中\u202e.toml"
+    mine.write_text('V = "v"', encoding="utf-8")
+    run("--only", "26,30", "--notation", str(mine), "--format", "md,tex,bib", "-o", str(tmp_path))
+    text = (tmp_path / "derivations.md").read_text(encoding="utf-8")
+    assert not re.search(r"<(?!https://doi)", re.sub("`.*`", "", text))
+    assert r"\lt" in text
+    for kind in ("tex", "bib"):
+        assert not re.search(
+            "[中\u202e]", (tmp_path / f"derivations.{kind}").read_text(encoding="utf-8")
+        )
+
+
 def test_numbers_stand_in_every_format_that_carries_text(tmp_path):
     run("--only", "29", "--numbers", "--format", "tex,html,md,ipynb,json", "-o", str(tmp_path))
     for name in ("derivations.tex", "derivations.md", "derivations.ipynb", "derivations.json",
@@ -234,6 +263,22 @@ def test_letters_are_applied_everywhere(tmp_path):
         ('a = "V"', "that letter already stands for V"),
         ('a = "e"\nx = "e"', "that letter already stands for"),
         ('a = "b + 1"', "expected one symbol"),
+        *(
+            (f"V = '{letter}'", "expected one symbol")
+            for letter in (
+                "x_{&}",
+                "x_{%}",
+                "x_{a_b_c}",
+                "x_{^}",
+                "x^*_1^*",
+                "l_{\u202er}",
+                "x_ä",
+                r"\varalpha",
+                r"x_{\foo}",
+                r"x_{\input{a}}",
+                "x_{<img src=x onerror=alert(1)>}",
+            )
+        ),
         ("a = 1", "expected text"),
         ("a = ", "not TOML"),
     ],

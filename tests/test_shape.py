@@ -111,7 +111,10 @@ def test_it_says_where_closed_forms_end():
         "x**13", "x**2/0", "sin(x)", "x.real", "x[0]", "lambda: 1", "__import__('os').system('true')",
         "abs(x, x)", "abs(x)(x)", "f'{x}'", "x if x else x", "(x for x in x)", "a*x**2", "K*x**2", "x**2;x",
         "True*x**2", "9**9**9*x**2", "x**2" + " " * 300, "'x'", "x**2 == 1", "x := 1", "1e999*x**2",
-        "x**2**9",
+        "x**2**9", "x**2 # <img>", "x**2\n", "x_abs*x**2", "xbar*x**2", "W_ahead*x**2", "q_root*x**2",
+        "pi*x**2", "E_A*x**2", "(((2**12)**12)**12)**12*x**2",
+        "(a1+a2+a3+a4+a5+a6+a7+a8+a9+b1+b2+b3+b4+b5+b6+b7+b8+b9)**12*x**2",
+        "x**2/(a1+a2+a3+a4+a5+a6+a7+a8+a9+b1+b2+b3+b4+b5+b6+b7+b8+b9)**12",
     ],
 )  # fmt: skip
 def test_what_is_no_shape_is_refused(text):

@@ -11,7 +11,8 @@ from kvtheory.derivations.chapters import (
     transient_motion,
     transient_rates,
 )
-from kvtheory.derivations.chapters.transient_scaling import LEADING, PRESSURE, TRAILING
+from kvtheory.derivations.chapters.steady import LEADING, TRAILING
+from kvtheory.derivations.chapters.transient_scaling import PRESSURE
 from kvtheory.derivations.engine.book import established
 from kvtheory.derivations.engine.step import Proof, StepError
 

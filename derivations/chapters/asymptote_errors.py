@@ -19,7 +19,6 @@ from .theorems import (
     FRICTION_FORCE,
     LOAD,
     NUMBER,
-    RATIO,
     UNIT,
     A,
     B,
@@ -146,7 +145,7 @@ _IN_Q = {**_F1, l: NUMBER}
 
 def _recall(proof: Proof, ratio: sp.Expr) -> None:
     """Recall the parts of the ratio from theorem F1."""
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     for part in filter(ratio.has, _F1):
         proof.recall("F1", part)
 

@@ -37,10 +37,6 @@ critical_dead_weight = alpha ** (2 * third) * (R * K**2 * W) ** third / C
 LOW_LOAD = r"2 \alpha R^{1/2} K \delta^{3/2}"
 LOW_FRICTION = r"2 \alpha R^{-1/2} C V \delta^{3/2}"
 HIGH_FRICTION = r"\alpha R^{-1/2} C V \delta^{3/2}"
-HIGH_FIXED = r"\alpha \sqrt{\frac{\delta}{R}}"
-HIGH_DEAD_WEIGHT = r"\alpha \sqrt{\frac{W}{R C V}}"
-CRITICAL_FIXED = r"\frac{\alpha K \sqrt{R \delta}}{C}"
-CRITICAL_DEAD_WEIGHT = r"\frac{\alpha^{2/3} \sqrt[3]{R K^2 W}}{C}"
 
 _SHAPE = x**2 / (2 * R)
 _compression = delta - h(x)
@@ -65,7 +61,6 @@ def _recall_coefficient(proof: Proof) -> None:
 
 def _estimate(
     proof: Proof, force: sp.Symbol, integrand: sp.Expr, integral: str, low: bool, leading: sp.Expr,
-    shown: str,
 ) -> None:  # fmt: skip
     """Evaluate the integral of the paper, and compare it with the exact force."""
     proof.recall("eq3")
@@ -74,35 +69,35 @@ def _estimate(
     inner = sp.Poly(integrand.subs(h(x), _SHAPE).doit(), x)
     reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
     proof.integral(sp.Integral(integrand, over), integrand, over, inner.integrate(x).as_expr(), reason,
-                   value=leading, left=integral, right=shown)  # fmt: skip
+                   value=leading, left=integral)  # fmt: skip
     point, small = (_low, l_r / a) if low else (_high, a / l_r)
     if force == F:
         spring = low_load if low else low_load / 2
         reason = f"what the spring carries: {'all' if low else 'half'} of the load at rest"
         proof.define(load_excess, W - C * V * delta, "F21 needs the load without the damper's part")
         proof.leading_order(load_excess, spring, *point, reason, eps=small)
-        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
-    proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
+        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that")
+    proof.leading_order(force, leading, *point, "the exact force", eps=small)
 
 
-_Case = tuple[int, str, sp.Symbol, sp.Expr, str, sp.Expr, str]
+_Case = tuple[int, str, sp.Symbol, sp.Expr, str, sp.Expr]
 
 
 def _estimates(low: bool, cases: tuple[_Case, ...]) -> None:
     """Add the estimates of the paper for low or high velocity."""
-    for number, force_name, force, integrand, integral, leading, shown in cases:
+    for number, force_name, force, integrand, integral, leading in cases:
         result(
             f"eq{number}", title=f"{force_name} at {'low' if low else 'high'} velocity",
             text=r"Here $\alpha = 2\sqrt{2}/3$; the remainder is that of the exact force.",
             notation={"u": _compression, r"\dot{u}": _rate},
-            force=force, integrand=integrand, integral=integral, low=low, leading=leading, shown=shown,
+            force=force, integrand=integrand, integral=integral, low=low, leading=leading,
         )(_estimate)  # fmt: skip
 
 
 _estimates(True, (
-    (40, "Load", W, K * _compression, r"\int_{-a}^{a} K u \, \mathrm{d}x", low_load, LOW_LOAD),
+    (40, "Load", W, K * _compression, r"\int_{-a}^{a} K u \, \mathrm{d}x", low_load),
     (41, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{a} -h' C \dot{u} \, \mathrm{d}x",
-     low_friction, LOW_FRICTION),
+     low_friction),
 ))  # fmt: skip
 
 
@@ -120,9 +115,9 @@ def _low_coefficient(proof: Proof) -> None:
 
 
 _estimates(False, (
-    (43, "Load", W, C * _rate, r"\int_{-a}^{0} C \dot{u} \, \mathrm{d}x", high_load, r"C V \delta"),
+    (43, "Load", W, C * _rate, r"\int_{-a}^{0} C \dot{u} \, \mathrm{d}x", high_load),
     (44, "Friction force", F, -h(x).diff(x) * C * _rate, r"\int_{-a}^{0} -h' C \dot{u} \, \mathrm{d}x",
-     high_friction, HIGH_FRICTION),
+     high_friction),
 ))  # fmt: skip
 
 
@@ -131,8 +126,8 @@ def _high_coefficient(proof: Proof) -> None:
     """Friction coefficient at high velocity, fixed indenter."""
     _recall_coefficient(proof)
     proof.equal(sp.UnevaluatedExpr(high_friction / high_load), high_coefficient, "Eqs. (43) and (44)",
-                left=rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", right=HIGH_FIXED)  # fmt: skip
-    proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r, right=HIGH_FIXED)
+                left=rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}")  # fmt: skip
+    proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r)
 
 
 @result("eq46")
@@ -144,37 +139,32 @@ def _high_dead_weight(proof: Proof) -> None:
     """
     _recall_coefficient(proof)
     reason = "exact $F/W$ at the load $W$"
-    proof.leading_order(mu, high_coefficient_dead_weight, *_high, reason, eps=a / l_r,
-                        right=HIGH_DEAD_WEIGHT)  # fmt: skip
-    proof.define(V_star, critical_dead_weight, "a scale of velocity", right=CRITICAL_DEAD_WEIGHT)
-    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "in this scale", eps=_small,
-                        right=HIGH_DEAD_WEIGHT)  # fmt: skip
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, reason, eps=a / l_r)
+    proof.define(V_star, critical_dead_weight, "a scale of velocity")
+    proof.leading_order(mu, high_coefficient_dead_weight, *_high, "in this scale", eps=_small)
 
 
-def _critical(proof: Proof, high: str, critical: sp.Expr, shown: str) -> None:
+def _critical(proof: Proof, high: str, critical: sp.Expr) -> None:
     proof.asymptote("eq42", mu, mu_low)
     proof.asymptote(high, mu, mu_high)
     proof.define(V, V_star, "at the velocity at which")
-    proof.root(mu_low - mu_high, V_star, critical, "the two asymptotes meet", right=shown)
+    proof.root(mu_low - mu_high, V_star, critical, "the two asymptotes meet")
 
 
-def _critical_scale(proof: Proof, source: str, scale: sp.Expr, factor: sp.Expr, shown: str) -> None:
+def _critical_scale(proof: Proof, source: str, scale: sp.Expr, factor: sp.Expr) -> None:
     proof.recall(source)
-    proof.proportional(V_star, scale, factor, "where the two asymptotes meet", right=shown)
+    proof.proportional(V_star, scale, factor, "where the two asymptotes meet")
 
 
-for _number, _label, _name, _term, _value, _shown, _factor, _order in (
-    (47, "critical-fixed", "fixed indenter", "eq45", critical_fixed, CRITICAL_FIXED, alpha,
-     r"\frac{K \sqrt{R \delta}}{C}"),
-    (48, "critical-dead-weight", "dead weight", "eq46", critical_dead_weight, CRITICAL_DEAD_WEIGHT,
-     alpha ** (2 * third), r"\frac{\sqrt[3]{R K^2 W}}{C}"),
+for _number, _label, _name, _term, _value, _factor in (
+    (47, "critical-fixed", "fixed indenter", "eq45", critical_fixed, alpha),
+    (48, "critical-dead-weight", "dead weight", "eq46", critical_dead_weight, alpha ** (2 * third)),
 ):  # fmt: skip
-    result(_label, title=f"Crossing of the asymptotes, {_name}", high=_term, critical=_value, shown=_shown,
+    result(_label, title=f"Crossing of the asymptotes, {_name}", high=_term, critical=_value,
            text=r"The paper gives the order of magnitude; the factor, with $\alpha = 2\sqrt{2}/3$, is new.",
            )(_critical)  # fmt: skip
     result(f"eq{_number}", title=f"Critical velocity, {_name}", source=_label, scale=_value / _factor,
-           text=rf"The factor is that of ({_label}).", factor=_factor,
-           shown=_order)(_critical_scale)  # fmt: skip
+           text=rf"The factor is that of ({_label}).", factor=_factor)(_critical_scale)  # fmt: skip
 
 
 @result("eq49")
@@ -198,6 +188,5 @@ def _vanishing_friction(proof: Proof) -> None:
     _recall_coefficient(proof)
     proof.recall("critical-dead-weight")
     limit = C * V_star / (R * K) * (V_star / V) ** sp.Rational(1, 2)
-    shown = r"\frac{C V^{*}}{R K} \sqrt{\frac{V^{*}}{V}}"
     reason = r"tends to 0 as $V/V^{*} \to \infty$"
-    proof.leading_order(mu, limit, *_high, reason, eps=_small, right=shown)
+    proof.leading_order(mu, limit, *_high, reason, eps=_small)

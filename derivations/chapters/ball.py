@@ -246,7 +246,7 @@ def _balance(proof: Proof) -> None:
                 left=r"s \frac{\partial \tilde f}{\partial s}")  # fmt: skip
     proof.define(ball_scaled_ss, curve, r"$d^2 \tilde f/d (\ln s)^2$")
     of_slope = slope.subs(theta, angle)
-    proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "once more",
+    proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "the second derivative",
                 left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
     proof.recall("F20-loss", at={l: lam / s})
     gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI

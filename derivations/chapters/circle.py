@@ -16,7 +16,6 @@ from .steady import a, l, q
 from .theorems import (
     FRICTION_COEFFICIENT,
     NUMBER,
-    RATIO,
     UNIT,
     A,
     B,
@@ -98,7 +97,7 @@ def _fixed(proof: Proof) -> None:
     c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to $O(\varepsilon^2)$. The pressure vanishes at the
     trailing edge, whose shift therefore has no effect to this order; at the leading edge it does not vanish.
     """
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
     proof.equal(
         change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"

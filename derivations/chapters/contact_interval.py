@@ -57,7 +57,7 @@ def _condition(proof: Proof) -> None:
     margin = sp.exp(time) * (now - h(place)) - sp.exp(earlier) * (then - h(place - m))
     form = sp.exp(time) * ((now - E * then) + (-h(place) + E * h(place - m)))
     proof.notation |= {"D_1": margin, "f": sp.Lambda(place, E * h(place - m) - h(place))}
-    proof.define(E, sp.exp(earlier - time), "less than 1", right="e^{-(s - s_1)}")
+    proof.define(E, sp.exp(earlier - time), "less than 1")
     proof.equal(
         margin,
         form,
@@ -221,8 +221,8 @@ def _two_slopes(proof: Proof) -> None:
     for place, value, what in (
         (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
         (0, "1/8", "in contact again"),
-        ("-19/16", 0, "the edges of the one contact"), ("-5/8", 0, "likewise"),
-        ("-1/4", 0, "the edges of the other"), ("1/12", 0, "likewise"),
+        ("-19/16", 0, "left edge of one contact"), ("-5/8", 0, "its right edge"),
+        ("-1/4", 0, "left edge of the other"), ("1/12", 0, "its right edge"),
     ):  # fmt: skip
         where, found = sp.Rational(place), sp.Rational(value)
         proof.equal(lead(where), found, what, left=rf"D({sp.latex(where)})")

@@ -7,7 +7,7 @@ from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, R, V, delta, h, t, t_0, u_i, x
 from .steady import F, a, l, l_r, q, x_le, x_te
-from .theorems import NUMBER, RATIO, UNIT, B, phi
+from .theorems import NUMBER, UNIT, B, phi
 
 F_elastic, F_viscous, eta = symbols(r"""
     -          u_{\mathrm{TE}}  m    compression at the trailing edge
@@ -109,7 +109,7 @@ def _parabola(proof: Proof) -> None:
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
     proof.recall("eq28", delta)
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.recall("F1", phi)
     proof.recall("F1", F)
     proof.integral(

@@ -13,7 +13,7 @@ from ..engine.step import Proof
 from .asymptotics import alpha, mu_high, mu_high_weight, mu_low
 from .model import K, R, V, delta, tau
 from .steady import Lambda, W, a, l, l_r, mu, q
-from .theorems import RATIO, SECTION, UNIT, A, B, m, w
+from .theorems import SECTION, UNIT, A, B, m, w
 
 Lambda_peak, mu_peak, Lambda_fixed, Lambda_weight, X, Y, T, mu_max, V_max = symbols(r"""
     Lambda_peak  \Lambda_{\max}    1    scaled velocity at the friction maximum of a dead weight
@@ -56,8 +56,12 @@ def _master_curve(proof: Proof) -> None:
     """
     quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
     relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
-    proof.crossing(DRIVE_CUBED - X, UNIT, "one state for each velocity: this falls with $q$")
-    proof.recall("scaling", reason=RATIO)
+    proof.crossing(
+        DRIVE_CUBED - X,
+        UNIT,
+        r"it falls from $\infty$ at $q = 0$: exactly one root, one state for each velocity",
+    )
+    proof.recall("scaling")
     proof.recall("F1", w)
     proof.recall("F1")
     proof.define(V, l * a / tau, "Eq. (29)")
@@ -91,7 +95,7 @@ def _peak(proof: Proof) -> None:
     proof.recall("F2", Y)
     proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
     proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
-    proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
+    proof.unique_root(parabola, UNIT, "positive at $q = 0$, negative at $q = 1$")
     proof.root(parabola, q, PEAK, "friction maximum", over=UNIT)
 
 
@@ -100,7 +104,7 @@ def _peak_values(proof: Proof) -> None:
     """Values at the friction maximum."""
     third = sp.cbrt(3 - sp.sqrt(3))
     proof.recall("F3")
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
     proof.recall("F1")
     proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
@@ -144,20 +148,17 @@ def _expansion(
     first: sp.Expr,
     second: sp.Expr,
     last: sp.Expr,
-    shown: str,
 ) -> None:
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.recall("F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
-    proof.leading_order(m - first - second, last, q, end, "the remainder after two terms", eps=small,
-                        left=shown)  # fmt: skip
+    proof.leading_order(m - first - second, last, q, end, "what two terms leave", eps=small)
 
 
 result("F4-low", title="Friction coefficient at low velocity: series", end=1, small=l, first=l,
-       second=-3 * l**2 / 4, last=9 * l**4 / 16, shown=r"m - l + \frac{3}{4} l^2")(_expansion)  # fmt: skip
+       second=-3 * l**2 / 4, last=9 * l**4 / 16)(_expansion)  # fmt: skip
 result("F4-high", title="Friction coefficient at high velocity: series", end=0, small=1 / l,
-       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2),
-       shown=r"m - \frac{2}{3} + \frac{7}{36 l}")(_expansion)  # fmt: skip
+       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2))(_expansion)  # fmt: skip
 
 
 @result("F5")
@@ -172,13 +173,14 @@ def _intersections(proof: Proof) -> None:
         proof.asymptote(label, mu, name)
     reached = "fixed indenter: 1 at"
     proof.equal(mu_low / mu_high, V * tau / sp.sqrt(R * delta) / alpha, reached)
-    proof.root(Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed,
-               right=r"\alpha")  # fmt: skip
+    proof.root(
+        Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed
+    )
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
     proof.equal((mu_low / mu_high_weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
     proof.root(
         *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
-        name=Lambda_weight, right=r"\alpha^{2/3}",
+        name=Lambda_weight,
     )  # fmt: skip
     proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3

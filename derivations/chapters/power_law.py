@@ -174,7 +174,7 @@ def _coefficient(proof: Proof) -> None:
     proof.define(W, K * delta * a * w_n, "load")
     proof.recall("eq37")
     proof.define(m_n, mu * a / delta, r"$\mu$ in units of $\delta/a$")
-    proof.equal(m_n, phi_n / w_n, "the same")
+    proof.equal(m_n, phi_n / w_n, r"$\mu = F/W$")
     proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")
 
 
@@ -214,7 +214,7 @@ def _energy(proof: Proof) -> None:
     for name, end, where in zip(
         inside, (1, q), (r"$K l_{\mathrm{r}} h'^2$, ahead of the tip", "behind it"), strict=True
     ):
-        proof.integral(name, density, (y, 0, end), primitive, where)  # fmt: skip
+        proof.integral(name, density, (y, 0, end), primitive, where)
     form = 2 * (1 + q * Q**2) / (2 * (1 + q * Q**2) + (2 * n - 1) * l * Q**2)
     proof.define(eta_n, (lost_ahead + lost_behind) / phi_n, "by definition")
     proof.recall("F19-friction")

@@ -11,8 +11,18 @@ from sympy.codegen.cfunctions import expm1, log1p
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
-from ..engine.step import Proof, tex
-from .power_law import SECTION, Q, excess, in_q, n, phi_n, w_n, y, z
+from ..engine.step import Proof
+from .power_law import (
+    SECTION,
+    Q,
+    excess,
+    in_q,
+    n,
+    phi_n,
+    w_n,
+    y,
+    z,
+)
 from .power_law_limits import m_high, m_low, w_rest
 from .steady import l, q
 
@@ -135,29 +145,15 @@ def _peeled(proof: Proof) -> None:
     """
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
-    proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
+    proof.define(logarithm, sp.log(1 - z), "accurate for small $z$")
     for power in (edge, slope):
-        proof.notation[rf"\operatorname{{expm1}} {_brace(power)}"] = power
-    proof.define(
-        logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
-    )
-    for power in (edge, slope):
-        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments",
-                     left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
+        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments")
     in_q(proof)
     proof.define(z, 1 - q**n, "$z = n l Q$")
     proof.define(gap_edge, 1 - q, "the peeled part of the outlet side")
-    proof.equal(
-        gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
-    )
+    proof.equal(gap_edge, -edge, "without a difference")
     proof.define(gap_slope, 1 - Q, "the decrease of the slope there")
-    proof.equal(gap_slope, -slope, "without a difference",
-                right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
-
-
-def _brace(power: sp.Expr) -> str:
-    shown = tex(power.args[0].subs(log1p(-z), sp.Symbol("LOG")))
-    return r"\left(" + shown.replace("LOG", r"\operatorname{log1p}(-z)") + r"\right)"
+    proof.equal(gap_slope, -slope, "without a difference")
 
 
 @result("F19-bend")

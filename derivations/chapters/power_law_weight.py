@@ -98,7 +98,7 @@ def _balance(proof: Proof) -> None:
     proof.equal(elasticity - n, above, "more than for the damper alone")
     proof.equal(n + 1 - elasticity, below, "less than for the spring alone")
     proof.holds(above, ">", 0, "a quotient of positive terms")
-    proof.holds(below, ">", 0, "likewise")
+    proof.holds(below, ">", 0, "a quotient of positive terms")
     proof.done(elasticity - n, above)
 
 

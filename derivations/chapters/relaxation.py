@@ -293,7 +293,7 @@ def _interval(proof: Proof) -> None:
     u, stiff = left_behind, K + spring_1 + spring_2
     pressure = K * u + spring_1 * (u - damper_1) + spring_2 * (u - damper_2)
     proof.define(share_1, spring_1 / stiff, "share of an arm in the glassy stiffness")
-    proof.define(share_2, spring_2 / stiff, "likewise")
+    proof.define(share_2, spring_2 / stiff, "share of the other arm")
     free = share_1 * damper_1 + share_2 * damper_2
     proof.equal(pressure, stiff * (u - free), r"the pressure: a free surface is at this mean")
     proof.where(on_off < 1, "free for 0; for 1, in contact, what follows is 0")

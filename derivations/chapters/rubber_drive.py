@@ -129,7 +129,7 @@ def _arm(proof: Proof) -> None:
                           -z * sp.exp(-m * v) / m, "what the arm has forgotten of it",
                           value=z * (1 - sp.exp(-m * y)) / m)  # fmt: skip
     proof.define(fading_depth, 1 - lost, "the pressure for a change of depth")
-    proof.equal(fading_depth, ALPHA, "its value")
+    proof.equal(fading_depth, ALPHA, "one less what is forgotten")
     dragged = z * sp.exp(-z * v) * (y - b - v) * (1 - sp.exp(-sigma * v))
     primitive = -(y - b - v - 1 / z) * sp.exp(-z * v) + z / m * (y - b - v - 1 / m) * sp.exp(-m * v)
     proof.integral(fading_drag, dragged, (v, 0, y), primitive,

@@ -63,9 +63,7 @@ MOMENTS = {
 
 
 def _slide(proof: Proof) -> None:
-    proof.notation |= {r"x_{\mathrm{LE}}": le_t(t), r"x_{\mathrm{TE}}": te_t(t), "s_i": stress_i}
-    proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element",
-                 left=r"\dot{Y}", right="v")  # fmt: skip
+    proof.define(Y_t.diff(t), v_t, r"$\xi = x - Y$ names an element")
 
 
 @result("F23-stress")
@@ -78,27 +76,19 @@ def _stress(proof: Proof) -> None:
     """
     _slide(proof)
     compression = delta_t - (xi + Y_t) ** 2 / (2 * R)
-    proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact",
-                left=r"\frac{d}{dt} \left[\delta - \frac{(\xi + Y)^2}{2 R}\right]",
-                right=_STRAINED)  # fmt: skip
-    for name, right in ((alpha_i, r"\dot{\delta} - \frac{v Y}{R} - \frac{\alpha_i}{\tau_i}"),
-                        (beta_i, r"v - \frac{\beta_i}{\tau_i}")):  # fmt: skip
-        left = rf"\dot{{{sp.latex(sp.Symbol(name.__name__[:-2]))}}}_i"
-        proof.define(name(t).diff(t), ACCUMULATE[name], "an accumulator", left=left, right=right)
+    proof.equal(sp.Derivative(compression, t), RATE, "rate of compression in the contact")
+    for name in (alpha_i, beta_i):
+        proof.define(name(t).diff(t), ACCUMULATE[name], "an accumulator")
     proof.define(E_i, sp.exp(-(t_1 - t_in) / tau_i), "what is left at $t_1$ of a stress at entry")
     fades = K_i * sp.exp(-(t_1 - t) / tau_i)
     over = (t, t_in, t_1)
     whole, primitive = sp.Integral(fades * RATE, over), fades * (alpha_i(t) - xi / R * beta_i(t))
     proof.integral(whole, fades * RATE, over, primitive, "stress $s_i$ of the arm", value=STRESS,
                    left=r"\int_{t_{\mathrm{in}}}^{t_1} K_i e^{-(t_1 - t)/\tau_i} "
-                   rf"\left({_STRAINED}\right) \, dt", right=_SHOWN)  # fmt: skip
+                   rf"\left({_STRAINED}\right) \, dt")  # fmt: skip
 
 
 _STRAINED = r"\dot{\delta} - \frac{(\xi + Y) v}{R}"
-_SHOWN = (
-    r"K_i \left[\alpha_i(t_1) - E_i \alpha_i(t_{\mathrm{in}}) - \frac{\xi}{R} \left(\beta_i(t_1) "
-    r"- E_i \beta_i(t_{\mathrm{in}})\right)\right]"
-)
 
 
 @result("F23", uses=("F23-stress",))
@@ -110,36 +100,19 @@ def _moments(proof: Proof) -> None:
     """
     _slide(proof)
     stress, over = stress_i(xi, t), (xi, le_t(t) - Y_t, te_t(t) - Y_t)
-    ends = r"\int_{x_{\mathrm{LE}} - Y}^{x_{\mathrm{TE}} - Y}"
-    proof.define(stress.diff(t), K_i * RATE - stress / tau_i, "the arm is strained, and relaxes",
-                 right=rf"K_i \left[{_STRAINED}\right] - \frac{{s_i(\xi, t)}}{{\tau_i}}")  # fmt: skip
-    proof.define(stress_i(le_t(t) - Y_t, t), sp.S.Zero, "an element enters without stress",
-                 left=r"s_i(x_{\mathrm{LE}} - Y, t)")  # fmt: skip
-    for name, power, density in ((S_i, 0, "s_i"), (T_i, 1, r"(\xi + Y) s_i")):
-        proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact",
-                     left=str(name.func), right=rf"{ends} {density}(\xi, t) \, d\xi")  # fmt: skip
-    for n, (name, density) in enumerate(zip(I_n, ("1", r"(\xi + Y)", r"(\xi + Y)^2"), strict=True)):
-        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "likewise",
-                     right=rf"{ends} {density} \, d\xi")  # fmt: skip
-    for name, right in (
-        (S_i, r"-\frac{S_i}{\tau_i} + K_i \left(\dot{\delta} I_0 - \frac{v I_1}{R}\right) + "),
-        (T_i, r"-\frac{T_i}{\tau_i} + v S_i + K_i \left(\dot{\delta} I_1 - \frac{v I_2}{R}\right) "
-              r"+ x_{\mathrm{TE}} "),
-    ):  # fmt: skip
-        proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge",
-                    left=rf"\dot{{{name.func.__name__[0]}}}_i", right=right + _LEAVES)  # fmt: skip
+    proof.define(stress.diff(t), K_i * RATE - stress / tau_i, "the arm is strained, and relaxes")
+    proof.define(stress_i(le_t(t) - Y_t, t), sp.S.Zero, "an element enters without stress")
+    for name, power in ((S_i, 0), (T_i, 1)):
+        proof.define(name, sp.Integral((xi + Y_t) ** power * stress, over), "over the contact")
+    for n, name in enumerate(I_n):
+        proof.define(name, sp.Integral((xi + Y_t) ** n, over), "moments of the contact")
+    for name in (S_i, T_i):
+        proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge")
     for n, name in enumerate(I_n):
         value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
-        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "evaluated",
-                       value=value, right=_POWERS[n])  # fmt: skip
+        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "an integral of a power",
+                       value=value)  # fmt: skip
     proof.done(T_i.diff(t), MOMENTS[T_i])
-
-
-_LEAVES = r"s_i(x_{\mathrm{TE}} - Y, t) \left(\dot{x}_{\mathrm{TE}} - v\right)"
-_POWERS = (
-    r"x_{\mathrm{TE}} - x_{\mathrm{LE}}",
-    *(rf"\frac{{x_{{\mathrm{{TE}}}}^{n} - x_{{\mathrm{{LE}}}}^{n}}}{{{n}}}" for n in (2, 3)),
-)
 
 
 @result("F23-edge", uses=("F23-stress",))

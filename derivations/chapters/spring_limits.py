@@ -79,9 +79,7 @@ def _flutter(proof: Proof) -> None:
     proof.holds(apart, ">", 0, "all terms are positive")
     proof.define(onset_sum, bias - 2 * T_z * rise)
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
-                r"$\check n > 0$ at the lower and below: no positive $\Omega$ either",
-                left=r"\left. \check n \right|_{\vartheta_z = \check h/(\sqrt{\varrho_z} "
-                r"+ \sqrt{\check e})^2}")  # fmt: skip
+                r"$\check n > 0$ at the lower and below: no positive $\Omega$ either")  # fmt: skip
     proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
                 left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
     proof.where(sp.Gt(SQUARE, 0))
@@ -90,7 +88,11 @@ def _flutter(proof: Proof) -> None:
     proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
     proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
     proof.define(lag_minus, S_z - T_z * Omega_minus)
-    proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z), "likewise")
+    proof.equal(
+        lag_minus,
+        (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z),
+        "a sum of positive terms",
+    )
     proof.done(SQUARE, form)
 
 

@@ -113,7 +113,7 @@ def _numbers(proof: Proof) -> None:
     proof.define(right, a * q)
     proof.define(B_z, 3 * a * (1 + q) / 4, "the damping of the contact across the foundation")
     proof.define(B_x, a**3 * (1 + q) * PEELED, "and along it")
-    proof.equal(right**3 + a**3, B_x, "indeed")
+    proof.equal(right**3 + a**3, B_x, "as in F22-forces")
     proof.define(damper_share, damper / B_x)
     proof.define(T_z, eps / B_z)
     proof.define(T_x, eps_x / (B_x + damper))
@@ -153,7 +153,7 @@ def _routh(proof: Proof) -> None:
     series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
     proof.equal(SCALED, series, "by powers of the rate")
     proof.define(hurwitz, HURWITZ, "the determinant of Hurwitz")
-    proof.equal(_a2 * _a3 - _a1 * _a4, REST, "one part of it")
+    proof.equal(_a2 * _a3 - _a1 * _a4, REST, "its bracket: a sum of positive terms")
     proof.holds(REST, ">", 0, r"so $\check H > 0$ says that $\varrho_x + \check e > 0$, too")
     proof.define(bias, uncoupled - T_z * coupling * S_c)
     square = (2 * T_z**2 * S_x + (T_z + T_x) * bias - 2 * T_z * T_x * rise) ** 2
@@ -179,9 +179,7 @@ def _onset(proof: Proof) -> None:
     real = _a4 * Omega**2 - _a2 * Omega + _a0
     proof.equal(real, -ONSET, r"its real part does not hold $\vartheta_x$ and $\varrho_x$")
     lag = S_z - T_z * Omega
-    proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "another form of it",
-                left=r"(\varrho_z - \vartheta_z \Omega)^2 + \check h \Omega - \check g \varrho_{\mathrm{c}} "
-                r"(\varrho_z - \vartheta_z \Omega)")  # fmt: skip
+    proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "complete square")
     proof.done(real, -ONSET)
 
 

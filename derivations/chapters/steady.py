@@ -1,9 +1,9 @@
-"""Steady sliding: edges, pressure, load and friction, exactly (Eqs. 26-32 and 34-39)."""
+"""Steady sliding: edges, pressure, load and friction, exactly (Eqs. 26-39)."""
 
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, symbols
+from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import (
     C,
@@ -61,98 +61,16 @@ drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
 """Lambda**3 of the dead-weight indenter."""
 
 CONTACT = (x, x_le, x_te)
+_half = sp.sqrt(2 * R * delta_t)
+_x_minus = symbol("x_-", "smaller zero of the pressure", "m", latex="x_{-}", real=True)
+_x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
+"""Zeros of the pressure; x_TE may be negative under an indenter that moves."""
+TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+"""Eq. 33: the zeros of the pressure."""
+LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+
 SECTION = "Steady sliding"
 result = Chapter(SECTION)
-
-
-def _force_per_area(proof: Proof, labels: tuple[str, ...], depth: sp.Expr, shown: str) -> None:
-    """Define the pressure, and show that it is N times the force of the element at each place."""
-    for label in ("eq3", "eq12", *labels):
-        proof.recall(label)
-    proof.recall("eq22", k, c)
-    whole = K * (depth - h(x)) + C * (depth.diff(t) - V * h(x).diff(x))
-    proof.define(p, whole, "force per area of a dense row", right=shown)
-    reason = "$N$ elements per length, each with this force"
-    proof.equal(sp.Subs(p, x, x_i), N * f_z, reason)
-
-
-@result("pressure", after=("eq29",))
-def _pressure(proof: Proof) -> None:
-    """Pressure in the contact.
-
-    Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
-    indenters. The retardation length is that of Eq. (29), which follows.
-    """
-    _force_per_area(proof, ("eq4", "eq5"), delta, r"K \left(\delta - h(x)\right) - C V h'(x)")
-    for label in ("eq22", "eq29"):
-        proof.recall(label)
-    proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
-
-
-@result("pressure-moving")
-def _moving_pressure(proof: Proof) -> None:
-    """Pressure under a moving indenter.
-
-    At every instant of every motion.
-    """
-    shown = r"K \left(\delta(t) - h(x)\right) + C \left(\dot\delta(t) - V h'(x)\right)"
-    _force_per_area(proof, ("eq6", "eq7"), delta_t, shown)
-
-
-@result("dense-row")
-def _dense_row(proof: Proof) -> None:
-    r"""A dense row of elements.
-
-    The elements stand $1/N$ apart, and $N$ is so large that sums over those in contact are integrals over the
-    contact: of $p = N f_{zi}$, and by Eq. (13) of $-h' p = N f_{xi}$.
-    """
-    number, along = sp.Symbol("i", integer=True), -h(x).diff(x) * p
-    proof.recall("eq13")
-    proof.define(p.subs(x, x_i), N * f_z, "force per area")
-    proof.equal(-slope * p.subs(x, x_i), N * f_x, "along the foundation, by Eq. (13)")
-    for label, total, name, density in (("eq14", F_z, "f_z", p), ("eq15", F_x, "f_x", along)):
-        every = sp.Sum(sp.IndexedBase(name)[number], (number, 1, sp.oo))
-        proof.define(every, sp.Integral(density, CONTACT), r"a Riemann sum, as $1/N \to 0$")
-        proof.recall(label)
-        proof.equal(total, sp.Integral(density, CONTACT), "the total force")
-
-
-@result("eq26", after=("eq28",), notation={"p": sp.Lambda(x, pressure)})
-def _leading_edge(proof: Proof) -> None:
-    """Leading edge.
-
-    The leading edge is where the undisturbed surface meets the indenter. The half length and the retardation
-    length are those of Eqs. (28) and (29), which follow.
-    """
-    proof.recall("eq28")
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
-    at_edge = pressure.subs(x, -a)
-    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
-    s = sp.Symbol("s", positive=True)
-    reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
-    proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
-    proof.done(x_le, -a)
-
-
-@result("eq27", notation={"p": sp.Lambda(x, pressure)})
-def _trailing_edge(proof: Proof) -> None:
-    """Trailing edge.
-
-    The trailing edge is where the pressure vanishes; it is the only such point of the contact. The half
-    length is that of Eq. (28), which follows.
-    """
-    proof.recall("eq28")
-    proof.recall("pressure")
-    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
-    ahead = pressure.subs(x, -a)
-    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
-    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
-    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
-               over=(x, -a, sp.oo), name=x_te,
-               right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
 
 
 @result("eq28")
@@ -164,7 +82,6 @@ def _half_length(proof: Proof) -> None:
         *(h(x) - delta, x, half_length, reason),
         over=(x, 0, sp.oo),
         name=a,
-        right=r"\sqrt{2 R \delta}",
     )
     proof.equal(delta, a**2 / (2 * R), "solved for the depth")
     proof.done(a, half_length)
@@ -189,6 +106,92 @@ def _retardation_length(proof: Proof) -> None:
     proof.recall("eq22")
     proof.equal(C, K * l_r / V, "with Eq. (22), solved for the damping")
     proof.done(l_r, V * tau)
+
+
+def _force_per_area(proof: Proof, labels: tuple[str, ...], depth: sp.Expr) -> None:
+    """Define the pressure, and show that it is N times the force of the element at each place."""
+    for label in ("eq3", "eq12", *labels):
+        proof.recall(label)
+    proof.recall("eq22", k, c)
+    whole = K * (depth - h(x)) + C * (depth.diff(t) - V * h(x).diff(x))
+    proof.define(p, whole, "force per area of a dense row")
+    reason = "$N$ elements per length, each with this force"
+    proof.equal(sp.Subs(p, x, x_i), N * f_z, reason)
+
+
+@result("pressure")
+def _pressure(proof: Proof) -> None:
+    """Pressure in the contact.
+
+    Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same under both
+    indenters.
+    """
+    _force_per_area(proof, ("eq4", "eq5"), delta)
+    for label in ("eq22", "eq29"):
+        proof.recall(label)
+    proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
+
+
+@result("pressure-moving")
+def _moving_pressure(proof: Proof) -> None:
+    """Pressure under a moving indenter.
+
+    At every instant of every motion.
+    """
+    _force_per_area(proof, ("eq6", "eq7"), delta_t)
+
+
+@result("dense-row")
+def _dense_row(proof: Proof) -> None:
+    r"""A dense row of elements.
+
+    The elements stand $1/N$ apart, and $N$ is so large that sums over those in contact are integrals over the
+    contact: of $p = N f_{zi}$, and by Eq. (13) of $-h' p = N f_{xi}$.
+    """
+    number, along = sp.Symbol("i", integer=True), -h(x).diff(x) * p
+    proof.recall("eq13")
+    proof.define(p.subs(x, x_i), N * f_z, "force per area")
+    proof.equal(-slope * p.subs(x, x_i), N * f_x, "along the foundation, by Eq. (13)")
+    for label, total, name, density in (("eq14", F_z, "f_z", p), ("eq15", F_x, "f_x", along)):
+        every = sp.Sum(sp.IndexedBase(name)[number], (number, 1, sp.oo))
+        proof.define(every, sp.Integral(density, CONTACT), r"a Riemann sum, as $1/N \to 0$")
+        proof.recall(label)
+        proof.equal(total, sp.Integral(density, CONTACT), "the total force")
+
+
+@result("eq26", notation={"p": sp.Lambda(x, pressure)})
+def _leading_edge(proof: Proof) -> None:
+    """Leading edge.
+
+    The leading edge is where the undisturbed surface meets the indenter.
+    """
+    proof.recall("eq28")
+    proof.recall("eq3")
+    proof.recall("eq22")
+    proof.recall("eq29")
+    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
+    at_edge = pressure.subs(x, -a)
+    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
+    s = sp.Symbol("s", positive=True)
+    reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
+    proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
+    proof.done(x_le, -a)
+
+
+@result("eq27", notation={"p": sp.Lambda(x, pressure)})
+def _trailing_edge(proof: Proof) -> None:
+    """Trailing edge.
+
+    The trailing edge is where the pressure vanishes; it is the only such point of the contact.
+    """
+    proof.recall("eq28")
+    proof.recall("pressure")
+    proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$")
+    ahead = pressure.subs(x, -a)
+    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
+    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
+    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
+               over=(x, -a, sp.oo), name=x_te)  # fmt: skip
 
 
 @result("scaling")
@@ -259,19 +262,50 @@ def _moving_leading_edge(proof: Proof) -> None:
     proof.done(x_le, -half)
 
 
+@result("eq33")
+def _peeling_edges(proof: Proof) -> None:
+    """Trailing edge of the movable indenter.
+
+    It holds while the edge peels, that is, while elements leave the contact there because their pressure
+    vanishes. The paper gives one zero of the pressure; the other is a leading edge that peels, as occurs when
+    the indenter is lifted faster than the edge advances onto undisturbed ground. If there is no zero, no
+    element can be pressed and the indenter has left the foundation.
+    """
+    half = K / (2 * R)
+    square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
+    for label in ("eq3", "eq22", "eq29"):
+        proof.recall(label)
+    proof.recall("pressure-moving", p)
+    proof.define(a, _half, "now depends on time")
+    proof.equal(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$")
+    proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
+    proof.where(sp.Gt(square, 0), "else no element can be pressed")
+    proof.equal(
+        *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
+        right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
+    )
+    proof.root(
+        *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
+        over=(x, -sp.oo, -l_r), name=_x_minus,
+    )  # fmt: skip
+    proof.root(
+        *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
+        name=_x_plus,
+    )  # fmt: skip
+
+
 @result("eq34")
 def _steadiness(proof: Proof) -> None:
     """Steady sliding."""
-    proof.define(depth_rate, sp.S.Zero, "the depth no longer changes", left=r"\dot{\delta}")
+    proof.define(depth_rate, sp.S.Zero, "the depth no longer changes")
 
 
 @result("eq35")
 def _steady_compression(proof: Proof) -> None:
     """Compression in steady sliding."""
     proof.recall("eq6")
-    proof.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
-    proof.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", left="u_i(t)",
-                right=r"-h(x_i) + \delta")  # fmt: skip
+    proof.define(delta_t, delta, "constant, by Eq. (34)")
+    proof.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)")
 
 
 @result("eq36")
@@ -279,8 +313,7 @@ def _steady_rate(proof: Proof) -> None:
     """Compression rate in steady sliding."""
     proof.recall("eq7")
     proof.recall("eq34")
-    proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)", left=r"\dot{u}_i(t)",
-                right="-h'(x_i) V")  # fmt: skip
+    proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)")
 
 
 @result("eq37")
@@ -348,5 +381,5 @@ def _dead_weight(proof: Proof) -> None:
         proof.recall(label)
     proof.recall("scaling", V, l_r, l)
     drive = V * tau * (K / (R * W)) ** sp.Rational(1, 3)
-    proof.define(Lambda, drive, right=r"V \tau \left(\frac{K}{R W}\right)^{1/3}")
+    proof.define(Lambda, drive)
     proof.equal(Lambda**3, drive_cubed, "$\\delta$ cancels: one number describes the state")

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from ..engine.book import Shown
+from ..engine.book import Shown, tex
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbol
 from ..engine.record import Table
@@ -117,14 +117,14 @@ def _velocity_dependences(proof: Proof) -> None:
     rows = (
         (
             "Critical velocity $V^{*}$",
-            rf"$V^{{*}} = {asy.CRITICAL_FIXED}$ (critical-fixed), in order (47)",
-            rf"$V^{{*}} = {asy.CRITICAL_DEAD_WEIGHT}$ (critical-dead-weight), in order (48)",
+            rf"$V^{{*}} = {tex(asy.critical_fixed)}$ (critical-fixed), in order (47)",
+            rf"$V^{{*}} = {tex(asy.critical_dead_weight)}$ (critical-dead-weight), in order (48)",
         ),
         (r"Friction coefficient for $V \ll V^{*}$", slow, slow),
         (
             r"Friction coefficient for $V \gg V^{*}$",
-            rf"$\mu = {asy.HIGH_FIXED}$ (45)",
-            rf"$\mu = {asy.HIGH_DEAD_WEIGHT}$ (46)",
+            rf"$\mu = {tex(asy.high_coefficient)}$ (45)",
+            rf"$\mu = {tex(asy.high_coefficient_dead_weight)}$ (46)",
         ),
     )
     table = Table(("", "Fixed indenter", "Dead weight"), rows)

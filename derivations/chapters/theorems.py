@@ -58,7 +58,6 @@ PROFILE = 1 - xi**2 - 2 * l * xi
 """p/(K delta) at x = xi a."""
 SCALED_LOAD = s**2 * (s + r + lam**2 / (r + lam)) / 2
 
-RATIO = r"$q = x_{\mathrm{TE}}/a$ is the parameter: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
 result = Chapter(SECTION)
 
 
@@ -71,7 +70,7 @@ def _rational(proof: Proof) -> None:
     """
     proof.recall("scaling", l_r)
     proof.recall("eq28", delta)
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.sign(sp.Derivative(NUMBER, q), "<", 0, UNIT, "each $l > 0$ belongs to one $q$")
     proof.recall("pressure")
     positive = (x, 0, sp.oo)
@@ -88,7 +87,7 @@ def _rational(proof: Proof) -> None:
     ):
         proof.define(scaled, whole / unit, f"scaled {name}")
         proof.equal(scaled, form, f"{name}: rational")
-        proof.equal(whole, scaled * unit, "and back")
+        proof.equal(whole, scaled * unit, "in units of length and force")
     proof.done(m, FRICTION_COEFFICIENT)
 
 
@@ -100,7 +99,7 @@ def _cancellation(proof: Proof) -> None:
     \ll a$. The last forms of $q$, $\varphi$, $m$ and $p$ lose none.
     """
     root = sp.sqrt(1 + l**2)
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.equal(root - l, q, "Eq. (27) as it stands")
     condition = "condition number of this subtraction"
     proof.equal((root + l) / (root - l), q**-2, condition)
@@ -166,7 +165,7 @@ def _scaled_load(proof: Proof) -> None:
     )
     proof.equal(f_s, slope, "positive: a deeper indenter carries more")
     proof.define(
-        *(f_ss, sp.Derivative(slope.subs(r, radius), s), "likewise"),
+        *(f_ss, sp.Derivative(slope.subs(r, radius), s), "second derivative"),
         right=r"\frac{\partial f'}{\partial s}",
     )
     proof.equal(f_ss, 3 * (r + s) ** 2 / (2 * r), "positive")
@@ -187,7 +186,7 @@ def _balance(proof: Proof) -> None:
     proof.crossing(SCALED_LOAD + kappa * (s**2 - 1) - 1, (s, 0, sp.oo), "the depth is unique",
                    slope=3 * s * (s + r) / 2 + 2 * kappa * s)  # fmt: skip
     proof.define(lam, s * l, r"$l = V \tau/a$")
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     proof.recall("scaled-load")
     proof.recall("scaled-load", f_s)
     proof.equal(logarithmic, 6 / A, "the dependence of the load on the depth")

@@ -133,11 +133,7 @@ def _touching(proof: Proof) -> None:
     )  # fmt: skip
     speed = sp.Derivative(edge_path, time)
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
-    proof.notation[r"X_{\mathrm{e}}"] = edge_path
-    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason, right=_SPEED)
-
-
-_SPEED = r"2 (\xi - E \eta) X_{\mathrm{e}}'"
+    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason)
 
 
 @result("F10-signs", uses=("F9", "F10-peel"))
@@ -152,8 +148,7 @@ def _signs(proof: Proof) -> None:
     margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     other = margin.subs(material, material - b)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
-    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
-    proof.notation |= {r"\xi - E \eta": slope}
+    proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
     proof.recall("F10-touch")
     proof.holds(2 * rho * speed, "<", 0,
                 "F10-peel: an element that detaches on the right loses its pressure",
@@ -192,7 +187,6 @@ def _at_once(proof: Proof) -> None:
         *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
         r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
         left=r"\int_{s_0}^{s} e^{\zeta} \left(d(\zeta) + d'(\zeta)\right) d\zeta",
-        right=r"e^{s} d(s) - e^{s_0} d(s_0)",
         value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
@@ -253,15 +247,11 @@ def _gradually(proof: Proof) -> None:
     proof.define(xi, element + travel, "where the element is now")
     proof.define(eta, element + moved, r"and where it was at $\sigma$")
     proof.define(E, sp.exp(sigma - time))
-    proof.define(
-        *(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$"),
-        left=r"d'(\sigma)", right=r"\eta^2 + 2 Y'(\sigma) \eta - d(\sigma)",
-    )  # fmt: skip
+    proof.define(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$")
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
         left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "
         r"g(X_{\mathrm{e}}(\sigma), \sigma)\right]",
-        right=r"-2 e^{s} (\xi - E \eta) X_{\mathrm{e}}'(\sigma)",
     )
 
 

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, letter, symbol, symbols
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .theorems import lam
 from .transient_scaling import PRESSURE, d, d_s, xi
 
@@ -94,7 +94,6 @@ def _memory(proof: Proof) -> None:
         r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: so $e^{s} u$ never decreases",
         value=kept - sp.exp(earlier) * u(earlier),
         left=r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta",
-        right=r"e^{s} u(s) - e^{s_1} u(s_1)",
     )  # fmt: skip
     proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
     at_last = {earlier: sigma}
@@ -105,13 +104,12 @@ def _memory(proof: Proof) -> None:
     proof.where(sp.Gt(time, sigma), "that contact is over")
     proof.greatest(
         *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
-        surplus=pushed + sp.exp(earlier) * _clear(earlier), left="e^{s} u(s)",
+        surplus=pushed + sp.exp(earlier) * _clear(earlier),
     )  # fmt: skip
     value = sp.exp(sigma - time) * g(sigma)
     proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
     since = kept - sp.exp(sigma) * u(sigma)
-    proof.root(*(since, u(time), value, r"the free element since $\sigma$"),
-               right=r"e^{\sigma - s} g(\sigma)")  # fmt: skip
+    proof.root(*(since, u(time), value, r"the free element since $\sigma$"))
 
 
 _BOUND = (
@@ -120,7 +118,7 @@ _BOUND = (
 )
 
 
-@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})
+@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE})
 def _update(proof: Proof) -> None:
     r"""Memory from one instant to the next.
 
@@ -136,7 +134,6 @@ def _update(proof: Proof) -> None:
     proof.equal(
         *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * pressure, _RISES),
         left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
-        right=r"e^{s} \left(d + d' - \xi^2 - 2 \lambda \xi\right)",
     )
     after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
     impulse = sp.Symbol("J", nonnegative=True)
@@ -152,7 +149,6 @@ def _update(proof: Proof) -> None:
     either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
     proof.equal(
         *(after, larger, "free until then, or in contact at the end"), cases=either,
-        right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
     )  # fmt: skip
 
 
@@ -214,13 +210,11 @@ def _interval(proof: Proof) -> None:
     """
     margin = _margin(material)
     curvature = sp.Derivative(margin, (material, 2))
-    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
-               left=r"-2 (\eta - 1)")  # fmt: skip
-    proof.define(eta, sp.exp(time - earlier), right="e^{s - s_1}")
+    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")
+    proof.define(eta, sp.exp(time - earlier))
     proof.equal(
         *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
         left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
-        right=r"-2 e^{s_1} (\eta - 1)",
     )
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements in contact")
@@ -238,7 +232,6 @@ def _between(proof: Proof) -> None:
     """Prove what a difference is between two elements where it is not negative."""
     first, second = sp.symbols("D_1 D_2", real=True)
     for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
-        proof.notation[tex(name)] = name
         proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
     between = _margin(mix * _one + (1 - mix) * _other)
     proof.equal(
@@ -248,8 +241,6 @@ def _between(proof: Proof) -> None:
             "its chord, and how far it bulges above",
         ),
         left=r"D(\theta X_1 + (1 - \theta) X_2)",
-        right=r"\theta D_1 + (1 - \theta) D_2 + \theta (1 - \theta) \left(e^{s} - e^{s_1}\right) "
-        "(X_1 - X_2)^2",
     )
 
 

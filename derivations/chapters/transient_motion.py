@@ -106,16 +106,12 @@ def _edges(proof: Proof) -> None:
     """
     then, moved = sp.symbols("d_0 m", real=True)
     meets = d - _touching**2 - E * (then - (_touching - moved) ** 2)
-    proof.define(
-        eta, _touching - moved, "where the element was when the edge left it", right=r"\xi - m"
-    )
+    proof.define(eta, _touching - moved, "where the element was when the edge left it")
     proof.where(sp.Gt(_touching, E * eta), "a right edge; a left one mirrors it")
     per_depth = 1 / (2 * (_touching - E * eta))
-    shown = r"\frac{1}{2 (\xi - E \eta)}"
-    for variable, value, latex in ((d, per_depth, shown), (d_s, sp.S.Zero, "0")):
+    for variable, value in ((d, per_depth), (d_s, sp.S.Zero)):
         slope = sp.Derivative(_touching, variable)
-        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches",
-                   left=_partial(xi, variable), right=latex)  # fmt: skip
+        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches")
     proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
     proof.notation["r"] = START[right]
     for variable in (d, d_s):
@@ -155,11 +151,10 @@ def _derivatives(proof: Proof) -> None:
     proof.recall("F11-edges")
     proof.define(xi, _touching)
     proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
-    proof.equal(P * per_depth, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
+    proof.equal(P * per_depth, sp.Derivative(edge_path, time), _TOUCHES,
                 right=r"X_{\mathrm{e}}'")  # fmt: skip
 
 
-_AT_TOUCH = r"\hat p \frac{\partial \xi}{\partial d}"
 _TOUCHES = "an edge that touches: its velocity through the foundation"
 
 

@@ -78,8 +78,6 @@ def _linearised(proof: Proof) -> None:
         *(first, QUADRATIC * sp.exp(sigma * time), r"the terms of first order in $\hat d$"),
         left=r"\left. \frac{\partial}{\partial \hat d} \left[\varepsilon D'' - \left(1 - f_z(D, D') - "
         r"\kappa (D - 1)\right)\right] \right|_{\hat d = 0}",
-        right=r"\left(\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa\right) "
-        r"e^{\sigma s}",
     )
 
 

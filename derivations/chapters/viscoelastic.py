@@ -160,7 +160,7 @@ def _edge(proof: Proof) -> None:
     proof.notation[r"\breve p"] = sp.Lambda(y, PRESSURE)
     at_edge = PRESSURE.subs(y, 1)
     proof.equal(at_edge, b * A - P, "pressure of the arm at the trailing edge", left=r"\breve p(1)")
-    proof.equal(at_edge, e * A - B, "the same", left=r"\breve p(1)")
+    proof.equal(at_edge, e * A - B, "in terms of the moments", left=r"\breve p(1)")
 
 
 @result("F17-load")

@@ -13,7 +13,7 @@ from ..engine.step import Proof
 from .model import K
 from .relaxation import fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
 from .steady import l, q
-from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
+from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER
 from .theorems import UNIT as RATIOS
 from .viscoelastic import (
     MOMENTS,
@@ -180,7 +180,7 @@ def _window(proof: Proof) -> None:
     Argued: So the relative error of Eq. (45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$
     upwards, and $7 l/\breve \chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$.
     """
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     over = sp.Rational(2, 3) / FRICTION_COEFFICIENT
     proof.sign(over, ">", 1, RATIOS, "Eq. (45) over Kelvin-Voigt")
     proof.sign(
@@ -199,7 +199,7 @@ def _window_weight(proof: Proof) -> None:
     Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt; $a$ is that of the indenter that is lifted, and
     $l$ grows faster for it.
     """
-    proof.recall("scaling", reason=RATIO)
+    proof.recall("scaling")
     square = 4 * LOAD / (9 * l * FRICTION_COEFFICIENT**2)
     proof.sign(square, ">", 1, RATIOS, r"$(L_2/\mu)^2$, as $\alpha^2 = 8/9$ and $a^2 = 2 R \delta$")
     proof.sign(

@@ -10,12 +10,12 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-_GREEK = (
-    r"\\(?:var)?(?:alpha|beta|gamma|delta|epsilon|zeta|theta|eta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma"
+GREEK = (
+    r"\\(?:var(?:epsilon|theta|pi|rho|sigma|phi)|alpha|beta|gamma|delta|epsilon|zeta|theta|eta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma"
     r"|tau|upsilon|phi|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega|ell)(?![A-Za-z])"
 )
 _BRACES = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
-_LETTER = rf"(?:\\Delta [stxy](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{_GREEK}|[A-Za-z])"
+_LETTER = rf"(?:\\Delta [stxy](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{GREEK}|[A-Za-z])"
 _TOKEN = re.compile(
     rf"\\(?:mathrm|operatorname|text|textrm|begin|end|phantom)\*?{_BRACES}"
     rf"|(?P<dots>\\d*dot\s*)?(?P<accent>\\(?:bar|hat|tilde|breve|check)\s*)?"
@@ -65,7 +65,8 @@ def replaced(latex: str, new: Callable[[str], str | None]) -> str:
     for atom in atoms(latex):
         other = new(atom.symbol)
         if other is not None:
-            dotted = f"{atom.dots}{{{other}}}" if atom.dots else other
+            letter, mark, index = other.partition("_") if atom.dots else (other, "", "")
+            dotted = f"{atom.dots}{{{letter}}}{mark}{index}" if atom.dots else other
             script = latex[: atom.start].endswith(("_", "^")) and len(other) > 1
             dotted = f"{{{dotted}}}" if script else dotted
             before = latex[done : atom.start]

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple, ParamSpec, TypedDict, TypeVar, Unpack, cast
 import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
-from sympy.printing.latex import LatexPrinter
 
 from .algebra import difference, is_constant_zero, is_continuous, is_differentiable, parted
 from .conditions import (
@@ -33,6 +32,7 @@ from .language import foreign, parts
 from .letters import letters, printed, told
 from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
+from .printing import doprint
 from .record import ARGUED, Claim, Derivation, Step, Table
 from .rules import HiddenError, is_name, resolve
 from .witness import has_witness
@@ -168,22 +168,6 @@ _BINDING = sp.Integral, sp.Sum, sp.Product, sp.Subs
 """What has a variable of its own."""
 
 
-class _Printer(LatexPrinter):
-    """SymPy's own, but for values at a place, whose brackets it leaves out."""
-
-    def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
-        inner = self._print(node.expr)
-        bracketed = any(part.is_Add for part in sp.Mul.make_args(node.expr))
-        bracketed = bracketed or node.expr.could_extract_minus_sign()
-        shown = rf"\left({inner}\right)" if bracketed else inner
-        pairs = zip(node.variables, node.point, strict=True)
-        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
-        return rf"\left. {shown} \right|_{{{places}}}"
-
-
-_PRINTER = _Printer({"symbol_names": TEX, "fold_frac_powers": True})
-
-
 def tex(expr: sp.Expr | int) -> str:
     r"""Print an expression in the notation of the paper.
 
@@ -196,7 +180,7 @@ def tex(expr: sp.Expr | int) -> str:
 
 @lru_cache(maxsize=8192)
 def _printed(expr: sp.Expr) -> str:
-    return str(_PRINTER.doprint(expr))
+    return doprint(expr)
 
 
 def tex_interval(over: Interval) -> str:

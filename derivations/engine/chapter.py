@@ -36,7 +36,6 @@ class Entry:
     title: str
     text: str
     uses: tuple[str, ...]
-    after: tuple[str, ...]
     notation: Mapping[str, Meaning]
     prove: Callable[..., None]
     given: Mapping[str, Any]
@@ -59,7 +58,7 @@ class Chapter:
 
     def __call__(
         self, label: str, *, title: str = "", text: str = "", uses: tuple[str, ...] = (),
-        after: tuple[str, ...] = (), notation: Mapping[str, Meaning] | None = None, **given: Any,
+        notation: Mapping[str, Meaning] | None = None, **given: Any,
     ) -> Callable[[Callable[..., None]], Callable[..., None]]:  # fmt: skip
         """Return a decorator for the function that proves the record, called with what else is `given`.
 
@@ -74,7 +73,7 @@ class Chapter:
         def register(prove: Callable[..., None]) -> Callable[..., None]:
             first, _, rest = ("" if title else inspect.getdoc(prove) or "").partition("\n")
             told = " ".join([*text.split(), *rest.split()]).replace(" Argued: ", f" {ARGUED} ")
-            entry = Entry(label, title or first.removesuffix("."), told, uses, after,
+            entry = Entry(label, title or first.removesuffix("."), told, uses,
                           self.notation | dict(notation or {}), prove, given)  # fmt: skip
             self.entries.append(entry)
             return prove
@@ -83,15 +82,4 @@ class Chapter:
 
     def derive(self) -> tuple[Derivation, ...]:
         """Prove all records."""
-        entries = {entry.label: entry for entry in self.entries}
-        found: dict[str, Derivation] = {}
-
-        def prove(label: str) -> None:
-            for premise in entries[label].after:
-                prove(premise)
-            if label not in found:
-                found[label] = entries[label].derive(self.section)
-
-        for label in entries:
-            prove(label)
-        return tuple(found[label] for label in entries)
+        return tuple(entry.derive(self.section) for entry in self.entries)

@@ -1,4 +1,4 @@
-r"""The letters of the printed document: each has one meaning throughout.
+r"""The letters of the catalogue: each has one meaning; an edition drops the accents that a section can spare.
 
 A derivation is written in the letters that suit it best; where two chapters use one letter for two
 things, one of them prints another. A renaming of symbols keeps every equality that was checked.
@@ -23,6 +23,7 @@ _SHAPES = {
 }  # fmt: skip
 
 BY_SECTION: dict[str, dict[str, str]] = {
+    "Model": {"z_A": r"z_{\mathrm{A}}"},
     "Dimensionless groups": {
         **{letter: rf"\mathsf{{{letter}}}" for letter in "NXZT"},
         "D": r"\mathbf{D}", "E": r"\mathbf{E}",
@@ -47,7 +48,9 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "Transient: theorems": {
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
     },
-    "A drive with a spring": {"a": r"\hat a", "z_A": r"z_{\mathrm{A}}"},
+    "A drive with a spring": {
+        "a": r"\hat a", "z_A": r"z_{\mathrm{A}}", "x_A": r"x_{\mathrm{A}}",
+    },
     "Discrete elements": {
         r"\hat p": r"\bar p", "u": r"\bar u", "L": r"\ell_{\mathrm{c}}", "R": r"\hat R", "z": r"\hat z",
         "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta",

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
+from sympy.core.function import UndefinedFunction
 
 from .atoms import atoms
 
@@ -32,12 +33,31 @@ class Symbol:
     source: str | None = ""
     """Label of the derivation that introduces it, or another source; empty if a scene gives it; None for
     the first derivation that defines it, or else prints it."""
+    sign: str = ""
+    """What is assumed of it, if not that it is a positive number."""
+
+
+def sign_of(letter: sp.Expr) -> str:
+    """Return what is assumed of a letter, in words; nothing for a positive one.
+
+    >>> [sign_of(sp.Symbol("x", **{fact: True})) for fact in ("positive", "negative", "real")]
+    ['', 'negative', 'of either sign']
+    """
+    known = (
+        ("positive", ""),
+        ("nonnegative", "not negative"),
+        ("negative", "negative"),
+        ("real", "of either sign"),
+    )
+    return next((words for fact, words in known if getattr(letter, f"is_{fact}")), "complex")
 
 
 BY_LATEX: dict[str, Symbol] = {}
 """The rows by what is printed, complete once the chapters are imported (`catalogue`)."""
 TEX: dict[sp.Symbol, str] = {}
 """How symbols are printed where SymPy's own choice differs from the paper's."""
+SYMBOLS: set[str] = set()
+"""How the declared letters that are no functions are printed."""
 CONSTANTS: dict[str, sp.Expr] = {}
 """Numbers with a letter of their own, which every display may use."""
 DECLARED: set[object] = set()
@@ -45,9 +65,21 @@ DECLARED: set[object] = set()
 HEADS = ("Symbol", "Meaning", "Unit", "From")
 
 
-def letter(latex: str, meaning: str, unit: str = "1", source: str | None = None) -> None:
+def shared_letters() -> str:
+    """Return the letters that a number shares with a function, which then is printed with its argument."""
+    names = {
+        sp.latex(sp.Symbol(each.__name__))
+        for each in DECLARED
+        if isinstance(each, UndefinedFunction)
+    }
+    return " ".join(sorted({each for each in SYMBOLS if each.rstrip("'") in names} | {*CONSTANTS}))
+
+
+def letter(
+    latex: str, meaning: str, unit: str = "1", source: str | None = None, sign: str = ""
+) -> None:
     """Declare a letter that is printed: an index, or one that a symbol prints elsewhere."""
-    if BY_LATEX.setdefault(latex, row := Symbol(latex, meaning, unit, source)) != row:
+    if BY_LATEX.setdefault(latex, row := Symbol(latex, meaning, unit, source, sign)) != row:
         raise ValueError(f"{latex} has two meanings: {BY_LATEX[latex].meaning}, and {meaning}")
 
 
@@ -67,6 +99,7 @@ def symbol(
     another one (`letters`). Without a meaning it is no row: a derivative, or a letter declared elsewhere.
     """
     found = sp.Symbol(name, **(assumptions or {"positive": True}))
+    SYMBOLS.add(latex or sp.latex(found))
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")
     return _declared(found, meaning, unit, printed or latex or sp.latex(found), source)
@@ -140,5 +173,6 @@ def constant(latex: str, value: sp.Expr, meaning: str) -> sp.Expr:
 def _declared(found: sp.Expr, meaning: str, unit: str, latex: str, source: str | None) -> sp.Expr:
     DECLARED.add(found)
     if meaning:
-        letter(next(atoms(latex)).symbol, meaning, unit, source)
+        sign = sign_of(found) if isinstance(found, sp.Symbol) else ""
+        letter(next(atoms(latex)).symbol, meaning, unit, source, sign)
     return found

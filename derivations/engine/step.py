@@ -62,8 +62,8 @@ class Greatest(sp.Expr):
 class Proof(Guarded):
     """Collect checked steps and end in a `record.Derivation`.
 
-    In every step `left` and `right` replace the LaTeX of a side where SymPy's own is clumsy; what is
-    checked is the SymPy expression.
+    A step is printed as `printing` has it; `left` and `right` are for the LaTeX of a side that says more by a
+    name than by the expression, which is what is checked.
     """
 
     @asked
@@ -536,7 +536,7 @@ def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr) -> str:
 
     >>> q = sp.Symbol("q")
     >>> _series(sp.Rational(3, 2), 1 - q, sp.S.One), _series(-sp.S.One, 1 - q, sp.S.One)
-    ('1 + \\frac{3 \\left(1 - q\\right)}{2}', '1 - \\left(1 - q\\right)')
+    ('1 + \\frac{3}{2} \\left(1 - q\\right)', '1 - \\left(1 - q\\right)')
     """
     size = sp.factor(c) if c.free_symbols else c
     negative = size.could_extract_minus_sign()

@@ -21,6 +21,7 @@ from sympy.core.function import AppliedUndef, UndefinedFunction
 from sympy.external.gmpy import GROUND_TYPES
 
 from .book import Finished
+from .nomenclature import shared_letters
 
 SOURCES = Path(__file__).parents[1]
 _SUFFIX = f".{__package__}.{sys.implementation.cache_tag}.proofs"
@@ -34,9 +35,16 @@ Proofs = dict[str, Finished]
 def digests(chapters: Sequence[str]) -> dict[str, str]:
     """Return, for each chapter, the digest of what its proofs rest on.
 
-    A chapter rests on those before it, and on the engine.
+    A chapter rests on those before it, and on the engine; how it is printed also on letters of later ones.
     """
-    versions = sys.version, platform.machine(), sp.__version__, mpmath.__version__, GROUND_TYPES
+    versions: tuple[Any, ...] = (
+        sys.version,
+        platform.machine(),
+        sp.__version__,
+        mpmath.__version__,
+        GROUND_TYPES,
+    )
+    versions = (*versions, shared_letters())
     shared = sorted((SOURCES / "engine").glob("*.py"))
     state, found = hashlib.sha256(repr(versions).encode()), {}
     for path in (*shared, *(SOURCES / "chapters" / f"{name}.py" for name in chapters)):

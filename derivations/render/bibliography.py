@@ -2,6 +2,7 @@
 
 from . import frame
 from .edition import Edition
+from .latex_words import escape
 
 _PAPER = rf"""@article{{NakanoKono2020,
   author  = {{Nakano, Ken and Kono, Masaharu}},
@@ -19,7 +20,7 @@ def document(edition: Edition) -> str:
     """Return both entries; `version` and the command say how to reproduce the derivations."""
     version = f"  version = {{{edition.version}}},\n" if edition.version else ""
     note = (
-        f"  note    = {{Made by \\texttt{{{_escaped(edition.command)}}}}},\n"
+        f"  note    = {{Made by \\texttt{{{escape(edition.command)}}}}},\n"
         if edition.command
         else ""
     )
@@ -28,7 +29,3 @@ def document(edition: Edition) -> str:
         f"  title   = {{{{{edition.title.replace('–', '--')}}}}},\n{version}{note}"
         "  howpublished = {Software}\n}\n"
     )
-
-
-def _escaped(command: str) -> str:
-    return "".join(rf"\{char}" if char in "_%&#$" else char for char in command)

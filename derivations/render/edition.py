@@ -1,10 +1,11 @@
 """One edition of the derivations: their selection, notation and source."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from ..catalogue import SYMBOLS
+from ..catalogue import CONTENTS, SYMBOLS
 from ..engine.atoms import Atom, atoms, replaced
 from ..engine.nomenclature import HEADS, Symbol
 from ..engine.record import Derivation, Step, Table
@@ -12,9 +13,17 @@ from ..labels import closure, find
 from .domain import domain
 from .frame import TITLE
 from .notation import check_letters
-from .text import conclusion, reference
+from .text import Given, Line, blocks, conclusion, reference
 
+_ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check) ?")
+_TAKEN = {"e", "i", "d", r"\pi"}
+_SHORT, _USUAL = 60, 3
+"""Rows of a nomenclature that is whole; in a longer one stands what as many sections show."""
 _ARGUMENT = re.compile(r"(?:(?:\{?\\left)?\(.{1,12}\)\}?)?")
+
+
+PREFIX = "kv:"
+_PREFIX = re.compile(r"[A-Za-z0-9:.+/-]{0,30}")
 
 
 @dataclass(frozen=True)
@@ -23,7 +32,9 @@ class Edition:
 
     derivations: tuple[Derivation, ...]
     nomenclature: tuple[Symbol, ...]
-    """The symbols that the derivations show, in the order of the table."""
+    """The symbols with one meaning throughout that the derivations show, in the order of the table."""
+    chapters: Mapping[str, tuple[Symbol, ...]] = field(default_factory=dict)
+    """The other symbols, by the section that shows them."""
     command: str = ""
     """The command that asked for it."""
     version: str = ""
@@ -33,8 +44,10 @@ class Edition:
     """Quantities of a scene in LaTeX, by the symbol as it is printed."""
     scene: str = ""
     """The scene of the numbers, in words."""
-    letters: Mapping[str, str] = field(default_factory=dict)
-    """New LaTeX by the symbol that it replaces."""
+    conditions: Mapping[str, str] = field(default_factory=dict)
+    """The sentence on the values for which a result holds, by its label."""
+    label_prefix: str = PREFIX
+    """What each label of a fragment begins with."""
 
     @property
     def labels(self) -> set[str]:
@@ -47,20 +60,36 @@ class Edition:
         rows = self.nomenclature if symbols is None else symbols
         return Table(heads, tuple(self._row(each) for each in rows))
 
+    def chapter_table(self, section: str) -> Table:
+        """Return the symbols that stand in the table of their section alone."""
+        rows = (self._row(each)[:3] for each in self.chapters.get(section, ()))
+        return Table(HEADS[:3], tuple(rows))
+
     def _row(self, symbol: Symbol) -> tuple[str, ...]:
-        source = reference(symbol.source) if symbol.source else "scene"
-        row = (f"${symbol.latex}$", symbol.meaning, symbol.unit, source)
+        named = symbol.source if symbol.source in CONTENTS.keys() | self.labels else ""
+        source = reference(named) if named else "" if symbol.source else "given"
+        meaning = "; ".join(part for part in (symbol.meaning, symbol.sign) if part)
+        row = (f"${symbol.latex}$", meaning, symbol.unit, source)
         value = self.values.get(symbol.latex)
         return (*row, f"${value}$" if value else "") if self.values else row
 
+    def blocks(self, derivation: Derivation) -> Iterator[Given | Line]:
+        """Return the sentences and lines of a derivation, which cite what was printed before."""
+        place = self.derivations.index(derivation)
+        return blocks(derivation, {each.label: each for each in self.derivations[:place]})
+
     def domain(self, derivation: Derivation) -> str:
         """Return the values of its symbols for which a result holds."""
-        return _words(domain(derivation), self.letters.get)
+        return self.conditions[derivation.label]
 
     def symbols(self, derivation: Derivation) -> tuple[Symbol, ...]:
         """Return the rows of the nomenclature that the formulas of a derivation need."""
         shown = symbols_of(derivation, words=False)
-        return tuple(each for each in self.nomenclature if each.latex in shown)
+        rows = {
+            each.latex: each
+            for each in (*self.nomenclature, *self.chapters.get(derivation.section, ()))
+        }
+        return tuple(row for latex, row in rows.items() if latex in shown)
 
 
 def edition(
@@ -75,6 +104,7 @@ def edition(
     values: Mapping[str, str] | None = None,
     scene: str = "",
     symbols: Sequence[Symbol] = (),
+    label_prefix: str = PREFIX,
 ) -> Edition:
     """Select derivations, with those that they depend on if wanted, and write them in other letters.
 
@@ -88,22 +118,88 @@ def edition(
     if with_premises:
         labels = [label for label in closure(labels, uses) if label in by_label]
     chosen = tuple(by_label[label] for label in labels)
-    shown = {symbol for each in chosen for symbol in symbols_of(each)}
+    shown = {each.section: dict[str, None]() for each in chosen}
+    for each in chosen:
+        shown[each.section] |= symbols_of(each)
+    new = dict(notation or {})
+    check_letters(new, {symbol for found in shown.values() for symbol in found})
     own = {symbol.latex for symbol in symbols}
-    rows = (*(row for row in SYMBOLS if row.latex not in own), *symbols)
     origins = introductions(derivations)
-    listed = tuple(
-        row if row.source is not None else replace(row, source=origins[row.latex])
-        for row in rows
-        if row.latex in shown
+    rows = {
+        row.latex: row
+        if row.source is not None
+        else replace(row, source=origins.get(row.latex, ""))
+        for row in (*(row for row in SYMBOLS if row.latex not in own), *symbols)
+    }
+    letters = {section: _letters(section, derivations, new) for section in shown}
+    common = _common(shown, letters)
+    chapters = {
+        section: tuple(
+            _row_in_letters(row, letters[section].get)
+            for latex, row in rows.items()
+            if latex in found and latex not in common
+        )
+        for section, found in shown.items()
+    }
+    everywhere = next(iter(letters.values()), {}) if len(letters) == 1 else new
+    return Edition(
+        derivations=tuple(_in_letters(each, letters[each.section].get) for each in chosen),
+        nomenclature=tuple(
+            _row_in_letters(row, everywhere.get) for latex, row in rows.items() if latex in common
+        ),
+        chapters=chapters,
+        command=command,
+        version=version,
+        title=title,
+        values={everywhere.get(symbol, symbol): value for symbol, value in (values or {}).items()},
+        scene=scene,
+        conditions={each.label: _words(domain(each), letters[each.section].get) for each in chosen},
+        label_prefix=label_prefix,
     )
-    values = dict(values or {})
-    if notation:
-        check_letters(notation, shown)
-        values = {notation.get(symbol, symbol): value for symbol, value in values.items()}
-        chosen = tuple(_in_letters(each, notation.get) for each in chosen)
-        listed = tuple(_row_in_letters(each, notation.get) for each in listed)
-    return Edition(chosen, listed, command, version, title, values, scene, notation or {})
+
+
+def _letters(
+    section: str, derivations: Iterable[Derivation], notation: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the letters of a section: those of the user, else without the accents that it does not need."""
+    shown = dict[str, None]()
+    for each in derivations:
+        shown |= symbols_of(each) if each.section == section else {}
+    found = {symbol: notation[symbol] for symbol in shown if symbol in notation}
+    taken = {*_TAKEN, *notation.values(), *(symbol for symbol in shown if symbol not in notation)}
+    for symbol in shown:
+        bare = _ACCENT.sub("", symbol)
+        if symbol not in notation and bare not in taken:
+            found[symbol] = bare
+            taken.add(bare)
+    return found
+
+
+def _common(
+    shown: Mapping[str, Collection[str]], letters: Mapping[str, Mapping[str, str]]
+) -> set[str]:
+    """Return the symbols of the nomenclature: of one section all, else those that several print alike."""
+    count = Counter(symbol for found in shown.values() for symbol in found)
+    if len(shown) <= 1:
+        return set(count)
+    forms: dict[str, set[str]] = {}
+    for section, found in shown.items():
+        for symbol in found:
+            forms.setdefault(symbol, set()).add(letters[section].get(symbol, symbol))
+    least = 1 if len(count) <= _SHORT else _USUAL
+    return {
+        symbol
+        for symbol, printed in forms.items()
+        if count[symbol] >= least and len(printed) == 1 and not _ACCENT.match(symbol)
+    }
+
+
+def check_prefix(prefix: str) -> None:
+    """Raise `ValueError` for a prefix that a label of LaTeX cannot have."""
+    if not _PREFIX.fullmatch(prefix):
+        raise ValueError(
+            f"--label-prefix {prefix!r}: expected up to 30 of A-Z a-z 0-9 : . + / -, as in 'kv:'"
+        )
 
 
 def introductions(derivations: Iterable[Derivation]) -> dict[str, str]:
@@ -150,6 +246,7 @@ def _in_letters(derivation: Derivation, new: Letters) -> Derivation:
         text=_words(derivation.text, new),
         latex=replaced(derivation.latex, new),
         domain=tuple(replaced(each, new) for each in derivation.domain),
+        premises=tuple(replaced(each, new) for each in derivation.premises),
         steps=tuple(_step_in_letters(step, new) for step in derivation.steps),
         table=table,
         numbers=tuple(

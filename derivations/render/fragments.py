@@ -1,9 +1,11 @@
 r"""Equations to `\input` in any document that loads amsmath: alone, or with all that they need.
 
-A fragment has no number: the document numbers it, and refers to it by its label.
+A fragment has no number: the document numbers it, and refers to it by its label, `kv:eq27` for Eq. (27).
+The prefix keeps it apart from the labels of the document.
 """
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from functools import partial
 
 from ..catalogue import CONTENTS
 from ..engine.record import Derivation, Table
@@ -25,34 +27,39 @@ from .text import (
 LINE = 27.0
 """Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt."""
 
+Link = Callable[[Piece], str]
+
 SIZES = ((1.0, ""), (1.05, "small"), (1.15, "footnotesize"), (1.4, "scriptsize"), (9.0, "tiny"))
 """What cannot be broken is set smaller: by width in lines, the size."""
 
 _REFER = (
-    r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname\ref{#1}\else#2\fi}"
+    r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname(\ref{#1})\else#2\fi}"
     " % the number in this document or, if it is not there, the name\n"
 )
 
 
-def equation(derivation: Derivation) -> str:
+def equation(derivation: Derivation, edition: Edition) -> str:
     """Return the result alone."""
-    return f"% {_comment(derivation)}\n{_display(derivation.latex, derivation.label)}"
+    name = edition.label_prefix + derivation.label
+    return f"% {_comment(derivation)}\n{_display(derivation.latex, name)}"
 
 
 def with_steps(derivation: Derivation, edition: Edition) -> str:
     """Return the result with its steps, the meaning of its symbols and its domain."""
     labels = CONTENTS.keys() | edition.labels
+    prefix = edition.label_prefix
+    link = partial(_reference, prefix)
     parts = [
         f"% {_comment(derivation)}",
         f"% rests on: {', '.join(derivation.uses) or 'nothing else'}",
         _REFER + r"\begingroup\emergencystretch=6em\raggedright",
         rf"\paragraph{{{words(derivation.title, ())}.}}",
-        words(derivation.text, labels, _reference),
-        *(_block(block, derivation.label, labels) for block in blocks(derivation)),
+        words(derivation.text, labels, link),
+        *(_block(block, prefix + derivation.label, labels, link) for block in blocks(derivation)),
     ]
-    parts += _where(edition.table(edition.symbols(derivation)), labels)
+    parts += _where(edition.table(edition.symbols(derivation)), labels, link)
     if holds := edition.domain(derivation):
-        parts.append(rf"\par\smallskip {words(holds, labels, _reference)}")
+        parts.append(rf"\par\smallskip {words(holds, labels, link)}")
     if derivation.numbers:
         parts.append(rf"\par {frame.WITH_NUMBERS}")
         for each in derivation.numbers:
@@ -61,17 +68,22 @@ def with_steps(derivation: Derivation, edition: Edition) -> str:
     return "\n".join(part for part in [*parts, r"\par\endgroup"] if part) + "\n"
 
 
-def _where(table: Table, labels: Collection[str]) -> list[str]:
+def _where(table: Table, labels: Collection[str], link: Link) -> list[str]:
     """Return the list of symbols with meaning, unit, where from and, if there is one, value."""
     if not table.rows:
         return []
     items = []
     for symbol, meaning, unit, source, *value in table.rows:
         shown = "".join(f", {each}" for each in value if each)
-        text = f"{meaning} [{unit}], {source}{shown}"
-        items.append(rf"\item[{symbol}] {words(text, labels, _reference)}")
+        text = f"{meaning} [{unit}]{source and ', '}{source}{shown}"
+        items.append(rf"\item[{symbol}] {words(text, labels, link)}")
     start = r"\begin{description}\itemsep=0pt\parsep=0pt"
-    return [r"\par where", start, *items, r"\end{description}"]
+    return [
+        r"\par Symbols, positive unless another sign is given:",
+        start,
+        *items,
+        r"\end{description}",
+    ]
 
 
 def _comment(derivation: Derivation) -> str:
@@ -93,18 +105,18 @@ def _display(latex: str, label: str = "") -> str:
     return f"\\begingroup\\{size}\n{shown}\\endgroup\n" if size else shown
 
 
-def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
+def _block(block: Given | Line, label: str, labels: Collection[str], link: Link) -> str:
     if isinstance(block, Given):
-        return printed(sentence(block, labels), _reference)
-    reason = printed(remark(block.step, labels), _reference)
-    told = rf"\par {reason[:1].upper()}{reason[1:]}:\nopagebreak" if reason else ""
-    return told + "\n" + _display(block.step.latex, label if block.tag else "").rstrip()
+        return printed(sentence(block, labels), link)
+    reason = printed(remark(block.step, labels), link)
+    told = rf"\nopagebreak ({reason})\par" if reason else ""
+    return _display(block.step.latex, label if block.tag else "").rstrip() + told
 
 
-def _reference(piece: Piece) -> str:
-    """Print a reference: a number if the document contains the equation, else a name."""
+def _reference(prefix: str, piece: Piece) -> str:
+    """Print a reference: the number in parentheses if the document contains the equation, else a name."""
     label = piece.target
     name = number(label)
     name = f"{escape(name)} of Nakano and Kono" if name.isdigit() else escape(name)
-    shown = rf"\derivationref{{{label}}}{{{name}}}"
-    return f"({shown})" if piece.content.startswith("(") else shown
+    name = f"({name})" if piece.content.startswith("(") else name
+    return rf"\derivationref{{{prefix}{label}}}{{{name}}}"

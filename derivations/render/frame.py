@@ -13,12 +13,13 @@ INTRODUCTION = (
     "foundations, and on a drive with a spring: the theorems F1 and so on. Equation numbers without a letter "
     "are those of the paper.",
     "Every line is an equality or an inequality that computer algebra checked when this document "
-    "was made; if a check fails, no document is made. Each line has its reason and the status of "
-    "its check; the sentence before it lists the premises: definitions, and results established "
-    "elsewhere, by their number. A result has the status of its weakest line.",
+    "was made; if a check fails, no document is made. Each line is followed by its reason and a "
+    "sign for the status of its check; the sentence before it lists the premises: definitions, and results "
+    "established elsewhere, by their number, with their formula where that is short. A result has the status "
+    "of its weakest line.",
     "A check establishes the formula of its line, on the domain that is given with it, from the "
     "definitions and results that are named; what is printed was read back and compared with what was "
-    "checked. The words beside a line say what the formula means for the contact; they are not "
+    "checked. The words after a line say what the formula means for the contact; they are not "
     "checked, nor that a law of the model is right. Where the lines alone do not prove the title, the text "
     "says what is argued, and the result is called argued.",
 )
@@ -33,6 +34,15 @@ VOCABULARY = {
 }
 """The meaning of each `record.STATUSES`."""
 
+SIGNS = {
+    "definition": "≝",
+    "proved": "∎",
+    "proved-leading-order": "≈",
+    "sampled": "≟",
+    "argued": "†",
+}
+"""The sign after a line with this status."""
+
 SOURCE = (
     "K. Nakano and M. Kono, Transient and steady sliding friction of elastomers: impact of "
     "vertical lift, Frontiers in Mechanical Engineering 6, 38 (2020)."
@@ -41,7 +51,9 @@ DOI = "10.3389/fmech.2020.00038"
 
 MARKS = (
     "A dot over a symbol is its derivative with respect to time $t$, a prime the one with respect to "
-    "its argument; of scaled quantities of the transient, with respect to the scaled time."
+    "its argument; of scaled quantities of the transient, with respect to the scaled time. A letter "
+    "stands for a positive number unless its row says otherwise. What few sections use is in a table at "
+    "their beginning; there a letter may mean something else than elsewhere."
 )
 """The text above the nomenclature."""
 

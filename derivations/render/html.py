@@ -16,10 +16,10 @@ from .text import (
     Given,
     Line,
     Piece,
-    blocks,
     by_section,
     calculation,
     citation,
+    further,
     number,
     pieces,
     relations,
@@ -123,7 +123,7 @@ def _header(edition: Edition) -> str:
     told = [*frame.INTRODUCTION, *([frame.numbers_of(edition.scene)] if edition.scene else [])]
     paragraphs = [f"<p>{_text(paragraph, edition.labels)}</p>" for paragraph in told]
     meanings = [
-        f"<dt>{_badge(status)}</dt><dd>{escape(meaning)}</dd>"
+        f"<dt>{_badge(status)}</dt><dd>{status}: {escape(meaning)}</dd>"
         for status, meaning in frame.VOCABULARY.items()
     ]
     version = f"kvtheory {edition.version}".strip()
@@ -155,7 +155,10 @@ def _contents(sections: dict[str, list[Derivation]]) -> str:
 def _section(index: int, section: str, members: Sequence[Derivation], edition: Edition) -> str:
     articles = [_article(each, edition) for each in members]
     heading = f'<section id="section-{index}"><h2>{_text(section, ())}</h2>'
-    return "\n".join([heading, *articles, "</section>"])
+    own = edition.chapter_table(section)
+    return "\n".join(
+        [heading, *([_table(own, edition.labels)] if own.rows else []), *articles, "</section>"]
+    )
 
 
 def _article(derivation: Derivation, edition: Edition) -> str:
@@ -167,14 +170,14 @@ def _article(derivation: Derivation, edition: Edition) -> str:
         f"{_text(derivation.title, ())}</h3>",
         f"<p>{_text(derivation.text, labels)}</p>" if derivation.text else "",
         '<ol class="steps">',
-        *(_block(block, labels) for block in blocks(derivation)),
+        *(_block(block, labels) for block in edition.blocks(derivation)),
         "</ol>",
         f'<p class="domain">{_text(holds, labels)}</p>'
         if (holds := edition.domain(derivation))
         else "",
         _numbers(derivation.numbers, labels),
         _table(derivation.table, labels) if derivation.table else "",
-        _related({"Rests on": derivation.uses, "Used by": users}, labels),
+        _related({"Rests also on": further(derivation), "Used by": users}, labels),
         "</article>",
     ]
     return "\n".join(part for part in parts if part)
@@ -188,8 +191,8 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     return (
         f'<li class="{"result" if block.tag else "step"}">'
         f'<div class="line"><div class="scroll">{chain}</div>'
-        f'<p class="reason"><span>{_printed(remark(block.step, labels))}</span>'
-        f"{_badge(block.step.status)}</p></div>{shown}</li>"
+        f'<p class="reason">{_printed(remark(block.step, labels))} {_badge(block.step.status)}</p></div>'
+        f"{shown}</li>"
     )
 
 
@@ -209,7 +212,7 @@ def _numbers(numbers: Sequence[Calculation], labels: Collection[str]) -> str:
     lines = "".join(
         f'<li class="step"><div class="line"><div class="scroll">'
         f"{_chain(calculation(each))}</div>"
-        f'<p class="reason"><span>{_text(each.note, labels)}</span></p></div></li>'
+        f'<p class="reason">{_text(each.note, labels)}</p></div></li>'
         for each in numbers
     )
     return f'<p>{frame.WITH_NUMBERS}</p><ol class="steps numbers">{lines}</ol>' if lines else ""
@@ -225,7 +228,7 @@ def _related(related: Mapping[str, Collection[str]], labels: Collection[str]) ->
 
 
 def _badge(status: str) -> str:
-    return f'<span class="status {status}">{escape(status)}</span>'
+    return f'<span class="status {status}" title="{status}">{frame.SIGNS[status]}</span>'
 
 
 def _table(table: Table, labels: Collection[str]) -> str:

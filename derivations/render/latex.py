@@ -10,10 +10,10 @@ from .latex_words import escape, printed, words
 from .text import (
     Given,
     Line,
-    blocks,
     by_section,
     calculation,
     citation,
+    further,
     number,
     pieces,
     remark,
@@ -22,8 +22,14 @@ from .text import (
 
 _GAP = 0.03
 """Between the columns of a table, as a share of the line."""
-_WIDTHS = {4: (0.11, 0.46, 0.12, 0.22), 5: (0.1, 0.35, 0.11, 0.18, 0.14)}
+_WIDTHS = {3: (0.13, 0.68, 0.13), 4: (0.11, 0.46, 0.12, 0.22), 5: (0.1, 0.35, 0.11, 0.18, 0.14)}
 """Of the columns of the nomenclature, by their number."""
+
+_SIGNS = {
+    "definition": r"$\stackrel{\scriptscriptstyle\mathrm{def}}{=}$", "proved": r"{\tiny$\blacksquare$}",
+    "proved-leading-order": r"$\approx$", "sampled": r"$\stackrel{\scriptscriptstyle ?}{=}$",
+    "argued": r"$\dagger$",
+}  # fmt: skip
 
 _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \usepackage[margin=25mm]{geometry}
@@ -56,28 +62,24 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
     \parbox{#1}{\raggedright \hangindent=2em \relpenalty=0 \binoppenalty=100
       \lineskiplimit=4pt \lineskip=8pt $\displaystyle #2$}%
   \else\box0 \fi}
-% A checked line: number (empty but for a result), status, reason, mathematics.
-% The reason stands beside the mathematics where both are short, above it where they are not.
+% A checked line: number (empty but for a result), sign of its status, reason, mathematics.
+% The reason stands after the mathematics: in its line or, where that is full, in the next one.
 \newsavebox{\formula}
 \newsavebox{\remark}
 \newsavebox{\number@}
 \newdimen\indented \indented=2em
-\newdimen\usual@ \usual@=3em
-\newdimen\numbers@
 \newdimen\room
 \newcommand{\checked}[4]{%
   \startline
-  \sbox{\formula}{$\displaystyle #4$}\sbox{\remark}{\small #3\quad\textit{#2}}\sbox{\number@}{#1}%
-  \numbers@=\dimexpr\wd\number@+1em\relax
-  \ifdim\numbers@<\usual@ \numbers@=\usual@ \fi
-  \room=\dimexpr\linewidth-\indented-\numbers@\relax
-  \ifdim\dimexpr\wd\formula+\wd\remark+2em>\room
-    {\small #3\nobreak\hfill\penalty50\quad\null\nobreak\hfill\textit{#2}\hspace*{\usual@}\par}%
-    \nopagebreak
-    \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{}%
-  \fi
-  \hspace*{\indented}\makebox[\room]{\usebox{\formula}\hfill\usebox{\remark}}%
-  \hfill\usebox{\number@}\par}
+  \sbox{\number@}{#1}%
+  \room=\dimexpr\linewidth-\indented-\wd\number@-1em\relax
+  \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{\small\quad #3~#2}%
+  \ifdim\dimexpr\wd\formula+\wd\remark\relax>\room
+    \hspace*{\indented}\usebox{\formula}\hfill\usebox{\number@}\par\nopagebreak
+    {\small\leftskip=2\indented\raggedright\hangindent=1em #3~#2\par}%
+  \else
+    \hspace*{\indented}\usebox{\formula}\usebox{\remark}\hfill\usebox{\number@}\par
+  \fi}
 \makeatother
 """
 
@@ -113,6 +115,8 @@ def article(edition: Edition) -> str:
     ]
     for section, members in by_section(edition.derivations).items():
         body.append(rf"\section{{{_heading(section)}}}")
+        if (own := edition.chapter_table(section)).rows:
+            body.append(tabular(own, labels, _WIDTHS[3], environment="longtable"))
         body.extend(_derivation(member, edition) for member in members)
     body += [
         r"\begin{thebibliography}{1}",
@@ -130,7 +134,7 @@ def _derivation(derivation: Derivation, edition: Edition) -> str:
     parts = [
         rf"\subsection[{{{shown}}}]{{{shown}}}",
         words(derivation.text, labels),
-        *(_block(block, derivation.label, labels) for block in blocks(derivation)),
+        *(_block(block, derivation.label, labels) for block in edition.blocks(derivation)),
     ]
     if holds := edition.domain(derivation):
         parts.append(rf"\nopagebreak{{\small\raggedright {words(holds, labels)}\par}}")
@@ -139,11 +143,9 @@ def _derivation(derivation: Derivation, edition: Edition) -> str:
         width = (1 - _GAP * (columns - 1)) / columns
         parts.append(tabular(derivation.table, labels, [width] * columns))
     parts += _numbers(derivation.numbers, labels)
-    cited = {step.source for step in derivation.steps}
-    further = [citation(label, labels) for label in derivation.uses if label not in cited]
-    if further:
-        links = ", ".join(printed([each]) for each in further)
-        parts.append(rf"\nopagebreak{{\small Also used: {links}.\par}}")
+    if others := further(derivation):
+        links = ", ".join(printed([citation(label, labels)]) for label in others)
+        parts.append(rf"\nopagebreak{{\small Rests also on {links}.\par}}")
     return "\n".join(part for part in parts if part)
 
 
@@ -153,14 +155,14 @@ def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
     step, tag = block.step, escape(block.tag)
     numbered = rf"\numbered{{{label}}}{{{tag}}}" if tag else ""
     return (
-        rf"\checked{{{numbered}}}{{{escape(step.status)}}}"
+        rf"\checked{{{numbered}}}{{{_SIGNS[step.status]}}}"
         rf"{{{printed(remark(step, labels))}}}{{{step.latex}}}"
     )
 
 
 def _vocabulary() -> str:
     items = [
-        rf"\item[{escape(status)}] {escape(meaning)};"
+        rf"\item[{_SIGNS[status]}] {escape(status)}: {escape(meaning)};"
         for status, meaning in frame.VOCABULARY.items()
     ]
     items[-1] = items[-1][:-1] + "."

@@ -19,6 +19,10 @@ _ESCAPES = {
 }
 
 
+_UNKNOWN = re.compile(r"[^ -~\n–²³À-ÏÑ-ÝßÀ-ïñ-ýÿ]")
+"""What the fonts of plain LaTeX lack."""
+
+
 def linked(piece: Piece) -> str:
     """Print a reference as a link of hyperref."""
     return rf"\hyperref[{piece.target}]{{{escape(piece.content)}}}"
@@ -41,5 +45,5 @@ def printed(content: Iterable[Piece], link: Callable[[Piece], str] = linked) -> 
 
 def escape(words: str) -> str:
     """Escape words that are no mathematics, and set quotation marks."""
-    escaped = "".join(_ESCAPES.get(char, char) for char in words)
+    escaped = "".join(_ESCAPES.get(char, char) for char in _UNKNOWN.sub("?", words))
     return re.sub('"([^"]*)"', r"``\1''", escaped)

@@ -9,10 +9,10 @@ from .text import (
     Given,
     Line,
     Piece,
-    blocks,
     by_section,
     calculation,
     citation,
+    further,
     pieces,
     remark,
     sentence,
@@ -23,8 +23,11 @@ def document(edition: Edition) -> str:
     """Return the page, for Sphinx or Jupyter Book with the extensions `dollarmath` and `amsmath`."""
     labels = edition.labels
     told = [*frame.INTRODUCTION, *([frame.numbers_of(edition.scene)] if edition.scene else [])]
-    parts = [f"# {edition.title}", *(_text(paragraph, labels) for paragraph in told)]
-    parts += [f"*{status}*: {meaning}" for status, meaning in frame.VOCABULARY.items()]
+    parts = [f"# {_escape(edition.title)}", *(_text(paragraph, labels) for paragraph in told)]
+    parts += [
+        f"{frame.SIGNS[status]} *{status}*: {meaning}"
+        for status, meaning in frame.VOCABULARY.items()
+    ]
     if edition.command:
         parts.append(
             f"Made by {f'kvtheory {edition.version}'.strip()}: {frame.code_span(edition.command)}"
@@ -32,6 +35,8 @@ def document(edition: Edition) -> str:
     parts += ["## Nomenclature", _text(frame.MARKS, labels), _table(edition.table(), labels)]
     for section, members in by_section(edition.derivations).items():
         parts.append(f"## {_text(section, ())}")
+        if (own := edition.chapter_table(section)).rows:
+            parts.append(_table(own, labels))
         parts += [_derivation(member, edition) for member in members]
     parts += ["## Source", f"{frame.SOURCE} <https://doi.org/{frame.DOI}>"]
     return "\n\n".join(parts) + "\n"
@@ -40,17 +45,17 @@ def document(edition: Edition) -> str:
 def _derivation(derivation: Derivation, edition: Edition) -> str:
     labels = edition.labels
     parts = [f"### {_text(derivation.title, ())}", _text(derivation.text, labels)]
-    parts += [_block(block, derivation.label, labels) for block in blocks(derivation)]
+    parts += [_block(block, derivation.label, labels) for block in edition.blocks(derivation)]
     if derivation.table:
         parts.append(_table(derivation.table, labels))
     parts.append(edition.domain(derivation))
     if derivation.numbers:
         parts.append(frame.WITH_NUMBERS)
         for each in derivation.numbers:
-            parts += [f"$$\n{calculation(each)}\n$$", _text(each.note, labels)]
-    if derivation.uses:
-        uses = ", ".join(_printed([citation(label, labels)]) for label in derivation.uses)
-        parts.append(f"Rests on {uses}.")
+            parts += [f"$$\n{_tame(calculation(each))}\n$$", _text(each.note, labels)]
+    if others := further(derivation):
+        links = ", ".join(_printed([citation(label, labels)]) for label in others)
+        parts.append(f"Rests also on {links}.")
     return "\n\n".join(part for part in parts if part)
 
 
@@ -59,8 +64,8 @@ def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
         return _printed(sentence(block, labels))
     mark = f" ({label})" if block.tag else ""
     reason = _printed(remark(block.step, labels))
-    worth = f"{reason} — *{block.step.status}*" if reason else f"*{block.step.status}*"
-    return f"$$\n{block.step.latex}\n$${mark}\n\n{worth}"
+    worth = f"{reason} {frame.SIGNS[block.step.status]}".strip()
+    return f"$$\n{_tame(block.step.latex)}\n$${mark}\n\n{worth}"
 
 
 def _table(table: Table, labels: Collection[str]) -> str:
@@ -75,7 +80,7 @@ def _text(text: str, labels: Collection[str]) -> str:
 def _printed(content: Iterable[Piece]) -> str:
     write = {
         "words": lambda piece: _escape(piece.content),
-        "math": lambda piece: f"${piece.content}$",
+        "math": lambda piece: f"${_tame(piece.content)}$",
         "link": lambda piece: f"[{_escape(piece.content)}](#{piece.target})",
     }
     return "".join(write[piece.kind](piece) for piece in content)
@@ -83,3 +88,12 @@ def _printed(content: Iterable[Piece]) -> str:
 
 def _escape(words: str) -> str:
     return "".join(f"\\{char}" if char in "\\`*_#<>|[]$" else char for char in words)
+
+
+def _tame(latex: str) -> str:
+    r"""Write mathematics so that no reader of Markdown takes a sign for the beginning of a tag.
+
+    >>> _tame("0<q < 1")
+    '0\\lt q \\lt  1'
+    """
+    return latex.replace("<", r"\lt ")

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ..catalogue import SYMBOLS
-from ..engine.atoms import atoms
+from ..engine.atoms import GREEK, atoms
 from ..labels import unknown
 
 
@@ -21,6 +21,19 @@ def plain(latex: str) -> str:
 
 NAMES = {plain(symbol.latex): symbol.latex for symbol in SYMBOLS}
 """The LaTeX of each symbol by its name."""
+
+
+_SIGN = (
+    rf"(?:[A-Za-z0-9]|{GREEK}|\\(?:infty|prime|ast|star|circ|parallel|perp|max|min|to)(?![A-Za-z])"
+    r"|\\(?:mathrm|mathit|mathsf|mathbf|text)\{[A-Za-z0-9 ,.+*-]+\})"
+)
+_INDEX = rf"(?:{_SIGN}|\{{(?:{_SIGN}|[ ,.+*()-]|\\[,!]|_(?:{_SIGN}|\{{{_SIGN}+\}})(?!_))+\}})"
+_STAR = r"\^(?:\*|\{\*\})"
+_SETTABLE = re.compile(
+    rf"(?:\\(?:bar|hat|tilde|breve|check|dot|ddot)(?![A-Za-z]) ?)?(?:{_SIGN}|\{{{_SIGN}\}}|\\Delta [a-z])"
+    rf"(?:{_STAR}(?:_{_INDEX})?|_{_INDEX}(?:{_STAR})?)?"
+)
+"""What LaTeX with amsmath and a browser set as one symbol; markup of no format is among it."""
 
 
 def read_notation(path: Path) -> dict[str, str]:
@@ -57,7 +70,8 @@ def _mistakes(symbol: str, letter: object) -> list[str]:
     if not isinstance(letter, str):
         return [f'{plain(symbol)} = {letter!r}: expected text, as in {plain(symbol)} = "b"']
     found = list(atoms(letter))
-    if [(atom.start, atom.end) for atom in found] != [(0, len(letter))] or found[0].primes:
+    whole = [(atom.start, atom.end) for atom in found] == [(0, len(letter))]
+    if not (whole and _SETTABLE.fullmatch(letter)) or found[0].primes:
         return [f"{plain(symbol)} = {letter!r}: expected one symbol in LaTeX, such as \\ell or b_0"]
     return []
 

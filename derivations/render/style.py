@@ -49,26 +49,25 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .steps li { padding: 0.15rem 0 0.15rem 0.3rem; }
 .steps li.result { --paper: var(--result); background: var(--result); margin-left: -0.9rem;
   padding-left: 1.2rem; display: grid; grid-template-columns: minmax(0, 1fr) auto;
-  align-items: last baseline; }
+  align-items: first baseline; }
 .steps li.step { padding-right: 3rem; }
 .steps .number { min-width: 3rem; padding: 0 0.3rem 0 0.6rem; text-align: right;
   font-variant-numeric: tabular-nums; }
-/* The reason stands beside the formula where both fit and above it where they do not. */
-.line { display: flex; flex-wrap: wrap-reverse; align-items: baseline; column-gap: 2rem; }
-.reason { flex: 1 1 auto; display: flex; justify-content: space-between; align-items: baseline;
-  gap: 0.7rem; margin: 0; color: var(--faint); font-size: 0.9rem; }
-.status { flex: none; padding: 0 0.45em; border: 1px solid currentColor; border-radius: 0.7em;
-  font: 0.72rem/1.5 system-ui, sans-serif; color: var(--definition); white-space: nowrap; }
+/* The reason stands after the formula, in its line or in the next one. */
+.line { display: flex; flex-wrap: wrap; align-items: baseline; column-gap: 1.5rem; }
+.reason { margin: 0; padding-left: 1.5rem; text-indent: -1.5rem; color: var(--faint); font-size: 0.9rem; }
+.line .scroll + .reason { padding-left: 3rem; }
+.status { color: var(--definition); white-space: nowrap; }
 .status.proved { color: var(--proved); }
-.status.proved-leading-order { color: var(--leading); border-style: dashed; }
-.status.sampled, .status.argued { color: var(--sampled); border-style: dotted; }
+.status.proved-leading-order { color: var(--leading); }
+.status.sampled, .status.argued { color: var(--sampled); }
 /* A shade at the side says that there is more to scroll to; at an end its cover hides it. */
 .scroll { overflow-x: auto; padding: 0.45rem 0; background:
   linear-gradient(to right, var(--paper) 40%, transparent) left / 2rem 100% no-repeat local,
   linear-gradient(to left, var(--paper) 40%, transparent) right / 2rem 100% no-repeat local,
   linear-gradient(to right, var(--shade), transparent) left / 0.6rem 100% no-repeat scroll,
   linear-gradient(to left, var(--shade), transparent) right / 0.6rem 100% no-repeat scroll; }
-.line .scroll { flex: 1000 0 auto; max-width: 100%; display: flex; flex-wrap: wrap;
+.line .scroll { flex: 0 0 auto; max-width: 100%; display: flex; flex-wrap: wrap;
   align-items: baseline; row-gap: 0.4rem; padding-left: 1.5rem; }
 .line .scroll math { flex: none; width: max-content; margin: 0; }
 .line .scroll math:first-child { margin-left: -1.5rem; }
@@ -87,12 +86,14 @@ footer { font-size: 0.95rem; }
   .vocabulary { grid-template-columns: 1fr; gap: 0.1rem; }
   .vocabulary dd { margin-bottom: 0.5rem; }
   .reason { max-width: 100%; }
-  .reason > span:first-child, .domain { min-width: 0; overflow-x: auto; padding: 0.2rem 0; }
+  .reason, .domain { min-width: 0; overflow-x: auto; padding: 0.2rem 0; }
   .steps { padding-left: 0.5rem; }
   .steps li.result { margin-left: -0.5rem; padding-left: 0.8rem; grid-template-columns: minmax(0, 1fr); }
   .steps .number { justify-self: end; }
   .steps li.step { padding-right: 0; }
   td:first-child { white-space: normal; }
+  th, td { padding-right: 0.7rem; }
+  #nomenclature :is(th, td):nth-child(4) { display: none; }
 }
 @media print {
   :root { --paper: #fff; --ink: #000; --faint: #333; --link: #000; --result: #fff; }

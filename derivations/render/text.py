@@ -9,8 +9,8 @@ r"""The common part of the renderers: the text of a record and the order of its 
 """
 
 import re
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from ..engine.record import Calculation, Derivation, Step
@@ -26,9 +26,11 @@ _TOKEN = re.compile(
 )
 """The opening of a group, its end, and a relation."""
 
-_GLYPH = re.compile(r"\\(?!left|right|frac|sqrt|math|text|[,;:! ])[A-Za-z]+|[^\s{}_^\\]")
-_MOST_GLYPHS = 60
-"""A formula of more glyphs would fill a line of text."""
+_GLYPH = re.compile(
+    r"\\(?:left|right|frac|sqrt|mathrm|text|[,;:! ])(?![A-Za-z])|(?P<seen>\\[A-Za-z]+|[^\s{}_^\\])"
+)
+_FEW_GLYPHS, _MOST_GLYPHS = 16, 60
+"""A formula of few glyphs is repeated rather than cited; one of more would fill a line of text."""
 
 _GROUPS = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"
 _TALL = re.compile(rf"\\(?:int|sum|begin)(?![a-z])|\\frac\{{{_GROUPS}(?:\}}\{{{_GROUPS})?\\frac")
@@ -128,13 +130,15 @@ def relations(latex: str) -> list[str]:
     return [*links, latex[start:].strip()]
 
 
-def blocks(derivation: Derivation) -> Iterator[Given | Line]:
+def blocks(
+    derivation: Derivation, before: Mapping[str, Derivation] | None = None
+) -> Iterator[Given | Line]:
     """Arrange the steps: premises in sentences, proved steps and the result in lines.
 
     Premises are definitions and steps recalled from elsewhere; those too large for a sentence
-    have a separate line.
+    have a separate line. Long results that were printed `before` are cited, not repeated.
     """
-    printed = _lines(derivation)
+    printed = [_short(line, before or {}) for line in _lines(derivation)]
     for is_given, group in groupby(printed, key=_is_given):
         members = list(group)
         if is_given:
@@ -153,10 +157,14 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
     last = len(given.steps) - 1
     for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
         yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
+        if not step.relation:
+            yield citation(source, labels)
+            continue
         yield Piece("math", conclusion(step))
         if step.domain:
             yield from (Piece("words", " for "), Piece("math", step.domain))
-        if index < last and remarks[index + 1] == (source, reason):
+        following = given.steps[index + 1] if index < last else step
+        if index < last and following.relation and remarks[index + 1] == (source, reason):
             continue
         if source:
             yield from (Piece("words", " "), citation(source, labels))
@@ -169,7 +177,7 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
 
 
 def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
-    """Return the origin of a displayed step, its reason, and its domain."""
+    """Return the origin of a displayed step, its reason, and its domain: what stands after the formula."""
     if step.source:
         yield from (citation(step.source, labels), Piece("words", " "))
     yield from pieces(step.reason, labels)
@@ -179,18 +187,42 @@ def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
         yield from (Piece("words", " (for "), Piece("math", step.domain), Piece("words", ")"))
 
 
+def further(derivation: Derivation) -> list[str]:
+    """Return the labels on which a derivation rests besides those that its lines name."""
+    named = {step.source for step in derivation.steps}
+    return [label for label in derivation.uses if label not in named]
+
+
 def citation(label: str, labels: Collection[str]) -> Piece:
     """Return the number of a derivation in parentheses, a link where the derivation is printed."""
     shown = f"({number(label)})"
     return Piece("link", shown, label) if label in labels else Piece("words", shown)
 
 
+def _short(line: Line, before: Mapping[str, Derivation]) -> Line:
+    """Leave out the formula of a long result that was printed before: its number says as much."""
+    step = line.step
+    source = before.get(step.source)
+    if source is None or step.claim is None or _glyphs(conclusion(step)) <= _FEW_GLYPHS:
+        return line
+    results = [each.claim for each in source.steps if each.latex == source.latex and each.claim]
+    known = any((each.lhs, each.rhs) == (step.claim.lhs, step.claim.rhs) for each in results)
+    return replace(line, step=replace(step, left="", relation="", right="")) if known else line
+
+
+def _glyphs(latex: str) -> int:
+    """Count what is seen of a formula."""
+    return sum(bool(each["seen"]) for each in _GLYPH.finditer(latex))
+
+
 def _is_given(line: Line) -> bool:
     step = line.step
+    if not step.relation:
+        return not line.tag and bool(step.source)
     if line.tag or not (step.source or step.status == "definition"):
         return False
     latex = conclusion(step)
-    return not _TALL.search(latex) and len(_GLYPH.findall(latex)) <= _MOST_GLYPHS
+    return not _TALL.search(latex) and _glyphs(latex) <= _MOST_GLYPHS
 
 
 def conclusion(step: Step) -> str:

@@ -16,7 +16,8 @@ Files = dict[str, bytes]
 
 def _tex(edition: Edition) -> Files:
     alone = {
-        f"fragments/{each.label}.tex": fragments.equation(each) for each in edition.derivations
+        f"fragments/{each.label}.tex": fragments.equation(each, edition)
+        for each in edition.derivations
     }
     whole = {
         f"fragments/{each.label}-steps.tex": fragments.with_steps(each, edition)

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 from html import escape
 
 import sympy as sp
+from kvtheory.derivations.catalogue import SYMBOLS
 from kvtheory.derivations.engine.book import tex
 from kvtheory.derivations.engine.letters import letters, printed
 from kvtheory.derivations.engine.record import Claim, Derivation, Step
 from kvtheory.derivations.labels import closure
-from kvtheory.derivations.render import edition
+from kvtheory.derivations.render.edition import symbols_of
 from kvtheory.derivations.render.html import mathml
 from kvtheory.derivations.render.notation import plain
 from kvtheory.derivations.render.text import by_section, reference
@@ -69,7 +70,7 @@ def assumptions(derivations: Sequence[Derivation]) -> dict[str, list[Assumption]
         for k, step in steps
         if k in premises and step.claim.check == "define" and step.claim.lhs.is_Symbol
     }
-    meanings = {row.latex: row.meaning for row in edition(derivations).nomenclature}
+    meanings = {row.latex: row.meaning for row in SYMBOLS}
 
     def stated(among: set[str]) -> Stated:
         return lambda record: {k: s.reason for k, s in given[record.label].items() if k in among}
@@ -144,8 +145,7 @@ def _tex(expr: sp.Expr, record: Derivation) -> str:
 
 def _graph(derivations: Sequence[Derivation]) -> tuple[str, str]:
     """Return the graph, and what each record rests on and is used by as lists."""
-    whole = edition(derivations)
-    places = {row.latex: index for index, row in enumerate(whole.nomenclature)}
+    places = {row.latex: index for index, row in enumerate(SYMBOLS)}
     uses = {each.label: each.uses for each in derivations}
     used = {label: [each for each in uses if label in uses[each]] for label in uses}
     chips, choices, lists = "", "", ""
@@ -154,7 +154,7 @@ def _graph(derivations: Sequence[Derivation]) -> tuple[str, str]:
         for each in members:
             name, symbols = (
                 f"{each.label}: {escape(each.title)}",
-                [places[row.latex] for row in whole.symbols(each)],
+                sorted(places[symbol] for symbol in symbols_of(each, words=False)),
             )
             chip += f'<a href="#of-{each.label}" data-label="{each.label}" data-uses="{" ".join(each.uses)}" '
             chip += f'data-symbols="{" ".join(map(str, symbols))}" title="{name}">{each.label}</a> '
@@ -169,7 +169,7 @@ def _graph(derivations: Sequence[Derivation]) -> tuple[str, str]:
         choices += f'<optgroup label="{head}">{choice}</optgroup>'
         lists += f"<h3>{head}</h3><dl>{entry}</dl>"
     symbols = sorted((plain(row.latex), escape(row.meaning.partition("$")[0].rstrip(", ")), places[row.latex])
-                     for row in whole.nomenclature)  # fmt: skip
+                     for row in SYMBOLS)  # fmt: skip
     names = "".join(
         f'<option value="{place}">{name}: {meaning}</option>' for name, meaning, place in symbols
     )

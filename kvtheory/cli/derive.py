@@ -44,7 +44,7 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 )  # fmt: skip
 @click.option(
     "--only", default="", metavar="eq27,F3,...", callback=console.names,
-    help="Labels of the derivations to print, such as eq27, 27 or F3.",
+    help="Labels of the derivations to print, such as eq27, 27, F3 or eq26-eq48.",
 )  # fmt: skip
 @click.option("--closure", is_flag=True, help="Add all derivations that these depend on, in order.")
 @click.option(
@@ -57,6 +57,10 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 @click.option(
     "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
     metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell_r"; --symbols lists the names.',
+)  # fmt: skip
+@click.option(
+    "--label-prefix", default="kv:", show_default=True, metavar="TEXT",
+    help="Beginning of each \\label of a fragment.",
 )  # fmt: skip
 @click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
@@ -73,8 +77,8 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 @console.overwrite_option
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
-    shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
-    recheck: bool, as_json: bool,
+    shape: str | None, notation: Path | None, label_prefix: str, overrides: Sequence[str], listing: bool,
+    symbols: bool, recheck: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Derive the equations, check every step, and print them.
 
@@ -87,6 +91,7 @@ def derive(
     from kvtheory.derivations.catalogue import CONTENTS
     from kvtheory.derivations.labels import find
     from kvtheory.derivations.render import check_directory, write_edition
+    from kvtheory.derivations.render.edition import check_prefix
     from kvtheory.derivations.render.notation import NAMES, check_letters, plain, read_notation
 
     if symbols:
@@ -109,6 +114,7 @@ def derive(
             raise ValueError("--recheck writes nothing; it goes with --only and --json alone")
         _recheck(find(console.split(only), CONTENTS), as_json)
         return
+    check_prefix(label_prefix)
     wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
     letters = read_notation(notation) if notation else {}
     if not (labels or shape):  # all symbols are shown
@@ -120,7 +126,7 @@ def derive(
     with console.progress_bar("derive") as report:
         deriving = lambda share, words: report(DERIVING * share, words)  # noqa: E731
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
-        edition = _edition(labels, closure, shape, letters, given, deriving)
+        edition = _edition(labels, closure, shape, letters, label_prefix, given, deriving)
         paths = write_edition(edition, output, wanted, writing)
     _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
 
@@ -218,7 +224,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
 
 
 def _edition(
-    labels: list[str], closure: bool, shape: str | None, notation: dict[str, str],
+    labels: list[str], closure: bool, shape: str | None, notation: dict[str, str], label_prefix: str,
     given: tuple[dict[str, float], str, str] | None, report: Callable[[float, str], None],
 ) -> "Edition":  # fmt: skip
     """Derive what was requested, after a line with the number of records."""
@@ -229,6 +235,7 @@ def _edition(
     from kvtheory.derivations.shape import derive_shape, symbols, title
 
     about: dict[str, Any] = {"command": _command(), "version": __version__, "notation": notation}
+    about["label_prefix"] = label_prefix
     if shape is not None:
         return edition(derive_shape(shape), **about, title=title(shape), symbols=symbols(shape))
     following = {label for label, _ in FOLLOWING} if given else set()
@@ -251,7 +258,8 @@ def _command() -> str:
     context, words = click.get_current_context(), []
     options = {option.name: option.opts[-1] for option in context.command.params}
     for name, value in context.params.items():
-        if not value or name in {"output", "formats", "as_json"}:
+        chosen = context.get_parameter_source(name) != ParameterSource.DEFAULT
+        if not chosen or value is False or name in {"output", "formats", "as_json"}:
             continue
         for each in value if isinstance(value, tuple) else [value]:
             words += [] if name == "scene" else [options[name]]

@@ -1,0 +1,409 @@
+r"""Mathematics as one writes it by hand: the only place that decides how an expression is printed.
+
+A sum begins with a positive term, a common factor stands before its bracket; a product is a number, then
+constants, letters (capital, Greek, small), roots, brackets, functions; roots of one order are one root;
+dots and primes are derivatives.
+
+>>> C, V, W, delta, R = sp.symbols("C V W delta R", positive=True)
+>>> doprint(W - C * V * delta)
+'W - C V \\delta'
+>>> doprint(3 * sp.sqrt(3) / 4 - sp.Rational(3, 4)), doprint(sp.sqrt(2 * R * delta))
+('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
+>>> doprint(C * V * (1 - C / W) / R)
+'\\frac{C V}{R} \\left(1 - \\frac{C}{W}\\right)'
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from math import gcd
+from typing import Any, NamedTuple
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.printing.latex import LatexPrinter
+
+from .nomenclature import CONSTANTS, SYMBOLS, TEX
+
+_TALL = sp.Integral, sp.Sum, sp.Product, sp.Subs, sp.Piecewise, sp.Limit
+"""What stands beside a fraction, not in it."""
+_CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
+_MOST_PRIMES = 3
+_MOST_TERMS = 5
+"""Of a sum in a bracket of its own: in a longer one a line could not be broken."""
+_ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check|math[a-z]+) ?\{?")
+
+# A function of time is printed without its argument, unless its letter alone is also that of a number.
+
+
+class _Root(NamedTuple):
+    """A product of powers with the same denominator of their exponents: above and below its line."""
+
+    order: int
+    power: int
+    above: Sequence[sp.Expr]
+    below: Sequence[sp.Expr]
+
+
+def doprint(expr: sp.Expr) -> str:
+    """Return the LaTeX of an expression."""
+    return str(_PRINTER.doprint(expr))
+
+
+def _content(terms: Sequence[sp.Expr]) -> sp.Rational:
+    """Return the rational factor that a sum has in common; a fraction, where all have it."""
+    numbers = [term.as_coeff_Mul()[0] for term in terms]
+    if not all(number.is_Rational for number in numbers):
+        return sp.S.One
+    sign = -1 if all(number < 0 for number in numbers) else 1
+    if all(number.is_Integer for number in numbers):
+        return sp.Integer(sign * gcd(*map(int, numbers)))
+    low = sp.ilcm(*(number.q for number in numbers))
+    if all(term.is_number for term in terms) or all(number.q == low for number in numbers):
+        return sp.Rational(sign * gcd(*(int(number * low) for number in numbers)), low)
+    return sp.Integer(sign)
+
+
+def _primitive(expr: sp.Expr) -> tuple[sp.Rational, sp.Expr]:
+    """Return the common factor of a sum and the rest."""
+    content = _content(expr.args)
+    if content == 1:
+        return content, expr
+    return content, sp.Add(*(term / content for term in expr.args))
+
+
+def _is_negative(term: sp.Expr) -> bool:
+    return bool(term.as_coeff_Mul()[0].is_negative)
+
+
+def _rank(factor: sp.Expr) -> tuple[Any, ...]:
+    """Return the place of a factor in a product."""
+    base = factor.as_base_exp()[0] if factor.is_Pow else factor
+    if factor.is_number or str(base).startswith("\\"):
+        return 0, not isinstance(factor, sp.NumberSymbol), str(factor)
+    if isinstance(base, sp.Symbol | sp.Indexed):
+        letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
+        return (
+            1,
+            1 if letter.startswith("\\") else 2 * letter[0].islower(),
+            letter.replace(r"\var", "\\"),
+        )
+    if isinstance(base, sp.Derivative | AppliedUndef):
+        return (
+            2,
+            str(base.expr) if isinstance(base, sp.Derivative) else str(base),
+            base.is_Derivative,
+        )
+    kinds = (
+        (isinstance(base, sp.Add), 4), (isinstance(factor, sp.exp), 6), (isinstance(base, _TALL), 7),
+    )  # fmt: skip
+    return next((place for found, place in kinds if found), 5), str(base), 0
+
+
+class Printer(LatexPrinter):
+    """SymPy's own, in the order of a hand."""
+
+    def _print_Add(self, expr: sp.Add, order: Any = None) -> str:  # noqa: N802
+        content, rest = _primitive(expr)
+        if abs(content) != 1 and len(expr.args) <= _MOST_TERMS:
+            return self._product(content, [rest])
+        return self._sum(expr)
+
+    def _sum(self, expr: sp.Add) -> str:
+        terms = self._ordered(expr)
+        shown = [self._term(terms[0])]
+        for term in terms[1:]:
+            text = self._term(term)
+            shown.append(f"- {text[1:].strip()}" if text.startswith("-") else f"+ {text}")
+        return " ".join(shown)
+
+    def _term(self, term: sp.Expr) -> str:
+        text = str(self._print(term))
+        return rf"\left({text}\right)" if term.is_Add or term.is_Relational else text
+
+    def _ordered(self, expr: sp.Add) -> list[sp.Expr]:
+        """Return the terms: powers of one letter fall, what has two terms begins with the number."""
+        terms = list(self._as_ordered_terms(expr))
+        numbers = [term for term in terms if term.is_Rational]
+        letters = expr.free_symbols
+        rising = len(terms) == 2 or (len(letters) == 1 and _is_negative(terms[0]))
+        if rising and numbers and expr.is_polynomial(*letters) and len(letters) == 1:
+            terms.reverse()
+        elif numbers and (len(terms) == 2 or len(letters) > 1 or _is_negative(terms[0])):
+            terms = [*numbers, *(term for term in terms if term not in numbers)]
+        first = next((term for term in terms if not _is_negative(term)), terms[0])
+        return [first, *(term for term in terms if term is not first)]
+
+    def _print_Mul(self, expr: sp.Mul) -> str:  # noqa: N802
+        if not expr.is_commutative or any(isinstance(each, sp.MatrixBase) for each in expr.args):
+            return str(super()._print_Mul(expr))
+        numbers = [each for each in expr.args if each.is_Rational]
+        return self._product(sp.Mul(*numbers), [each for each in expr.args if not each.is_Rational])
+
+    def _print_Pow(self, expr: sp.Pow) -> str:  # noqa: N802
+        base, exponent = expr.args
+        common = base.is_Add and exponent.is_Integer and _content(base.args) != 1
+        if exponent.is_Rational and (exponent.is_negative or common):
+            return self._product(sp.S.One, [expr])
+        return self._power(base, exponent)
+
+    def _power(self, base: sp.Expr, exponent: sp.Expr) -> str:
+        if exponent == 1:
+            return str(self._print(base))
+        if exponent.is_Rational and exponent.p == 1:
+            return self._root(_Root(exponent.q, 1, [base], []))
+        if base.is_Function and not isinstance(base, AppliedUndef):
+            return str(super()._print_Pow(sp.Pow(base, exponent, evaluate=False)))
+        shown = str(self._print(base))
+        called = isinstance(base, AppliedUndef | sp.Derivative) and shown.endswith(")")
+        closed = (
+            called
+            or (isinstance(base, _CLOSED) and "^" not in shown and "'" not in shown)
+            or (base.is_Integer and base.is_nonnegative)
+            or isinstance(base, sp.NumberSymbol)
+            or (shown.startswith(r"\dot") and base.is_Derivative)
+        )
+        text = (
+            f"{exponent.p}/{exponent.q}"
+            if exponent.is_Rational and exponent.q > 1
+            else self._print(exponent)
+        )
+        return f"{shown if closed else self._bracket(shown)}^{{{text}}}"
+
+    def _bracket(self, shown: str) -> str:
+        return rf"\left({shown}\right)"
+
+    def _product(self, number: sp.Rational, factors: Iterable[sp.Expr]) -> str:
+        """Print a product: sign, fraction, and what stands beside it."""
+        number, named, factors = _named(number, list(factors))
+        number, above, below, roots = self._parted(number, factors)
+        above += [each for each in named if each.as_base_exp()[1] > 0]
+        below += [1 / each for each in named if each.as_base_exp()[1] < 0]
+        beside: list[str] = []
+        upper: list[sp.Expr | _Root] = [*above]
+        lower: list[sp.Expr | _Root] = [*below]
+        for root in roots:
+            if root.above and root.below:
+                beside.append(self._root(root))
+            elif root.above:
+                upper.append(root)
+            else:
+                lower.append(root._replace(above=root.below, below=()))
+        sign = "- " if number < 0 else ""
+        top, bottom = abs(number.p), number.q
+        if lower or bottom > 1:
+            open_above = not any(map(_is_sum, lower))
+            sums = not lower and (top, len(upper)) != (1, 1)  # 3/4 (a + b), but (a + b)/2
+            tall = [
+                each
+                for each in upper
+                if (self._is_tall(each) and open_above) or (sums and _is_sum(each))
+            ]
+            upper = [each for each in upper if each not in tall]
+            beside += [self._factor(each, alone=False) for each in sorted(tall, key=self._place)]
+        line = self._line(top, upper)
+        if lower or bottom > 1:
+            line = rf"\frac{{{line or '1'}}}{{{self._line(bottom, lower)}}}"
+        return sign + (" ".join(part for part in (line, *beside) if part) or "1")
+
+    def _line(self, number: int, factors: list[Any]) -> str:
+        """Print a number and factors side by side."""
+        ranked = sorted(factors, key=self._place)
+        alone = len(ranked) == 1 and number == 1
+        shown = [self._factor(each, alone=alone) for each in ranked]
+        digits = [] if number == 1 and shown else [str(number)]
+        if digits and shown and shown[0][0].isdigit():
+            digits.append(r"\cdot")
+        return " ".join([*digits, *shown]) if (shown or number != 1) else ""
+
+    def _place(self, factor: sp.Expr | _Root) -> tuple[Any, ...]:
+        if not isinstance(factor, _Root):
+            return _rank(factor)
+        plain = all(each.is_number for each in factor.above)
+        return (0, True, str(factor)) if plain else (3, factor.order, str(factor))
+
+    def _factor(self, factor: sp.Expr | _Root, *, alone: bool) -> str:
+        if isinstance(factor, _Root):
+            return self._root(factor)
+        shown = self._sum(factor) if factor.is_Add else str(self._print(factor))
+        loose = factor.is_Add or isinstance(factor, sp.Piecewise | sp.Mul | sp.Rel)
+        return self._bracket(shown) if loose and not alone else shown
+
+    def _is_tall(self, factor: sp.Expr | _Root) -> bool:
+        if isinstance(factor, _Root):
+            return False
+        base = factor.as_base_exp()[0]
+        if isinstance(factor, sp.Derivative):
+            return str(self._print(factor)).startswith(r"\frac")
+        return isinstance(factor, _TALL) or (
+            base.is_Add and any(mark in self._sum(base) for mark in (r"\frac", r"\int"))
+        )
+
+    def _parted(
+        self, number: sp.Rational, factors: Iterable[sp.Expr]
+    ) -> tuple[sp.Rational, list[sp.Expr], list[sp.Expr], list[_Root]]:
+        """Return the number, what stands above and below the line, and the roots."""
+        above, below = [], []
+        rooted: dict[tuple[int, int], list[tuple[sp.Expr, sp.Rational]]] = {}
+        for factor in factors:
+            base, exponent = factor.args if factor.is_Pow else (factor, sp.S.One)
+            if base.is_Add and exponent.is_Integer:
+                content, base = _primitive(base)
+                number *= content**exponent
+            if exponent.is_Rational and not exponent.is_Integer and base.is_nonnegative:
+                key = (exponent.q, 0) if abs(exponent) < 1 else (exponent.q, abs(exponent.p))
+                rooted.setdefault(key, []).append((base, exponent))
+            elif exponent.is_Rational and exponent.is_negative:
+                below.append(sp.Pow(base, -exponent, evaluate=False) if exponent != -1 else base)
+            else:
+                above.append(base if exponent == 1 else sp.Pow(base, exponent, evaluate=False))
+        roots = []
+        for (order, power), members in rooted.items():
+            parts = [abs(exponent.p) for _, exponent in members]
+            common = power or gcd(*parts)
+            number, root = self._joined(number, order, common, members)
+            roots.append(root)
+        return number, above, below, roots
+
+    def _joined(
+        self,
+        number: sp.Rational,
+        order: int,
+        power: int,
+        members: list[tuple[sp.Expr, sp.Rational]],
+    ) -> tuple[sp.Rational, _Root]:
+        """Write powers with one denominator as one root, with the number that it can take up."""
+        above: list[sp.Expr] = []
+        below: list[sp.Expr] = []
+        for base, exponent in members:
+            lone = len(members) == 1 or order > 2 or not base.is_Integer
+            if not lone and exponent > 0 and number.q % base == 0:
+                number *= base
+                below.append(base)
+            else:
+                (above if exponent > 0 else below).append(base ** (abs(exponent.p) // power))
+        return number, _Root(order, power, above, below)
+
+    def _root(self, root: _Root) -> str:
+        inner = (
+            self._product(sp.S.One, [sp.Mul(*root.above, *(1 / each for each in root.below))])
+            if root.below
+            else self._line(1, _flat(root.above))
+        )
+        order = "" if root.order == 2 else f"[{root.order}]"
+        if root.power == 1:
+            return rf"\sqrt{order}{{{inner}}}"
+        lone = (
+            len(root.above) == 1
+            and not root.below
+            and isinstance(root.above[0], (*_CLOSED, sp.Integer))
+        )
+        shown = inner if lone and "^" not in inner else self._bracket(inner)
+        return f"{shown}^{{{root.power}/{root.order}}}"
+
+    def _print_UnevaluatedExpr(self, expr: sp.UnevaluatedExpr) -> str:  # noqa: N802
+        return str(self._print(expr.args[0]))
+
+    def _print_Integral(self, expr: sp.Integral) -> str:  # noqa: N802
+        return str(super()._print_Integral(expr)).replace(r"\int\limits", r"\int")
+
+    def _print_exp(self, expr: sp.exp, exp: Any = None) -> str:
+        inner = self._print(expr.args[0])
+        shown = rf"\exp\left({inner}\right)" if r"\frac" in inner else f"e^{{{inner}}}"
+        return shown if exp is None else rf"{self._bracket(shown)}^{{{exp}}}"
+
+    _print_ExpBase = _print_exp  # noqa: N815
+
+    def _print_Function(self, expr: sp.Function, exp: Any = None) -> str:  # noqa: N802
+        if not isinstance(expr, AppliedUndef):
+            return self._applied(super()._print_Function(expr, exp), expr)
+        called = self._called(expr)
+        return called if exp is None else rf"{self._bracket(called)}^{{{exp}}}"
+
+    def _print_log(self, expr: sp.log, exp: Any = None) -> str:
+        return self._applied(super()._print_log(expr, exp), expr)
+
+    def _applied(self, shown: str, call: sp.Function) -> str:
+        """Print the argument of a known function, without brackets where it is one letter."""
+        name, _, inner = shown.partition(r"{\left(")
+        if not inner or len(call.args) != 1:
+            return shown
+        inner = inner.removesuffix(r" \right)}")
+        return f"{name} {inner}" if call.args[0].is_Symbol else name + self._bracket(inner)
+
+    def _hprint_Function(self, func: str) -> str:  # noqa: N802
+        plain = func in {"expm1", "log1p"}  # no index
+        return rf"\operatorname{{{func}}}" if plain else str(super()._hprint_Function(func))
+
+    def _called(self, call: AppliedUndef, order: int = 0) -> str:
+        """Print a function at its place, with a dot for each derivative to time, else a prime."""
+        name = self._print(sp.Symbol(call.func.__name__))
+        running = all(each.is_Symbol for each in call.args) and str(call.args[-1]) in {"t", "s"}
+        if running and name + "'" * order not in SYMBOLS and (order or len(call.args) == 1):
+            inner = ""
+        else:
+            inner = f"({', '.join(map(self._print, call.args))})"
+            inner = self._bracket(inner[1:-1]) if r"\frac" in inner or r"\left" in inner else inner
+        if order and str(call.args[-1]) == "t" and order <= 2:
+            letter, script, rest = name.partition("_")
+            return rf"\{'d' * order}ot{{{letter}}}{script}{rest}{inner}"
+        return name + "'" * order + inner
+
+    def _print_Derivative(self, expr: sp.Derivative) -> str:  # noqa: N802
+        call = expr.expr
+        plain = isinstance(call, AppliedUndef) and len(expr.variable_count) == 1
+        if plain and call.args[-1] == expr.variables[0] and len(expr.variables) <= _MOST_PRIMES:
+            return self._called(call, len(expr.variables))
+        if call.is_Symbol and len(expr.variable_count) == 1:
+            ((variable, order),) = expr.variable_count
+            power = "" if order == 1 else f"^{{{order}}}"
+            below = rf"\mathrm{{d}} {self._print(variable)}{power}"
+            return rf"\frac{{\mathrm{{d}}{power} {self._print(call)}}}{{{below}}}"
+        return str(super()._print_Derivative(expr))
+
+    def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
+        inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
+        if isinstance(inner, sp.Derivative) and isinstance(inner.expr, AppliedUndef):
+            call, letters = inner.expr, set(inner.variables)
+            if letters == {call.args[-1]} == set(place) and len(inner.variables) <= _MOST_PRIMES:
+                return (
+                    self._called(call.func(*call.args[:-1], node.point[0]), len(inner.variables))
+                    if str(call.args[-1]) != "t"
+                    else self._valued(node)
+                )
+        return self._valued(node)
+
+    def _valued(self, node: sp.Subs) -> str:
+        inner = str(self._print(node.expr))
+        loose = any(part.is_Add for part in sp.Mul.make_args(node.expr)) or inner.startswith("- ")
+        pairs = zip(node.variables, node.point, strict=True)
+        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
+        return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
+
+
+def _is_sum(factor: sp.Expr | _Root) -> bool:
+    return not isinstance(factor, _Root) and bool(factor.as_base_exp()[0].is_Add)
+
+
+def _named(
+    number: sp.Rational, factors: list[sp.Expr]
+) -> tuple[sp.Rational, list[sp.Expr], list[sp.Expr]]:
+    """Find a constant with a letter of its own in the number of a product."""
+    surds = [each for each in factors if each.is_Pow and each.is_number and each.base.is_Rational]
+    value = number * sp.Mul(*surds)
+    for letter, constant in CONSTANTS.items() if surds else ():
+        for power in (sp.S.One, sp.Rational(2, 3), sp.S.NegativeOne):
+            known = constant**power
+            ratio, low = value / known, known.as_coeff_Mul()[0].q
+            whole = ratio.is_Integer or (ratio.is_Rational and power > 0)
+            if whole and value.as_coeff_Mul()[0].q % low == 0:
+                rest = [each for each in factors if each not in surds]
+                return ratio, [sp.Symbol(letter, positive=True) ** power], rest
+    return number, [], factors
+
+
+def _flat(factors: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Return the factors of factors, numbers apart."""
+    return [part for each in factors for part in sp.Mul.make_args(each)]
+
+
+_PRINTER = Printer({"symbol_names": TEX, "fold_frac_powers": True, "inv_trig_style": "full"})
