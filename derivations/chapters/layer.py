@@ -1,0 +1,3 @@
+"""x"""
+from ..engine.chapter import Chapter
+result = Chapter("Layer")
