@@ -23,7 +23,7 @@ CHAPTERS: tuple[ModuleType, ...] = tuple(
         *("transient_motion", "transient_rates", "transient_balance"),
         *("spring_drive", "spring_stability", "spring_limits", "spring_ringing"),
         *("rubber_drive", "rubber_transient"),
-        *("drop", "layer"),
+        *("drop", "layer", "body"),
         *("element_schemes", "element_edges", "element_strips", "element_arms"),
     )
 )

@@ -12,7 +12,8 @@ from ..engine.step import Proof
 from .model import x
 
 (
-    poisson, modulus, thickness, wave, height, kappa_h, in_phase, out_of_phase, transfer, crest, pull, squeezed,
+    poisson, modulus, thickness, wave, height, kappa_h, in_phase, out_of_phase, transfer, crest, pull,
+    squeezed,
 ) = symbols(r"""
     nu_P     \nu_{\mathrm{P}}  1    Poisson's ratio of the layer  from scene
     E_0      -                Pa   modulus of the layer, relaxed  from scene
@@ -53,8 +54,8 @@ def _balance(proof: Proof) -> None:
     r"""Layer: Navier's equations with the mean stress as an unknown.
 
     Hooke's law in plane strain, $\sigma = \frac{E_0}{1 + \nu_{\mathrm{P}}} (\epsilon + \nu_{\mathrm{P}} s_H)$
-    with $s_H$ on the diagonal alone. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an incompressible
-    layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
+    with $s_H$ on the diagonal alone. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an
+    incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, half, shear = sp.Derivative, sp.Rational(1, 2), modulus / (1 + nu)
@@ -92,10 +93,10 @@ def _field(proof: Proof) -> None:
 def _compliance(proof: Proof) -> None:
     r"""Layer: its compliance.
 
-    For $0 < \nu_{\mathrm{P}} \le 1/2$. The depression of the surface is $\frac{2 (1 - \nu_{\mathrm{P}}^2)}{E_0
-    k_{\mathrm{w}}} T_H$ times the pressure.
+    For $0 < \nu_{\mathrm{P}} \le 1/2$. The depression of the surface is $\frac{2 (1 -
+    \nu_{\mathrm{P}}^2)}{E_0 k_{\mathrm{w}}} T_H$ times the pressure.
     """
-    u, w, s = (each(x, z) for each in (along, up, mean))
+    w, s = up(x, z), mean(x, z)
     proof.recall("F30-field", w, s, k, in_phase, out_of_phase)
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     phase, stress = sp.cos(k * x), modulus / (1 + nu) * (sp.Derivative(w, z) + nu * s)
@@ -126,8 +127,8 @@ def _thin(proof: Proof) -> None:
     r"""Thin layer: independent elements, $1/K$, and the next term.
 
     For $\nu_{\mathrm{P}} < 1/2$. So the $K$ of a thin layer is
-    $\frac{E_0 (1 - \nu_{\mathrm{P}})}{(1 + \nu_{\mathrm{P}}) (1 - 2 \nu_{\mathrm{P}}) H}$; it fails by the next
-    term, which grows beyond all bounds as $\nu_{\mathrm{P}} \to 1/2$.
+    $\frac{E_0 (1 - \nu_{\mathrm{P}})}{(1 + \nu_{\mathrm{P}}) (1 - 2 \nu_{\mathrm{P}}) H}$; it fails by
+    the next term, which grows beyond all bounds as $\nu_{\mathrm{P}} \to 1/2$.
     """
     _recall(proof)
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
