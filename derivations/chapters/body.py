@@ -138,9 +138,11 @@ def _parabola(proof: Proof) -> None:
 
     It does not depend on the body: Eq. (42), where $\tau_E$ is $C/K$.
     """
-    proof.recall("F28")
+    proof.recall("F28", (F, V * mean_time * BENDING), W)
     proof.define(_d(h(x), (x, 2)), 1 / R, "Eq. (3)")
-    proof.equal(mu, V * mean_time / R, "the mean of a constant")
+    proof.equal(F, V * mean_time / R * W, "a constant is its own mean")
+    proof.recall("eq37")
+    proof.equal(mu, V * mean_time / R, "the friction coefficient")
 
 
 @result("F29")
