@@ -160,8 +160,8 @@ def _thick(proof: Proof) -> None:
     r"""Thick layer: a half-space.
 
     All that differs from 1 goes with $e^{-2 \kappa_H}$, $\kappa_H e^{-2 \kappa_H}$ or $\kappa_H^2 e^{-2
-    \kappa_H}$, and vanishes as $\kappa_H \to \infty$: short waves do not reach the ground. In this form nothing
-    overflows.
+    \kappa_H}$, and vanishes as $\kappa_H \to \infty$: short waves do not reach the ground. In this form
+    nothing overflows.
     """
     fade = sp.exp(-2 * kappa)
     _recall(proof)
