@@ -1,12 +1,16 @@
 """Derivations F28 to F32: forces, restitution and compliance against quadrature, marching and numbers."""
 
+import math
+
 import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.chapters import body, drop, layer
-from scipy.integrate import solve_ivp
+from kvtheory.derivations.chapters import body, drop, layer, viscoelastic_ball
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+from scipy.special import hyp1f1
 
 import kvtheory as kv
 from tests.conftest import digits
@@ -201,3 +205,38 @@ def test_friction_at_high_velocity_is_that_of_the_elastic_energy(
     form = claim.rhs.subs({body.fading_rate: 1, s.V: 1, s.delta: 1})
     assert float(form) == pytest.approx(2 / (load_power + 1), rel=1e-15)
     assert found == pytest.approx(float(form), rel=2e-3)
+
+
+def test_a_ball_on_arms_is_one_quadrature_over_its_strips():
+    radius, across, depth, fast, spring = 0.01, 0.015, 2e-4, 0.05, 1e10
+    arms = [(4e10, 0.02), (1.5e10, 0.3)]
+
+    def G(n, c):  # the n-fold integral of the relaxation function
+        parts = (stiff * hyp1f1(1, n + 1, -c / (fast * time)) for stiff, time in arms)
+        return c**n / math.factorial(n) * (spring + sum(parts))
+
+    middle = math.sqrt(2 * radius * depth)
+    longest = brentq(lambda c: G(2, c) / G(1, c) - middle, middle, 2 * middle, xtol=1e-15)
+
+    def added(rate):
+        names = (viscoelastic_ball.c, s.a, s.R, viscoelastic_ball.G_2(viscoelastic_ball.c))
+        numeric = sp.lambdify(names, rate, "math")
+
+        def density(angle):  # c = longest sin(angle): no root at the end
+            c = longest * math.sin(angle)
+            half, gained = G(2, c) / G(1, c), 1 - G(2, c) * G(0, c) / G(1, c) ** 2
+            place = math.sqrt(across / radius * max(middle**2 - half**2, 0))
+            return (
+                2 * place * gained * numeric(c, half, radius, G(2, c)) * longest * math.cos(angle)
+            )
+
+        return quad(density, 0, math.pi / 2, epsabs=0)[0]
+
+    load, friction = map(added, (viscoelastic_ball.LOAD_RATE, viscoelastic_ball.FRICTION_RATE))
+    foundation = kv.GeneralizedMaxwell(spring, arms=arms)
+    sphere = kv.Sphere(radius, radius_across=across)
+    found = kv.steady(
+        kv.Scene(sphere, foundation, kv.Fixed(depth), kv.Drive(fast)), method="quadrature"
+    )
+    assert load == pytest.approx(float(found.load), rel=1e-6)
+    assert friction == pytest.approx(float(found.friction_force), rel=1e-6)
