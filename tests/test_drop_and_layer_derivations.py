@@ -1,6 +1,7 @@
 """Derivations F28 to F32: forces, restitution and compliance against quadrature, marching and numbers."""
 
 import math
+import re
 
 import mpmath as mp
 import numpy as np
@@ -8,8 +9,9 @@ import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.chapters import body, drop, layer, viscoelastic_ball
+from kvtheory.derivations.shape import derive_shape
 from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 from scipy.special import hyp1f1
 
 import kvtheory as kv
@@ -240,3 +242,59 @@ def test_a_ball_on_arms_is_one_quadrature_over_its_strips():
     )
     assert load == pytest.approx(float(found.load), rel=1e-6)
     assert friction == pytest.approx(float(found.friction_force), rel=1e-6)
+
+
+class PowerUnderWeight:
+    """h = c |x|**n under a load, with stiffness and retardation time 1, by quadrature and roots."""
+
+    def __init__(self, factor, exponent, load, velocity):
+        self.c, self.n, self.V = factor, exponent, velocity
+        half = brentq(lambda a: self.forces(a)[0] - load, 1e-9, 10.0, xtol=1e-14, rtol=1e-13)
+        self.friction = self.forces(half)[1] / load
+
+    def forces(self, a):
+        slope = lambda x: self.c * self.n * np.sign(x) * np.abs(x) ** (self.n - 1)  # noqa: E731
+        pressure = lambda x: self.c * (a**self.n - np.abs(x) ** self.n) - self.V * slope(x)  # noqa: E731
+        edge = brentq(pressure, 0.0, a, xtol=1e-15) if pressure(a) < 0 else a
+        parts = ((-a, 0.0), (0.0, edge))
+        load = sum(quad(pressure, *part, epsabs=0)[0] for part in parts)
+        return load, sum(
+            quad(lambda x: -slope(x) * pressure(x), *part, epsabs=1e-16)[0] for part in parts
+        )
+
+
+@pytest.mark.parametrize(
+    ("text", "factor", "exponent"), [("c*x^4", 0.7, 4.0), ("c*abs(x)**1.5", 0.7, 1.5)]
+)
+def test_a_shape_under_a_dead_weight(text, factor, exponent):
+    derived = {each.label.removeprefix("shape-weight-"): each for each in derive_shape(text)}
+    load = 0.3
+    point = {sp.Symbol("c", positive=True): factor, s.K: 1, s.tau: 1, s.W: load}
+
+    def value(label, velocity):
+        return float(derived[label].steps[-1].claim.rhs.subs({**point, s.V: velocity}))
+
+    for label, velocity in (("low", 1e-5), ("high", 1e7)):
+        found = PowerUnderWeight(factor, exponent, load, velocity).friction
+        assert value(label, velocity) == pytest.approx(found, rel=2e-3)
+    crossing = next(
+        step for step in derived["crossing"].steps if step.left == "V^{*}"
+    ).claim.rhs.subs(point)
+    meets = float(crossing)
+    assert value("low", meets) == pytest.approx(value("high", meets), rel=1e-12)
+    numbers = [float(each) for each in re.findall(r"= (\d\.\d+)", derived["maximum"].text)]
+    length = (load / factor) ** (1 / (exponent + 1))
+    velocity, height = numbers[1] * length, numbers[2] * factor * length ** (exponent - 1)
+    best = minimize_scalar(
+        lambda V: -PowerUnderWeight(factor, exponent, load, V).friction,
+        bounds=(velocity / 2, velocity * 2), method="bounded", options={"xatol": 1e-8},
+    )  # fmt: skip
+    assert -best.fun == pytest.approx(height, rel=1e-5)
+    assert best.x == pytest.approx(velocity, rel=1e-3)
+    Lambda, scaled = derived["groups"].steps[-1].claim.rhs
+    [q] = Lambda.free_symbols
+    place = brentq(lambda at: float(Lambda.subs(q, at)) - 2.0, 1e-3, 1.0)
+    found = PowerUnderWeight(factor, exponent, load, 2.0 * length).friction
+    assert float(scaled.subs(q, place)) * factor * length ** (exponent - 1) == pytest.approx(
+        found, rel=1e-6
+    )

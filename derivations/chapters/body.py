@@ -140,6 +140,12 @@ def _parabola(proof: Proof) -> None:
     """
     proof.recall("F28", (F, V * mean_time * BENDING), W)
     proof.define(_d(h(x), (x, 2)), 1 / R, "Eq. (3)")
+    proof.define(_d(Q, x), P, "a primitive of the pressure")
+    ends = summed(last) - summed(first)
+    proof.integral(
+        BENDING, _d(h(x), (x, 2)) * P, ALL, Q / R, "of a constant curvature", value=ends / R
+    )
+    proof.integral(W, P, ALL, Q, "the load", value=ends)
     proof.equal(F, V * mean_time / R * W, "a constant is its own mean")
     proof.recall("eq37")
     proof.equal(mu, V * mean_time / R, "the friction coefficient")
