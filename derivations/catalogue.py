@@ -20,10 +20,12 @@ CHAPTERS: tuple[ModuleType, ...] = tuple(
         *("power_law", "power_law_limits", "power_law_weight", "power_law_errors", "wedge"),
         *("ball", "ball_slopes"),
         *("viscoelastic", "relaxation", "viscoelastic_limits", "few_arms"),
+        "viscoelastic_ball",
         *("transient_scaling", "transient_memory", "contact_interval", "transient_edges"),
         *("transient_motion", "transient_rates", "transient_balance"),
         *("spring_drive", "spring_stability", "spring_limits", "spring_ringing"),
         *("rubber_drive", "rubber_transient"),
+        *("drop", "layer", "body"),
         *("element_schemes", "element_edges", "element_strips", "element_arms"),
     )
 )

@@ -1,4 +1,4 @@
-"""Steady sliding of an indenter of a user's shape: edges, load, friction and both limits.
+"""Steady sliding of an indenter of a user's shape: edges, load, friction and both limits, and a dead weight.
 
 The shape rises as a convex sum of powers of |x|. With q = x_TE/a everything is explicit: a is the half
 length of the contact at rest, delta = h(a), and l_r follows from q. If the edges are
@@ -16,6 +16,8 @@ from .engine.nomenclature import Symbol, symbol
 from .engine.record import Derivation
 from .engine.step import Proof, StepError
 from .shape_text import Shape, distance, read_shape
+from .shape_weight import ROWS as WEIGHT_ROWS
+from .shape_weight import Weight
 
 W_ahead, W_behind, F_ahead = (
     symbol(f"{force}_{side}", latex=rf"{force}_{{\mathrm{{{side[0]}}}}}")
@@ -69,7 +71,13 @@ def symbols(text: str) -> tuple[Symbol, ...]:
             meaning = f"part of the {name} that is carried {side} the lowest line"
             rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit, None))
     rows.append(Symbol(tex(distance), "distance from the lowest line", "m", "shape-rise"))
-    return (*rows, Symbol("a", "half length of the contact at rest", "m", None))
+    rows.append(Symbol("a", "half length of the contact at rest", "m", None))
+    return (*rows, *(WEIGHT_ROWS if _is_blunt_power(shape) else ()))
+
+
+def _is_blunt_power(shape: Shape) -> bool:
+    """Tell whether the shape is one power with a rounded tip, of which the dead weight is derived too."""
+    return len(shape.powers) == 1 and shape.powers[0] > 1
 
 
 def _unit(shape: Shape, parameter: sp.Symbol) -> str:
@@ -100,6 +108,9 @@ class _Chapter:
         yield self._force(F, F_ahead, F_behind, "friction")
         yield self._coefficient()
         yield from self._limits()
+        if _is_blunt_power(self.shape):
+            power = self.shape.powers[0]
+            yield from Weight(self.shape.coefficient(power), power, self.variable).derive()
 
     def _proof(self, label: str, title: str, text: str = "") -> Proof:
         return Proof(

@@ -84,6 +84,7 @@ ARGUED = {
     *("F18-low", "F18-voigt", "F18-window", "F18-glassy", "F18-springpot", "F19-error-monotonic"),
     *("hurwitz", "F22-critical", "F22-flutter", "F23-surface", "F24-compression", "F25"),
     *("F27", "F27-close", "strips-rim", "strips-rule"),
+    *("F28", "F29", "F30-field", "F32-series", "F32-ball-series"),
 }
 """Results whose title rests on words, as their text says: there may be fewer, not more."""
 BY_WORDS = 85
