@@ -194,15 +194,21 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
     """Compare the noise of the normal force with that of entering elements."""
     W, fine = case.theory.static.load, case.resolution
     sigma, density = float(np.median(case.bands["normal_force"].noise)) / W, 1e-3 / fine.spacing
+    common = common_noise(case)
+    alike = (common or 0.0) >= COMMON and case.time.size > FEW_ROWS  # fewer are alike by chance
+    kind = (
+        "common to both forces, as that of elements" if alike else "not seen to be that of elements"
+    )
     if not fine.spacing_known:
-        sound = (common_noise(case) or 0.0) < COMMON
-        limit = LARGEST_UNCORRELATED if sound else COARSEST
-        kind = "not that of elements" if sound else "common to both forces, as that of elements"
+        limit = COARSEST if alike else LARGEST_UNCORRELATED
         how = f"estimated from {fine.spacing_read}" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
-    allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
+    allowed = 2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE
+    if common is not None and not alike:  # noise on top of the elements, as of a sensor
+        allowed = max(allowed, LARGEST_UNCORRELATED)
+    allowed *= case.tolerance
     b = float(np.median(case.edge_force)) / W
-    return sigma, allowed, f"N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
+    return sigma, allowed, f"{kind}; N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
 
 
 def elements(case: Case) -> tuple[float, float, str]:
