@@ -127,7 +127,8 @@ def allowance(
             lagging += support.mass * pace**2 * drift
             late = late + pace * drift
     force = np.fmax.reduce([_edge_force(theory, c, fine.spacing) for c in (now, before, after)])
-    lagging += _entering(theory, now, (before, after), 2.0 * force / fine.spacing)
+    if not theory.scene.held:
+        lagging += _entering(theory, now, (before, after), 2.0 * force / fine.spacing)
     smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), (drift, late), fine)
     if not theory.scene.drive.rigid:
         step = fine.time_step if first_order else 0.0
