@@ -11,7 +11,7 @@ import kvtheory as kv
 from kvtheory.api._compare import METHODS
 from kvtheory.checks import hypotheses
 from kvtheory.checks.checklist import judge, windows
-from kvtheory.checks.comparison_case import COARSEST, make_case
+from kvtheory.checks.comparison_case import COARSEST, COMMON, alike, common_noise, make_case
 from kvtheory.checks.noise import noise, rounded, time_rounding
 from kvtheory.checks.theory import Rates, Theory
 from kvtheory.checks.trial_elements import Rule, simulate
@@ -52,6 +52,24 @@ def test_each_check_fails_for_some_data_and_passes_for_sound_ones(name):
     for data, ok in ((exact(), True), (UNSOUND[name](), False)):
         case = make_case(theory, read(data), None, 1.0, COARSEST)
         assert {check.name: check.ok for check in judge(case)}[name] is ok
+
+
+@pytest.mark.parametrize(
+    ("rows", "share", "expected"), [(20, 0.65, False), (60, 0.65, True), (20, 0.02, True)]
+)
+def test_noise_of_few_rows_is_of_elements_only_if_it_is_nearly_the_same_in_both_forces(
+    rows, share, expected
+):
+    """`share` of the noise of friction is its own: a squared correlation of 0.7 comes about by chance."""
+    rng = np.random.default_rng(4)
+    every = np.linspace(0, DENSE.size - 1, rows).round().astype(int)
+    data = {name: values[every] for name, values in exact().items()}
+    common, own = rng.standard_normal((2, rows))
+    data["normal_force"] = data["normal_force"] * (1.0 + 0.01 * common)
+    data["friction_force"] = data["friction_force"] + 10.0 * (common + share * own)
+    case = make_case(Theory(kv.Scene(), METHODS), read(data), None, 1.0, COARSEST)
+    assert common_noise(case) > COMMON
+    assert alike(case) is expected
 
 
 def test_the_balance_finds_a_force_that_is_lacking():

@@ -139,6 +139,20 @@ def test_theory_agrees_with_itself_noisy_and_rounded_too(name):
         assert failed(kv.compare(SCENES[name], {"time": series["time"], **changed})) == []
 
 
+@pytest.mark.parametrize("steps", [400, 800])
+def test_an_oscillation_by_a_first_order_scheme_may_grow_with_the_time(steps):
+    """Euler's method takes h/(2 |T|^2) from its decay; nothing is said of scheme and step."""
+    given = kv.Scene(
+        kv.Sphere(0.0077), kv.Foundation(4.7e8, 0.047), kv.DeadWeight(7.8), kv.Drive(0.4),
+        kv.Run(0.054),
+    )  # fmt: skip
+    a = float(kv.steady(given, over={"drive.velocity": 0.0}).half_length)
+    how = {"per_length": 117 / a, "time_step": given.run.duration / steps, "certify": False}
+    run = kv.elements(given, scheme="explicit-euler", at=np.linspace(0.0, 0.054, 118), **how)
+    found = kv.compare(given, {name: getattr(run, name) for name in SCALED})
+    assert found.verdict == "agrees", found.diagnosis
+
+
 UNHURRIED = {
     "gentle": scene(velocity=0.05),
     "soft": kv.Scene(
@@ -326,6 +340,25 @@ def test_on_a_spring_steady_sliding_is_the_limit_where_it_is_stable():
     assert "unstable" in cycle["steady limit"].note
     assert cycle["phase of the cycle"].ok
     assert end["steady limit"].ok
+
+
+def test_noise_of_the_depth_counts_in_the_spring_of_a_suspension_too():
+    """It is far stiffer than the foundation: its force is as noisy as the depth times its stiffness."""
+    stiff = kv.Scene(support=kv.Suspended(mass=1000.0, stiffness=1e9))
+    for seed in range(3):
+        noisy = disturbed(kv.transient(stiff, at="0 ms:200 ms:240", rtol=1e-9), seed, 0.01)
+        assert failed(kv.compare(stiff, noisy)) == []
+
+
+def test_noise_on_a_known_discretization_is_no_fault_unless_it_is_that_of_elements():
+    """White noise is not alike in both forces; an element that enters changes both alike."""
+    run = kv.elements(per_length="200 /mm", certify=False, at="0 ms:200 ms:121")
+    how, rng = {"per_length": "200 /mm", "scheme": run.scheme}, np.random.default_rng(1)
+    for seed in range(3):
+        assert failed(kv.compare(data=disturbed(run, seed, 0.03), **how)) == []
+    data, common = disturbed(run, 0, 0.0), 0.03 * rng.standard_normal(121)
+    alike = {name: data[name] * (1.0 + common) for name in ("normal_force", "friction_force")}
+    assert "discretization noise" in failed(kv.compare(data={**data, **alike}, **how))
 
 
 def test_a_rigid_drive_slides_at_its_velocity_and_holds_the_friction():

@@ -13,7 +13,7 @@ Four effects make a correct simulation differ; theory or the data give the size 
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -112,7 +112,7 @@ def allowance(
     scheme = SCHEME_ROWS.get(series.scheme or "")
     first_order = scheme is None or scheme.order_in_time <= 1
     now, before, after, low, high = _bands(theory, time, fine.time_step, rtol)
-    share, lagging, late = (np.zeros_like(time) for _ in range(3))
+    share, lagging, late, drift = (np.zeros_like(time) for _ in range(4))
     if not theory.scene.held:
         late = _lag(theory, now, time, high["depth_rate"] - low["depth_rate"])
     if first_order and not theory.scene.held:
@@ -122,8 +122,14 @@ def allowance(
             z = np.minimum(fine.time_step * C * contact_extent(theory, part) / support.mass, 1.0)
             share, lagging = np.fmax(share, z), np.fmax(lagging, z * np.abs(unbalanced))
         lagging += FIRST_ORDER_LAG / LAG * C * contact_extent(theory, now) * late
+        if theory.scene.drive.rigid and theory.rates is not None and theory.rates.oscillates:
+            drift, pace = _drift(theory, now, time, fine.time_step), 1.0 / abs(theory.rates.slow)
+            lagging += support.mass * pace**2 * drift
+            late = late + pace * drift
     force = np.fmax.reduce([_edge_force(theory, c, fine.spacing) for c in (now, before, after)])
-    smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), late, fine)
+    if not theory.scene.held:
+        lagging += _entering(theory, now, (before, after), 2.0 * force / fine.spacing)
+    smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), (drift, late), fine)
     if not theory.scene.drive.rigid:
         step = fine.time_step if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
@@ -185,6 +191,21 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     return np.asarray(LAG * np.exp(left))
 
 
+def _drift(theory: Theory, curves: Curves, time: Array, step: float) -> Array:
+    """Return the error of the depth (m) by a first-order scheme whose oscillation decays too slowly or fast.
+
+    A step h changes the decay of a motion exp(-t/T) by the rate h/(2 |T|^2). After a time t its amplitude
+    D, by |delta'| |T| of theory, is off by D t h/(2 |T|^2).
+    """
+    rates = theory.rates
+    assert rates is not None
+    ages = np.maximum(time, 0.0) / rates.settling
+    rate = np.abs(np.nan_to_num(curves["depth_rate"]))
+    with np.errstate(divide="ignore"):
+        left = np.maximum.accumulate(np.log(rate) + ages) - ages
+    return np.asarray(0.5 * step * np.maximum(time, 0.0) / abs(rates.slow) * np.exp(left))
+
+
 def _contact_length(curves: Mapping[str, Array]) -> Array:
     return np.asarray(np.nan_to_num(np.abs(curves["trailing_edge"] - curves["leading_edge"])))
 
@@ -213,11 +234,27 @@ def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     return np.asarray(theory.width(curves["depth"]) * (0.5 * p * spacing + at_rest))
 
 
+def _entering(theory: Theory, now: Curves, others: Sequence[Curves], pressure: Array) -> Array:
+    """Return the force of the elements that enter in a step because the leading edge moves.
+
+    The motion of a step balances the elements at its start; those that enter later add p times their length.
+    The edge moves by x dx = R d(delta), or over ground that it finds compressed after a reversal.
+    """
+    a = np.sqrt(2.0 * theory.radius * np.maximum(now["depth"], SHALLOWEST * theory.static.depth))
+    shifts = []
+    for part in others:
+        shift = now["leading_edge"] - part["leading_edge"]
+        same = np.sign(now["sliding_velocity"]) == np.sign(part["sliding_velocity"])
+        shifts.append(theory.radius / a * np.abs(now["depth"] - part["depth"]))
+        shifts.append(np.where(same, np.nan_to_num(np.abs(shift)), 0.0))
+    return np.asarray(pressure * np.fmax.reduce(shifts) / STEPS_SMEARED)
+
+
 def _systematic(
-    theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array], late: Array,
-    fine: Resolution,
+    theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array],
+    lags: tuple[Array, Array], fine: Resolution,
 ) -> dict[str, Array]:  # fmt: skip
-    """Return the smooth error of each curve by b, the error of the force by a lag, and the lag of the rate.
+    """Return the smooth error of each curve by b, by a lag of the force, and by lags of depth and rate.
 
     The errors of the edges follow from x^2 = 2 R delta and x^2 + 2 l_r x = 2 R (delta + tau delta') (Eqs. 32
     and 33); that of friction is b at x = a, with F_x in proportion to delta^(3/2).
@@ -226,10 +263,10 @@ def _systematic(
     R, dx, (force, lagging) = theory.radius, fine.spacing, forces
     a = np.sqrt(2.0 * R * np.maximum(curves["depth"], SHALLOWEST * theory.static.depth))
     l_r = curves["sliding_velocity"] * tau
-    depth, depth_rate = np.zeros_like(time), late
+    depth, depth_rate = lags
     if theory.rates is not None and not theory.scene.held:
-        depth, depth_rate = _response(theory, curves, time, force, a, fine)
-        depth_rate = depth_rate + late
+        answers = _response(theory, curves, time, force, a, fine)
+        depth, depth_rate = depth + answers[0], depth_rate + answers[1]
     both = depth + tau * depth_rate
     slant = np.maximum(np.abs(curves["trailing_edge"] + l_r), dx)
     edge = ELEMENTS_AT_AN_EDGE * dx + R / a * depth

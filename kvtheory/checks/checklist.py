@@ -144,12 +144,13 @@ def balance(case: Case) -> Measured:
     smooth = np.nan_to_num(force.systematic) + 0.5 * np.nan_to_num(force.high - force.low)
     found = []
     for window in windows(case.time):
-        rows, inertia = window.rows, support.mass * window.inertia
+        rows = window.rows
+        moved = support.mass * window.inertia + support.spring * window.force  # by the depth
         lacks, sampled = (
             abs(window.missing_force(c, support, static.depth)) for c in (case.columns, case.now)
         )
-        steady = np.abs(window.force) @ smooth[rows] + np.abs(inertia) @ depth.rounding[rows]
-        parts = depth.noise[rows] * inertia, force.noise[rows] * window.force
+        steady = np.abs(window.force) @ smooth[rows] + np.abs(moved) @ depth.rounding[rows]
+        parts = depth.noise[rows] * moved, force.noise[rows] * window.force
         random = extreme(case.time.size) * math.hypot(
             *(float(np.linalg.norm(part)) for part in parts)
         )

@@ -38,8 +38,9 @@ FINEST = 0.1
 """Part of the assumed spacing below which a sawtooth is due to samples in step, or to rounding."""
 ROUNDED = 1.64
 """Gap due to rounding, by `gaps`, in units of half the last digit."""
-COMMON = 0.5
-"""Squared correlation of the noise of both forces from which it is the sawtooth of F15."""
+COMMON, CERTAIN = 0.5, 0.9
+"""Squared correlation of the noise of both forces from which it is the sawtooth of F15; and in few rows,
+which may have the first one by chance."""
 QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
@@ -184,6 +185,12 @@ def common_noise(case: Case) -> float | None:
     return float((parts[0] @ parts[1]) / (norms[0] * norms[1])) ** 2
 
 
+def alike(case: Case) -> bool:
+    """Whether the noise of both forces is that of elements, and of few rows not so by chance."""
+    least = COMMON if case.time.size > FEW_ROWS else CERTAIN
+    return (common_noise(case) or 0.0) >= least
+
+
 def rms(values: Array) -> float:
     """Return the root mean square of the finite values."""
     known = values[np.isfinite(values)]
@@ -194,21 +201,27 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
     """Compare the noise of the normal force with that of entering elements."""
     W, fine = case.theory.static.load, case.resolution
     sigma, density = float(np.median(case.bands["normal_force"].noise)) / W, 1e-3 / fine.spacing
+    of_elements = alike(case)
+    kind = f"{'common to both forces, as' if of_elements else 'not seen to be'} that of elements"
     if not fine.spacing_known:
-        sound = (common_noise(case) or 0.0) < COMMON
-        limit = LARGEST_UNCORRELATED if sound else COARSEST
-        kind = "not that of elements" if sound else "common to both forces, as that of elements"
+        limit = COARSEST if of_elements else LARGEST_UNCORRELATED
         how = f"estimated from {fine.spacing_read}" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
-    allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
+    allowed = 2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE
+    if (
+        common_noise(case) is not None and not of_elements
+    ):  # noise on top of the elements, as of a sensor
+        allowed = max(allowed, LARGEST_UNCORRELATED)
+    allowed *= case.tolerance
     b = float(np.median(case.edge_force)) / W
-    return sigma, allowed, f"N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
+    return sigma, allowed, f"{kind}; N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
 
 
 def elements(case: Case) -> tuple[float, float, str]:
     """Compare one element at the leading edge with the load."""
     fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
-    unread = not fine.spacing_read or "normal_force" not in case.names
+    chance = fine.spacing_read == SAWTOOTH and not alike(case)
+    unread = not fine.spacing_read or chance or "normal_force" not in case.names
     if not fine.spacing_known and unread:
         raise NotMade("the element density is not given (per_length), nor shown by the forces")
     if not case.theory.scene.indenter.per_width:
