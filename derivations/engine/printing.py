@@ -362,7 +362,7 @@ class Printer(LatexPrinter):
 
     def _print_Derivative(self, expr: sp.Derivative) -> str:  # noqa: N802
         call = expr.expr
-        plain = isinstance(call, AppliedUndef) and len(expr.variable_count) == 1
+        plain = _has_primes(call) and len(expr.variable_count) == 1
         if plain and call.args[-1] == expr.variables[0] and len(expr.variables) <= _MOST_PRIMES:
             return self._called(call, len(expr.variables))
         if call.is_Symbol and len(expr.variable_count) == 1:
@@ -374,7 +374,7 @@ class Printer(LatexPrinter):
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
         inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
-        if isinstance(inner, sp.Derivative) and isinstance(inner.expr, AppliedUndef):
+        if isinstance(inner, sp.Derivative) and _has_primes(inner.expr):
             call, letters = inner.expr, set(inner.variables)
             if letters == {call.args[-1]} == set(place) and len(inner.variables) <= _MOST_PRIMES:
                 return (
@@ -390,6 +390,13 @@ class Printer(LatexPrinter):
         pairs = zip(node.variables, node.point, strict=True)
         places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
+
+
+def _has_primes(call: sp.Expr) -> bool:
+    """Tell whether primes or dots say to what a function is differentiated: its argument, or time."""
+    return isinstance(call, AppliedUndef) and (
+        len(call.args) == 1 or str(call.args[-1]) in {"t", "s"}
+    )
 
 
 def _is_operator(shown: str) -> bool:
