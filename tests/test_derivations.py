@@ -8,7 +8,11 @@ import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.catalogue import SECTIONS, catalogue
 from kvtheory.derivations.chapters import asymptotics, groups, steady, tables
+from kvtheory.derivations.engine.algebra import difference
 from kvtheory.derivations.engine.book import StepError
+from kvtheory.derivations.engine.display import names_in, read
+from kvtheory.derivations.engine.nomenclature import CONSTANTS, TEX
+from kvtheory.derivations.engine.printing import doprint
 from kvtheory.derivations.engine.record import STATUSES
 from kvtheory.derivations.engine.step import Proof
 
@@ -258,6 +262,32 @@ def test_a_sum_begins_with_a_positive_term(by_label):
     steps = {step.right for step in by_label["F21-steady"].steps}
     assert r"\frac{l_{\mathrm{r}} \left(W - C V \delta\right)}{R}" in steps
     assert by_label["eq48"].latex == r"V^{*} = \frac{\alpha^{2/3} \sqrt[3]{K^{2} R W}}{C}"
+
+
+def test_what_is_printed_is_what_was_claimed(by_label):
+    """The print of each claim, read by the parser of displays, is the claim again."""
+    claims = [step.claim for each in by_label.values() for step in each.steps if step.claim]
+    sides = {side for each in claims for side in (each.lhs, each.rhs) if isinstance(side, sp.Expr)}
+    unread = 0
+    for side in sorted(sides, key=sp.default_sort_key):
+        names = names_in(side, tex_of=TEX) | {r"\pi": sp.pi, **CONSTANTS}
+        try:
+            found = read(doprint(side), names)
+        except ValueError:
+            unread += 1
+            continue
+        if found != side:
+            plain = [
+                each.replace(sp.UnevaluatedExpr, lambda inner: inner) for each in (found, side)
+            ]
+            if any(each.has(sp.Integral) for each in plain):
+                assert sp.expand(plain[0] - plain[1]) == 0, side
+            else:
+                assert difference(*(each.doit() for each in plain)) == 0, side
+    assert len(sides) > 1800
+    assert (
+        unread < 80
+    )  # sums, matrices, places of several letters, functions that the parser does not know
 
 
 def test_asymptotes_meet_at_the_critical_velocities():

@@ -82,17 +82,8 @@ def _rank(factor: sp.Expr) -> tuple[Any, ...]:
         return 0, not isinstance(factor, sp.NumberSymbol), str(factor)
     if isinstance(base, sp.Symbol | sp.Indexed):
         letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
-        return (
-            1,
-            1 if letter.startswith("\\") else 2 * letter[0].islower(),
-            letter.replace(r"\var", "\\"),
-        )
-    if isinstance(base, sp.Derivative | AppliedUndef):
-        return (
-            2,
-            str(base.expr) if isinstance(base, sp.Derivative) else str(base),
-            base.is_Derivative,
-        )
+        greek = letter.startswith("\\")
+        return 1, 1 if greek else 2 * letter[0].islower(), letter.replace(r"\var", "\\")
     kinds = (
         (isinstance(base, sp.Add), 4), (isinstance(factor, sp.exp), 6), (isinstance(base, _TALL), 7),
     )  # fmt: skip
@@ -199,7 +190,16 @@ class Printer(LatexPrinter):
                 if (self._is_tall(each) and open_above) or (sums and _is_sum(each))
             ]
             upper = [each for each in upper if each not in tall]
-            beside += [self._factor(each, alone=False) for each in sorted(tall, key=self._place)]
+            ranked = sorted(tall, key=self._place)
+            beside += self._apart([self._factor(each, alone=False) for each in ranked])
+        if (
+            sign
+            and top == 1
+            and len(upper) == 1
+            and _is_sum(upper[0])
+            and not (lower or bottom > 1)
+        ):
+            return sign + self._factor(upper[0], alone=False)
         line = self._line(top, upper)
         if lower or bottom > 1:
             line = rf"\frac{{{line or '1'}}}{{{self._line(bottom, lower)}}}"
@@ -209,15 +209,27 @@ class Printer(LatexPrinter):
         """Print a number and factors side by side."""
         ranked = sorted(factors, key=self._place)
         alone = len(ranked) == 1 and number == 1
-        shown = [self._factor(each, alone=alone) for each in ranked]
+        shown = self._apart([self._factor(each, alone=alone) for each in ranked])
         digits = [] if number == 1 and shown else [str(number)]
         if digits and shown and shown[0][0].isdigit():
             digits.append(r"\cdot")
         return " ".join([*digits, *shown]) if (shown or number != 1) else ""
 
+    def _apart(self, shown: list[str]) -> list[str]:
+        """Put a derivative in brackets where another factor follows it."""
+        return [self._bracket(each) if _is_operator(each) else each for each in shown[:-1]] + shown[
+            -1:
+        ]
+
     def _place(self, factor: sp.Expr | _Root) -> tuple[Any, ...]:
+        """Return the place in a product: a bracket that a function would take in comes before it."""
         if not isinstance(factor, _Root):
-            return _rank(factor)
+            base = factor.as_base_exp()[0]
+            if not isinstance(base, AppliedUndef | sp.Derivative):
+                return _rank(factor)
+            shown, call = str(self._print(factor)), getattr(base, "expr", base)
+            place = 8 if _is_operator(shown) else 2 if ")" in shown[-5:] else 4.5
+            return place, str(call), base.is_Derivative
         plain = all(each.is_number for each in factor.above)
         return (0, True, str(factor)) if plain else (3, factor.order, str(factor))
 
@@ -233,7 +245,7 @@ class Printer(LatexPrinter):
             return False
         base = factor.as_base_exp()[0]
         if isinstance(factor, sp.Derivative):
-            return str(self._print(factor)).startswith(r"\frac")
+            return _is_operator(str(self._print(factor)))
         return isinstance(factor, _TALL) or (
             base.is_Add and any(mark in self._sum(base) for mark in (r"\frac", r"\int"))
         )
@@ -350,7 +362,7 @@ class Printer(LatexPrinter):
 
     def _print_Derivative(self, expr: sp.Derivative) -> str:  # noqa: N802
         call = expr.expr
-        plain = isinstance(call, AppliedUndef) and len(expr.variable_count) == 1
+        plain = _has_primes(call) and len(expr.variable_count) == 1
         if plain and call.args[-1] == expr.variables[0] and len(expr.variables) <= _MOST_PRIMES:
             return self._called(call, len(expr.variables))
         if call.is_Symbol and len(expr.variable_count) == 1:
@@ -362,7 +374,7 @@ class Printer(LatexPrinter):
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
         inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
-        if isinstance(inner, sp.Derivative) and isinstance(inner.expr, AppliedUndef):
+        if isinstance(inner, sp.Derivative) and _has_primes(inner.expr):
             call, letters = inner.expr, set(inner.variables)
             if letters == {call.args[-1]} == set(place) and len(inner.variables) <= _MOST_PRIMES:
                 return (
@@ -378,6 +390,18 @@ class Printer(LatexPrinter):
         pairs = zip(node.variables, node.point, strict=True)
         places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
+
+
+def _has_primes(call: sp.Expr) -> bool:
+    """Tell whether primes or dots say to what a function is differentiated: its argument, or time."""
+    return isinstance(call, AppliedUndef) and (
+        len(call.args) == 1 or str(call.args[-1]) in {"t", "s"}
+    )
+
+
+def _is_operator(shown: str) -> bool:
+    """Tell whether a derivative is printed that applies to all that follows it."""
+    return re.match(r"\\frac\{(?:d|\\partial)(?:\^\{\d+\})?\}", shown) is not None
 
 
 def _is_sum(factor: sp.Expr | _Root) -> bool:

@@ -37,14 +37,8 @@ def digests(chapters: Sequence[str]) -> dict[str, str]:
 
     A chapter rests on those before it, and on the engine; how it is printed also on letters of later ones.
     """
-    versions: tuple[Any, ...] = (
-        sys.version,
-        platform.machine(),
-        sp.__version__,
-        mpmath.__version__,
-        GROUND_TYPES,
-    )
-    versions = (*versions, shared_letters())
+    arithmetic = sp.__version__, mpmath.__version__, GROUND_TYPES
+    versions = sys.version, platform.machine(), *arithmetic, shared_letters()
     shared = sorted((SOURCES / "engine").glob("*.py"))
     state, found = hashlib.sha256(repr(versions).encode()), {}
     for path in (*shared, *(SOURCES / "chapters" / f"{name}.py" for name in chapters)):
