@@ -89,18 +89,19 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.define(lam, V * tau / a_0, "drive number")
     shown = r"\frac{\tau \dot u_i}{\delta_0}"
     proof.equal(tau * compression_rate / delta_0, d_s - 2 * lam * xi, "its rate", left=shown)
-    proof.define(p, K * u_i + C * compression_rate, right=r"K u_i + C \dot u_i")
-    proof.define(P, p / (K * delta_0))
+    here = sp.Symbol("p", real=True)
+    proof.define(here, K * u_i + C * compression_rate, right=r"K u_i + C \dot u_i")
+    proof.define(P, here / (K * delta_0))
     proof.equal(P, PRESSURE, "scaled pressure")
     proof.equal(
         *(
-            p * a_0 / W_0,
+            here * a_0 / W_0,
             sp.Rational(3, 4) * P,
             r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
         ),
     )
     proof.equal(
-        -slope * p * a_0 / (W_0 * delta_0 / a_0),
+        -slope * here * a_0 / (W_0 * delta_0 / a_0),
         -sp.Rational(3, 2) * xi * P,
         r"share of the friction force, in units of $W_0 \delta_0/a_0$",
     )
