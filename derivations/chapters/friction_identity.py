@@ -63,12 +63,17 @@ def _instant(proof: Proof) -> None:
     height, rate = delta_t - x**2 / (2 * R), depth_rate - V * x / R
     primitive = K * sp.integrate(height, x) + C * sp.integrate(rate, x)
     proof.recall("dense-row", F_z)
-    proof.integral(F_z, p, steady.CONTACT, primitive, "Eq. (14) for a dense row")
+    over, reason = (
+        r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}}",
+        "for a dense row, a polynomial of the edges",
+    )
+    proof.integral(F_z, p, steady.CONTACT, primitive, reason, right=rf"{over} p(x) \, dx")
     primitive = (
         -(K * sp.integrate(sp.expand(x * height), x) + C * sp.integrate(sp.expand(x * rate), x)) / R
     )
     proof.recall("dense-row", F_x)
-    proof.integral(F_x, -h(x).diff(x) * p, steady.CONTACT, primitive, "Eq. (15) for a dense row")
+    proof.integral(F_x, -h(x).diff(x) * p, steady.CONTACT, primitive, reason,
+                   right=rf"{over} \left(-h'(x) p(x)\right) \, dx")  # fmt: skip
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")
     proof.define(p_te, sp.Subs(p, x, x_te), "at the trailing edge")
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)

@@ -112,6 +112,7 @@ def _force_per_area(proof: Proof, labels: tuple[str, ...], depth: sp.Expr) -> No
     """Define the pressure, and show that it is N times the force of the element at each place."""
     for label in ("eq3", "eq12", *labels):
         proof.recall(label)
+    proof.recall("eq3", at={x: x_i})
     proof.recall("eq22", k, c)
     whole = K * (depth - h(x)) + C * (depth.diff(t) - V * h(x).diff(x))
     proof.define(p, whole, "force per area of a dense row")

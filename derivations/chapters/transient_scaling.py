@@ -25,7 +25,6 @@ from .model import (
     x_i,
 )
 from .power_law_weight import a_0
-from .steady import p
 from .tables import delta_0
 from .theorems import kappa, lam
 
@@ -76,18 +75,19 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.recall("eq7")
     proof.define(lam, V * tau / a_0, "drive number")
     proof.equal(tau * compression_rate / delta_0, d_s - 2 * lam * xi, "its rate")
-    proof.define(p, K * u_i + C * compression_rate)
-    proof.define(P, p / (K * delta_0))
+    here = sp.Symbol("p", real=True)
+    proof.define(here, K * u_i + C * compression_rate)
+    proof.define(P, here / (K * delta_0))
     proof.equal(P, PRESSURE, "scaled pressure")
     proof.equal(
         *(
-            p * a_0 / W_0,
+            here * a_0 / W_0,
             sp.Rational(3, 4) * P,
             r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
         ),
     )
     proof.equal(
-        -slope * p * a_0 / (W_0 * delta_0 / a_0),
+        -slope * here * a_0 / (W_0 * delta_0 / a_0),
         -sp.Rational(3, 2) * xi * P,
         r"share of the friction force, in units of $W_0 \delta_0/a_0$",
     )

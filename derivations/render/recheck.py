@@ -187,6 +187,12 @@ class Steps:
 
     def _named(self, expr: Expr) -> Expr:
         """Substitute definitions once; functions exactly as they are written."""
+        expr = expr.replace(
+            lambda node: isinstance(node, sp.Subs) and not self.rules.keys() & set(node.variables),
+            lambda node: self._put(node.expr).subs(
+                dict(zip(node.variables, node.point, strict=True)), simultaneous=True
+            ),
+        )
         exact = {
             lhs: rhs
             for lhs, rhs in self.rules.items()
