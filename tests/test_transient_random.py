@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum import compiled, deviation, solved_scene
+from kvtheory import compilation
+from kvtheory.models.continuum import deviation, solved_scene
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import solve
 from kvtheory.results.errors import TransientError
@@ -169,7 +170,7 @@ def scenes_of_which_a_third_hop(count):
     while len(flying) < count // 3:
         case = random_case(next(seeds), 1)
         motion = solve(
-            case.drive, case.eps, case.kappa, case.drive.end, 1e-4, fast=compiled.available()
+            case.drive, case.eps, case.kappa, case.drive.end, 1e-4, fast=compilation.available()
         )
         hops = any(event.kind == "take-off" for event in motion.events)
         (flying if hops else resting).append(case)

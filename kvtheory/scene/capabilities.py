@@ -185,7 +185,7 @@ IN_MOTION = (
 def lacks_one_scene(scene: Scene) -> str:
     """Return why a function for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
-    told = "use `sweep`, or give one value of each (--set KEY=VALUE)"
+    told = "use `sweep`, or give one value of each"
     return f"is for one scene, not for arrays ({keys}); {told}" if keys else ""
 
 
