@@ -30,7 +30,7 @@ from .model import x
 """)  # fmt: skip
 along = function("u_H", "displacement along the layer", "m", real=True)
 up = function("w_H", "displacement upward", "m", real=True)
-mean = function("s_H", r"$\nabla \cdot \mathbf{u}/(1 - 2 \nu)$", "1", real=True)
+mean = function("s_H", r"change of volume over $1 - 2 \nu_{\mathrm{P}}$", "1", real=True)
 
 SECTION = "A layer"
 nu, k, z, kappa = poisson, wave, height, kappa_h
@@ -59,7 +59,8 @@ def _balance(proof: Proof) -> None:
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, half, shear = sp.Derivative, sp.Rational(1, 2), modulus / (1 + nu)
-    proof.define(s, (d(u, x) + d(w, z)) / (1 - 2 * nu), "change of volume")
+    change = (1 - 2 * nu) * d(s, x) - d(u, x, 2)
+    proof.define(d(w, x, z), change, r"the change of volume is $(1 - 2 \nu_{\mathrm{P}}) s_H$")
     across = shear * half * (d(u, z) + d(w, x))
     balance = d(shear * (d(u, x) + nu * s), x) + d(across, z)
     form = shear * half * (d(u, x, 2) + d(u, z, 2) + d(s, x))
@@ -70,6 +71,8 @@ def _balance(proof: Proof) -> None:
 @result("F30-field")
 def _field(proof: Proof) -> None:
     r"""Layer: what a pressure of one wave number does.
+
+    Both amplitudes are those of a surface without shear.
 
     Argued: Nothing else obeys these equations with the same pressure, as solutions in elasticity are unique
     (Kirchhoff).

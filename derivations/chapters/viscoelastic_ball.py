@@ -106,4 +106,4 @@ def _sum(proof: Proof) -> None:
         value = 2 * sp.Integral(strip_place(c) * rate * sp.Derivative(a, c), ALONG)
         proof.equal(total, value, f"the {what}, in terms of the half length")
         found.append((total, value))
-    proof.pair(*found, "one quadrature")
+    proof.pair(found[0], found[1], "one quadrature")
