@@ -155,8 +155,8 @@ def _crosses(base: sp.Expr, q: sp.Symbol) -> bool:
 
 
 _GROUPS = (
-    r"Two groups are left: $\Lambda$, the velocity in units of the length that the load gives, and $\hat \mu$. "
-    r"The parameter of their curve is $q = x_{\mathrm{TE}}/a$."
+    r"Two groups are left, $\hat \mu$ and the velocity $\Lambda$ in units of the length that the load gives; "
+    r"the parameter of their curve is $q = x_{\mathrm{TE}}/a$."
 )
 _LOW = r"At a given load, for $V \to 0$; $\mu$ goes with $V$."
 _HIGH = r"At a given load, for $V \to \infty$; $\mu$ goes with $V^{{{}}}$."

@@ -32,6 +32,7 @@ from .model import (
 )
 from .steady import CONTACT, p, x_le, x_te
 
+height_there = symbol("h_i", "height of the indenter at a free element over its lowest point", "m")
 ball_depth = symbol("delta_b", "depth of a ball", "m", latex=r"\delta_{\mathrm{B}}")
 ball_rate = symbol("delta_b'", latex=r"\dot\delta_{\mathrm{B}}", real=True)
 ball_relaxed = symbol(
@@ -165,7 +166,7 @@ def _apart(proof: Proof) -> None:
     A free element relaxes by Eq. (20). Behind an edge, where $h_i > w_{\mathrm{in}}$, it stays below the
     indenter, and the edge goes inward: by F32-up both terms of $w_d'$ are negative while the indenter rises.
     """
-    place, grown = sp.Symbol("h_i", positive=True), sp.exp(t / tau)
+    place, grown = height_there, sp.exp(t / tau)
     gap, form = (u_i - (delta_t - place)) * grown, (place - relaxed) / tau * grown
     proof.recall("eq20")
     proof.define(depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$",

@@ -53,8 +53,8 @@ result = Chapter(SECTION)
 def _balance(proof: Proof) -> None:
     r"""Layer: Navier's equations with the mean stress as an unknown.
 
-    Hooke's law in plane strain, $\sigma = \frac{E_0}{1 + \nu_{\mathrm{P}}} (\epsilon + \nu_{\mathrm{P}} s_H)$
-    with $s_H$ on the diagonal alone. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an
+    Hooke's law in plane strain: the stress is $E_0/(1 + \nu_{\mathrm{P}})$ times the strain, to which
+    $\nu_{\mathrm{P}} s_H$ is added on the diagonal. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an
     incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
