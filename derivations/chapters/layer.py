@@ -54,8 +54,8 @@ def _balance(proof: Proof) -> None:
     r"""Layer: Navier's equations with the mean stress as an unknown.
 
     Hooke's law in plane strain: the stress is $E_0/(1 + \nu_{\mathrm{P}})$ times the strain, to which
-    $\nu_{\mathrm{P}} s_H$ is added on the diagonal. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an
-    incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
+    $\nu_{\mathrm{P}} s_H$ is added on the diagonal. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that
+    an incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, half, shear = sp.Derivative, sp.Rational(1, 2), modulus / (1 + nu)
