@@ -12,7 +12,7 @@ from ..engine.step import Proof
 from .model import x
 
 (
-    poisson, modulus, thickness, wave, height, kappa_h, in_phase, out_of_phase, transfer, crest, pull,
+    poisson, modulus, thickness, wave, height, kappa_h, size, in_phase, out_of_phase, transfer, crest, pull,
     squeezed,
 ) = symbols(r"""
     nu_P     \nu_{\mathrm{P}}  1    Poisson's ratio of the layer  from scene
@@ -21,8 +21,9 @@ from .model import x
     k_w      k_{\mathrm{w}}   1/m  wave number of a pressure along the layer
     z_H      -                m    height above the ground  real
     kappa_H  \kappa_H         1    scaled wave number, $k_{\mathrm{w}} H$
-    A_H      -                1    amplitude of the mean stress  real
-    B_H      -                1    another one  real
+    b_H      -                m    size of a wave in a layer
+    A_H      -                m    amplitude of a wave in a layer  real
+    B_H      -                m    another one  real
     T_H      -                1    depression of a layer over that of a half-space  real
     w_c      -                m    amplitude of the displacement of the surface of a layer  real
     p_c      -                Pa   amplitude of the stress there  real
@@ -34,8 +35,8 @@ mean = function("s_H", r"change of volume over $1 - 2 \nu_{\mathrm{P}}$", "1", r
 
 SECTION = "A layer"
 nu, k, z, kappa = poisson, wave, height, kappa_h
-A = 2 * (1 - nu) * sp.cosh(kappa) + kappa * sp.sinh(kappa)
-B = (1 - 2 * nu) * sp.sinh(kappa) - kappa * sp.cosh(kappa)
+A = size * (2 * (1 - nu) * sp.cosh(kappa) + kappa * sp.sinh(kappa))
+B = size * ((1 - 2 * nu) * sp.sinh(kappa) - kappa * sp.cosh(kappa))
 _FREE = sp.Rational(3, 2) - 2 * nu
 _C, _S = sp.cosh(k * z), sp.sinh(k * z)
 ALONG = (_FREE * out_of_phase * _S + k * z / 2 * (in_phase * _S + out_of_phase * _C)) * sp.sin(
@@ -103,9 +104,9 @@ def _compliance(proof: Proof) -> None:
     proof.recall("F30-field", w, s, k, in_phase, out_of_phase)
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     phase, stress = sp.cos(k * x), modulus / (1 + nu) * (sp.Derivative(w, z) + nu * s)
-    proof.define(crest, (1 - nu) / 2 * UPPER, "its amplitude")
+    proof.define(crest, size * (1 - nu) / 2 * UPPER, "its amplitude")
     proof.equal(sp.Subs(w, z, thickness), crest * phase, "displacement of the surface")
-    proof.define(pull, modulus * k / (4 * (1 + nu)) * LOWER, "its amplitude")
+    proof.define(pull, size * modulus * k / (4 * (1 + nu)) * LOWER, "its amplitude")
     proof.equal(sp.Subs(stress, z, thickness), pull * phase, "stress there, by Hooke's law")
     proof.define(
         transfer, modulus * k * crest / (2 * (1 - nu**2) * pull), "over that of a half-space"

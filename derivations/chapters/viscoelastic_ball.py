@@ -95,7 +95,6 @@ def _sum(proof: Proof) -> None:
     """
     proof.recall("F17-strip", a)
     proof.define(strip_place(middle), sp.S.Zero, "the longest contact is in the middle")
-    found = []
     for total, strip, rate, what in (
         (ball_load, strip_load, LOAD_RATE, "load"),
         (ball_friction, strip_friction, FRICTION_RATE, "friction force"),
@@ -104,5 +103,3 @@ def _sum(proof: Proof) -> None:
         proof.recall("F17-strip", sp.Derivative(strip(c), c))
         value = 2 * sp.Integral(strip_place(c) * rate * sp.Derivative(a, c), ALONG)
         proof.equal(total, value, f"the {what}, in terms of the half length")
-        found.append((total, value))
-    proof.pair(found[0], found[1], "one quadrature")
