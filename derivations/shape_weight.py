@@ -67,12 +67,11 @@ class Weight:
         for label, name in (("trailing", l_r), ("load", W), ("friction", F)):
             proof.recall(f"shape-{label}", name)
         proof.define(mu, F / W, "Eq. (37)")
-        found = []
         for name, form in ((Lambda, l_r / self.length), (scaled_friction, mu / self.friction)):
             proof.define(name, form, "in the units of the load")
-            found.append((name, self._number(proof._resolve(form))))
-            proof.equal(*found[-1], "all else cancels")
-        return proof.pair(*found, "one group of the operation, and one result")
+            curve = self._number(proof._resolve(form))
+            proof.equal(name, curve, "all else cancels")
+        return proof.done(scaled_friction, curve)
 
     def _asymptotes(self, proof: Proof, label: str, name: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
         """Give load and friction coefficient their leading terms, and return these."""
@@ -156,8 +155,8 @@ def _crosses(base: sp.Expr, q: sp.Symbol) -> bool:
 
 
 _GROUPS = (
-    r"In units of the length that the load gives, $\Lambda$ is the velocity; $q = x_{\mathrm{TE}}/a$ is the "
-    "parameter of the curve."
+    r"Two groups are left, $\hat \mu$ and the velocity $\Lambda$ in units of the length that the load gives; "
+    r"the parameter of their curve is $q = x_{\mathrm{TE}}/a$."
 )
 _LOW = r"At a given load, for $V \to 0$; $\mu$ goes with $V$."
 _HIGH = r"At a given load, for $V \to \infty$; $\mu$ goes with $V^{{{}}}$."

@@ -291,7 +291,14 @@ def test_a_shape_under_a_dead_weight(text, factor, exponent):
     )  # fmt: skip
     assert -best.fun == pytest.approx(height, rel=1e-5)
     assert best.x == pytest.approx(velocity, rel=1e-3)
-    Lambda, scaled = derived["groups"].steps[-1].claim.rhs
+    Lambda, scaled = (
+        next(
+            step.claim.rhs
+            for step in derived["groups"].steps
+            if step.left == name and step.status == "proved"
+        )
+        for name in (r"\Lambda", r"\hat \mu")
+    )
     [q] = Lambda.free_symbols
     place = brentq(lambda at: float(Lambda.subs(q, at)) - 2.0, 1e-3, 1.0)
     found = PowerUnderWeight(factor, exponent, load, 2.0 * length).friction

@@ -156,8 +156,8 @@ def _fast(proof: Proof) -> None:
     r"""Any viscoelastic body: friction at high velocity.
 
     $p_0$ and $w_0$ are those of the elastic contact with the glassy modulus, $U_{\mathrm{g}} = \frac{1}{2}
-    \int p_0 w_0 \, dx$ is its energy, and $q_0$ the XX
-    $V w_0/s_E$.
+    \int p_0 w_0 \, dx$ is its energy, and $q_0$ the pressure that belongs to $\int w_0 \, dx$, which stands
+    for $V w_0/s_E$.
 
     Argued: To first order in $1/V$ surface and contact are those of the glassy body, and the displacement
     vanishes before and behind.

@@ -32,6 +32,7 @@ from .model import (
 )
 from .steady import CONTACT, p, x_le, x_te
 
+height_there = symbol("h_i", "height of the indenter at a free element over its lowest point", "m")
 ball_depth = symbol("delta_b", "depth of a ball", "m", latex=r"\delta_{\mathrm{B}}")
 ball_rate = symbol("delta_b'", latex=r"\dot\delta_{\mathrm{B}}", real=True)
 ball_relaxed = symbol(
@@ -56,7 +57,7 @@ radius_across = symbol("R_y", latex=r"R_{\mathrm{y}}")
     v_d     -                1    scaled velocity of a drop, $\dot\delta/v_{\mathrm{in}}$  real
     a_d     -                1    scaled acceleration of a drop, $D_{\mathrm{in}}
             \ddot\delta/v_{\mathrm{in}}^2$  real
-    y_d     -                1    place of a strip of a ball over the half width of the contact  real
+    zeta_d  -                1    place of a strip of a ball over the half width of the contact  real
     F_d     -                N    vertical force on a ball  real
     d_m     d_{\max}         1    greatest scaled depth of a drop without dampers
     u_d     -                1    scaled speed of a drop without dampers
@@ -68,6 +69,7 @@ radius_across = symbol("R_y", latex=r"R_{\mathrm{y}}")
     z_d     -                1    share of the springs in the energy of a drop without dampers
     s_d     -                1    scaled time of a drop, $t v_{\mathrm{in}}/D_{\mathrm{in}}$  real
 """)  # fmt: skip
+impulse = function("y_d", "scaled velocity of a drop, with the impulse of its dampers", real=True)
 force = function("f_d", "scaled elastic force on a drop", real=True)
 energy = function("U_d", "scaled energy of an elastic contact", real=True)
 incomplete = function("B_d", "incomplete beta function", real=True)
@@ -164,7 +166,7 @@ def _apart(proof: Proof) -> None:
     A free element relaxes by Eq. (20). Behind an edge, where $h_i > w_{\mathrm{in}}$, it stays below the
     indenter, and the edge goes inward: by F32-up both terms of $w_d'$ are negative while the indenter rises.
     """
-    place, grown = sp.Symbol("h_i", positive=True), sp.exp(t / tau)
+    place, grown = height_there, sp.exp(t / tau)
     gap, form = (u_i - (delta_t - place)) * grown, (place - relaxed) / tau * grown
     proof.recall("eq20")
     proof.define(depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$",
@@ -194,7 +196,7 @@ def _all_strips(proof: Proof, name: str, depth: sp.Expr, value: sp.Expr) -> None
 def _ball_in(proof: Proof) -> None:
     r"""A drop, going in: force of a ball.
 
-    The strip along $x$ at the place $y_d$, in units of the half width $\sqrt{2 R_{\mathrm{y}}
+    The strip along $x$ at the place $\zeta_d$, in units of the half width $\sqrt{2 R_{\mathrm{y}}
     \delta_{\mathrm{B}}}$, is a line; the rate of its depth is that of the ball.
     """
     proof.define(delta_t, ball_depth * (1 - aside**2), "depth of a strip")
@@ -250,8 +252,8 @@ def _pair(proof: Proof, factor: sp.Expr, power: sp.Expr, rising: bool) -> None:
         return
     proof.define(deep, depth)
     proof.define(velocity, speed)
-    impulse = sp.Derivative(velocity + eta * factor * deep**power, s)
-    proof.equal(impulse, -factor * deep**power, "the pair of F32, with $y_d$ for what changes")
+    changed = sp.Derivative(velocity + eta * factor * deep**power, s)
+    proof.equal(changed, -factor * deep**power, "the pair of F32, with $y_d$ for what changes")
 
 
 for _shape, _first in (("line", "F32"), ("ball", "F32-ball")):
@@ -272,13 +274,13 @@ def _energy(proof: Proof) -> None:
     $\eta_{\mathrm{in}}$ alone.
     """
     s, eta = clock, number
-    depth, impulse = (sp.Function(name, real=True)(s) for name in ("d_d", "y_d"))
+    depth, driven = sp.Function("d_d", real=True)(s), impulse(s)
     pushed = force(depth)
-    proof.define(sp.Derivative(depth, s), impulse - eta * pushed, "the first equation")
-    proof.define(sp.Derivative(impulse, s), -pushed, "the second one")
+    proof.define(sp.Derivative(depth, s), driven - eta * pushed, "the first equation")
+    proof.define(sp.Derivative(driven, s), -pushed, "the second one")
     kept = energy(s)
     proof.define(sp.Derivative(kept, s), pushed * sp.Derivative(depth, s), "energy of the springs")
-    proof.equal(sp.Derivative(impulse**2 / 2 + kept, s), -eta * pushed**2, "what the dampers take")
+    proof.equal(sp.Derivative(driven**2 / 2 + kept, s), -eta * pushed**2, "what the dampers take")
 
 
 def _loss(proof: Proof, factor: sp.Expr, power: sp.Expr) -> None:

@@ -12,7 +12,7 @@ from ..engine.step import Proof
 from .model import x
 
 (
-    poisson, modulus, thickness, wave, height, kappa_h, in_phase, out_of_phase, transfer, crest, pull,
+    poisson, modulus, thickness, wave, height, kappa_h, size, in_phase, out_of_phase, transfer, crest, pull,
     squeezed,
 ) = symbols(r"""
     nu_P     \nu_{\mathrm{P}}  1    Poisson's ratio of the layer  from scene
@@ -21,8 +21,9 @@ from .model import x
     k_w      k_{\mathrm{w}}   1/m  wave number of a pressure along the layer
     z_H      -                m    height above the ground  real
     kappa_H  \kappa_H         1    scaled wave number, $k_{\mathrm{w}} H$
-    A_H      -                1    amplitude of the mean stress  real
-    B_H      -                1    another one  real
+    b_H      -                m    size of a wave in a layer
+    A_H      -                m    amplitude of a wave in a layer  real
+    B_H      -                m    another one  real
     T_H      -                1    depression of a layer over that of a half-space  real
     w_c      -                m    amplitude of the displacement of the surface of a layer  real
     p_c      -                Pa   amplitude of the stress there  real
@@ -30,12 +31,12 @@ from .model import x
 """)  # fmt: skip
 along = function("u_H", "displacement along the layer", "m", real=True)
 up = function("w_H", "displacement upward", "m", real=True)
-mean = function("s_H", r"$\nabla \cdot \mathbf{u}/(1 - 2 \nu)$", "1", real=True)
+mean = function("s_H", r"change of volume over $1 - 2 \nu_{\mathrm{P}}$", "1", real=True)
 
 SECTION = "A layer"
 nu, k, z, kappa = poisson, wave, height, kappa_h
-A = 2 * (1 - nu) * sp.cosh(kappa) + kappa * sp.sinh(kappa)
-B = (1 - 2 * nu) * sp.sinh(kappa) - kappa * sp.cosh(kappa)
+A = size * (2 * (1 - nu) * sp.cosh(kappa) + kappa * sp.sinh(kappa))
+B = size * ((1 - 2 * nu) * sp.sinh(kappa) - kappa * sp.cosh(kappa))
 _FREE = sp.Rational(3, 2) - 2 * nu
 _C, _S = sp.cosh(k * z), sp.sinh(k * z)
 ALONG = (_FREE * out_of_phase * _S + k * z / 2 * (in_phase * _S + out_of_phase * _C)) * sp.sin(
@@ -53,13 +54,14 @@ result = Chapter(SECTION)
 def _balance(proof: Proof) -> None:
     r"""Layer: Navier's equations with the mean stress as an unknown.
 
-    Hooke's law in plane strain, $\sigma = \frac{E_0}{1 + \nu_{\mathrm{P}}} (\epsilon + \nu_{\mathrm{P}} s_H)$
-    with $s_H$ on the diagonal alone. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that an
-    incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
+    Hooke's law in plane strain: the stress is $E_0/(1 + \nu_{\mathrm{P}})$ times the strain, to which
+    $\nu_{\mathrm{P}} s_H$ is added on the diagonal. Nothing is divided by $1 - 2 \nu_{\mathrm{P}}$, so that
+    an incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, half, shear = sp.Derivative, sp.Rational(1, 2), modulus / (1 + nu)
-    proof.define(s, (d(u, x) + d(w, z)) / (1 - 2 * nu), "change of volume")
+    change = (1 - 2 * nu) * d(s, x) - d(u, x, 2)
+    proof.define(d(w, x, z), change, r"the change of volume is $(1 - 2 \nu_{\mathrm{P}}) s_H$")
     across = shear * half * (d(u, z) + d(w, x))
     balance = d(shear * (d(u, x) + nu * s), x) + d(across, z)
     form = shear * half * (d(u, x, 2) + d(u, z, 2) + d(s, x))
@@ -70,6 +72,8 @@ def _balance(proof: Proof) -> None:
 @result("F30-field")
 def _field(proof: Proof) -> None:
     r"""Layer: what a pressure of one wave number does.
+
+    Both amplitudes are those of a surface without shear.
 
     Argued: Nothing else obeys these equations with the same pressure, as solutions in elasticity are unique
     (Kirchhoff).
@@ -100,9 +104,9 @@ def _compliance(proof: Proof) -> None:
     proof.recall("F30-field", w, s, k, in_phase, out_of_phase)
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     phase, stress = sp.cos(k * x), modulus / (1 + nu) * (sp.Derivative(w, z) + nu * s)
-    proof.define(crest, (1 - nu) / 2 * UPPER, "its amplitude")
+    proof.define(crest, size * (1 - nu) / 2 * UPPER, "its amplitude")
     proof.equal(sp.Subs(w, z, thickness), crest * phase, "displacement of the surface")
-    proof.define(pull, modulus * k / (4 * (1 + nu)) * LOWER, "its amplitude")
+    proof.define(pull, size * modulus * k / (4 * (1 + nu)) * LOWER, "its amplitude")
     proof.equal(sp.Subs(stress, z, thickness), pull * phase, "stress there, by Hooke's law")
     proof.define(
         transfer, modulus * k * crest / (2 * (1 - nu**2) * pull), "over that of a half-space"

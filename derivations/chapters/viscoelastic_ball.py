@@ -90,13 +90,11 @@ def _sum(proof: Proof) -> None:
 
     With $a = \breve G_2/\breve G_1$ as a function of the length $\breve c$ of the contact of a strip, and the
     strip at $y_2 = \sqrt{R_{\mathrm{y}}/R} \sqrt{a_0^2 - a^2}$ (F20-strips). In the middle, where $\breve c =
-    c_{\mathrm{m}}$, $a$ is $a_0 = \sqrt{2 R \delta}$; that is the only root. For arms $\breve G_n = K \breve
-    c^n/n! + \sum K_i \breve c^n \phi_n(-\breve c/l_i)$ with the functions $\phi_n$ of exponential
-    integrators.
+    c_{\mathrm{m}}$, $a$ is $a_0 = \sqrt{2 R \delta}$; that is the only root. For arms all of these are
+    sums of exponentials and powers.
     """
     proof.recall("F17-strip", a)
     proof.define(strip_place(middle), sp.S.Zero, "the longest contact is in the middle")
-    found = []
     for total, strip, rate, what in (
         (ball_load, strip_load, LOAD_RATE, "load"),
         (ball_friction, strip_friction, FRICTION_RATE, "friction force"),
@@ -105,5 +103,3 @@ def _sum(proof: Proof) -> None:
         proof.recall("F17-strip", sp.Derivative(strip(c), c))
         value = 2 * sp.Integral(strip_place(c) * rate * sp.Derivative(a, c), ALONG)
         proof.equal(total, value, f"the {what}, in terms of the half length")
-        found.append((total, value))
-    proof.pair(*found, "one quadrature")
