@@ -114,14 +114,6 @@ def _compliance(proof: Proof) -> None:
     proof.equal(transfer, TRANSFER, "the compliance")
 
 
-def _recall(proof: Proof) -> None:
-    """Recall the compliance, in exponentials."""
-    proof.recall("F30")
-    twice = sp.exp(2 * kappa), sp.exp(-2 * kappa)
-    proof.define(sp.sinh(2 * kappa), (twice[0] - twice[1]) / 2, "in exponentials")
-    proof.define(sp.cosh(2 * kappa), (twice[0] + twice[1]) / 2, "likewise")
-
-
 DEPRESSION = 2 * (1 - nu**2) * thickness / (modulus * kappa) * transfer
 """That of the surface, over the pressure."""
 
@@ -134,7 +126,7 @@ def _thin(proof: Proof) -> None:
     $\frac{E_0 (1 - \nu_{\mathrm{P}})}{(1 + \nu_{\mathrm{P}}) (1 - 2 \nu_{\mathrm{P}}) H}$; it fails by
     the next term, which grows beyond all bounds as $\nu_{\mathrm{P}} \to 1/2$.
     """
-    _recall(proof)
+    proof.recall("F30")
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     thin = (1 + nu) * (1 - 2 * nu) * thickness / (modulus * (1 - nu))
     proof.where(sp.Gt(squeezed, 0), r"compressible")
@@ -153,7 +145,7 @@ def _incompressible(proof: Proof) -> None:
     For $\nu_{\mathrm{P}} = 1/2$. The layer flows sideways, and no $K$ describes it.
     """
     proof.define(nu, sp.Rational(1, 2), "no change of volume")
-    _recall(proof)
+    proof.recall("F30")
     proof.leading_order(
         DEPRESSION, thickness * kappa**2 / modulus, kappa, 0, "a long wave", eps=kappa
     )
@@ -168,7 +160,7 @@ def _thick(proof: Proof) -> None:
     nothing overflows.
     """
     fade = sp.exp(-2 * kappa)
-    _recall(proof)
+    proof.recall("F30")
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     proof.holds(
         kappa**2 * fade, "<", 16 / kappa**2, r"the largest of these terms for $\kappa_H > 1$"

@@ -45,6 +45,8 @@ KINKS = (*_CONTINUOUS, sp.sign, sp.Piecewise)
 _WRITTEN = {
     sp.tan: lambda u: sp.sin(u) / sp.cos(u),
     sp.asinh: lambda u: sp.log(u + sp.sqrt(u**2 + 1)),
+    sp.cosh: lambda u: (sp.exp(u) + sp.exp(-u)) / 2,
+    sp.sinh: lambda u: (sp.exp(u) - sp.exp(-u)) / 2,
 }
 """Functions by others."""
 
@@ -405,7 +407,10 @@ def near(
 
 def _in_exponentials(expr: sp.Expr, h: sp.Symbol) -> sp.Expr:
     """Write by exponentials what may grow or fade as they do: then nothing else does."""
-    expr = expr.replace(sp.sinh, lambda u: (sp.exp(u) - sp.exp(-u)) / 2 if u.has(h) else sp.sinh(u))
+    for function in (sp.sinh, sp.cosh):
+        expr = expr.replace(
+            function, lambda u, f=function: f(u).rewrite(sp.exp) if u.has(h) else f(u)
+        )
     expr = expr.replace(expm1, lambda u: sp.exp(u) - 1)
     return expr.replace(
         lambda node: node.is_Pow and node.base != sp.E and node.exp.has(h),

@@ -14,7 +14,8 @@ from sympy.core.relational import Relational
 from .forms import Computed
 
 FUNCTIONS = (
-    *(sp.exp, sp.log, sp.sin, sp.cos, sp.tan, sp.asin, sp.atan, sp.sinh, sp.asinh, expm1, log1p),
+    *(sp.exp, sp.log, sp.sin, sp.cos, sp.tan, sp.asin, sp.atan, sp.sinh, sp.cosh, sp.asinh),
+    *(expm1, log1p),
     *(sp.Abs, sp.Max, sp.Min),
 )
 _NUMBERS = (sp.Rational, type(sp.pi), type(sp.E), type(sp.oo), type(-sp.oo))
