@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory import compilation
+from kvtheory import compilation, records
 from kvtheory.compilation import available
 from kvtheory.models.continuum import (
     bulk,
@@ -30,7 +30,7 @@ from kvtheory.models.continuum import (
 from kvtheory.scene import base_motion
 
 MODULES = (
-    *(base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
+    *(records, base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
     *(evaluation, maxima, deviation, bulk),
 )
 """Modules that contain kernels."""
