@@ -13,9 +13,23 @@ import numpy as np
 
 from kvtheory import compilation
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.kernels import Constants, Course, Row
+from kvtheory.models.elements.kernels import (
+    COUNTS,
+    INDENTER,
+    REPORT,
+    Constants,
+    Course,
+    Edges,
+    Elements,
+    Instants,
+    Limits,
+    Motion,
+    Row,
+    Runs,
+)
 from kvtheory.models.elements.model import span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
+from kvtheory.records import blanks, filled, structured
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
 from kvtheory.theory.laws import Array, Element
 
@@ -23,6 +37,9 @@ FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as zero."""
 KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
+NOWHERE = Instants(np.zeros(0, np.int64), *np.zeros((4, 0)))
+"""No instants."""
+UNLIMITED = Limits(-math.inf, math.inf, math.inf)
 WORTHWHILE = 10_000
 """Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
 kernels takes half a second; compiling them, once per installation, about twenty seconds."""
@@ -64,27 +81,31 @@ class ElementRow:
     ) -> None:  # fmt: skip
         self.constants, self.path, self.compiled = constants, path, False
         self.tableau, self.fitted = scheme.table, scheme.fitted
-        self.deepest, self.state = kept_depth * constants.depth, np.zeros(kernels.CURVED + 1)
-        self.faded, depth = np.ones(constants.law.rates.size), constants.depth
-        self.state[kernels.FORCES] = constants.weight
-        self.stored = self._empty(0, 1, 1)
+        self.deepest, depth = kept_depth * constants.depth, constants.depth
+        self.faded, (now,) = np.ones(constants.law.rates.size), blanks(1, INDENTER)
+        now.mean_force = constants.weight
+        self.stored = self._empty(now, 0, 1, 1)
         height = partial(kernels.surface_at, constants.surface)
         self.lay(depth, lambda x, y: np.maximum(depth - height(x, y)[0], 0.0))
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
         """Press the indenter into elements compressed by `surface`(x, y), in contact by `contact`(x)."""
-        self.state[kernels.DEPTH], self.stored.counts[kernels.BEGUN] = depth, 0
+        self.stored.now.depth, self.stored.counts.begun = depth, 0
         while kernels.set_window(self.stored, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row, law = self.stored, self.constants.law
-        row.modes[...], row.flags[...] = 0.0, False
+        of = row.elements
+        flags = of.touched, of.changed, of.pressed
+        for each in (row.modes, *flags):
+            each[...] = 0
         kernels.approach(row, np.zeros_like(self.faded), 0.0, depth)
-        for j in range(int(row.counts[kernels.STRIPS])):
+        for j in range(row.counts.strips):
             part = slice(row.low[j], row.high[j])
             x = self.constants.spacing * row.numbers[part]
             u = surface(x, j * self.constants.across)
-            row.rows[kernels.MEETS, j, part] += u
-            row.flags[:, j, part] = contact(x) if contact else u > 0.0
+            of.threshold[j, part] += u
+            for each in flags:
+                each[j, part] = contact(x) if contact else u > 0.0
             if not law.arm_time.size:
                 row.modes[0, j, part] = u
         kernels.find_runs(row)
@@ -100,58 +121,84 @@ class ElementRow:
 
     @np.errstate(all="ignore")  # the kernels check the results
     def run(
-        self, course: Course, found: Array, begin: tuple[int, int], until: int
+        self, course: Course, found: Any, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
-        """Take steps up to `until` or a failure; return the status, and the steps and reports done."""
-        advance = compiled_advance() if self.compiled else kernels.advance
+        """Take steps up to `until` or a failure; return the status, and the steps and reports done.
+
+        What is reported is written into `found`, see `reports`.
+        """
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
-            status, step, reported = advance(self.stored, course, found, step, reported, until)
+            status, step, reported = self._advance(course, found, step, reported, until)
             if status == kernels.LACKING:
                 self._move(float(course.times[step]))
         return status, step, reported
 
     def step(self, state: IndenterState, h: float) -> IndenterState:
         """Take one step from a state, or raise `OutgrownError` deeper than the row was made for."""
-        self.state[:4] = state[1:]
+        now = self.stored.now
+        now.depth, now.rate, now.along, now.along_rate = state[1:]
         times = state.time + np.array([0.0, h])
         course = course_of(self.path, self.constants.law, times, np.array([h]))
-        if self.run(course, np.zeros((0, 1)), (0, 0), 1)[0]:
+        status, *_ = self.run(course, self.reports(0), (0, 0), 1)
+        if status != kernels.DONE:
             raise OutgrownError
-        return IndenterState(state.time + h, *map(float, self.state[:4]))
+        now = self.stored.now
+        return IndenterState(
+            state.time + h, *map(float, (now.depth, now.rate, now.along, now.along_rate))
+        )
 
-    def _empty(self, first: int, width: int, strips: int) -> Row:
-        """Return elements that are undisturbed."""
-        arms, counts = self.constants.law.rates.size, np.zeros(kernels.UPDATES + 1, np.int64)
-        counts[kernels.FIRST], runs = first, strips * (width // 2 + 1)
+    def reports(self, count: int) -> Any:
+        """Return so many blank reports."""
+        return np.zeros(count, REPORT) if self.compiled else blanks(count, REPORT)
+
+    def _advance(self, *task: Any) -> tuple[int, int, int]:
+        """Advance by the kernels, see `kernels.advance`; compiled, these take arrays for records."""
+        if not self.compiled:
+            return kernels.advance(self.stored, *task)
+        row, advance = self.stored, compiled_advance()
+        now, counts = structured([row.now], INDENTER), structured([row.counts], COUNTS)
+        done: tuple[int, int, int] = advance(row._replace(now=now[0], counts=counts[0]), *task)
+        (now,), (counts,) = filled(INDENTER, now), filled(COUNTS, counts)
+        self.stored = row._replace(now=now, counts=counts)
+        return done
+
+    def _empty(self, now: Any, first: int, width: int, strips: int) -> Row:
+        """Return elements that are undisturbed, below an indenter."""
+        arms, shape = self.constants.law.rates.size, (strips, width)
+        runs = strips * (width // 2 + 1)
+        (counts,), stages = blanks(1, COUNTS), self.tableau.shape[0]
         return Row(
             constants=self.constants, tableau=self.tableau, fitted=self.fitted, deepest=self.deepest,
-            state=self.state, modes=np.zeros((arms, strips, width)), faded=self.faded,
-            rows=np.zeros((5, strips, width)), flags=np.zeros((3, strips, width), dtype=bool),
-            low=np.zeros(strips, np.int64), high=np.zeros(strips, np.int64), counts=counts,
+            now=now, modes=np.zeros((arms, *shape)), faded=self.faded,
+            elements=Elements(*np.zeros((5, *shape)), *np.zeros((3, *shape), dtype=bool)),
+            low=np.zeros(strips, np.int64), high=np.zeros(strips, np.int64), first=first, counts=counts,
             numbers=np.arange(float(first), first + width) + self.constants.shift,
-            begun=np.zeros((runs, 3), np.int64), ended=np.zeros((runs, 3), np.int64),
-            edges=np.zeros((runs, 2, 3)), weights=np.ones(strips), stages=np.zeros((7, max(4, arms))),
+            begun=Runs(*np.zeros((3, runs), np.int64)), ended=Runs(*np.zeros((3, runs), np.int64)),
+            edges=Edges(*np.zeros((2, runs, 2)), np.zeros((runs, 2), dtype=bool)),
+            weights=np.ones(strips), rates=Motion(*np.zeros((4, stages))), dampers=np.zeros(arms),
         )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
-        old = self.stored
-        first, low, high, strips, count, *_ = old.counts.tolist()
-        rows, width = old.flags.shape[1:]
-        spare, useful = (high - low) // 2, self._useful(t)
-        start = min(low - spare, max(first, useful[0]))
-        stop = max(high + spare, min(first + width, useful[1]))
-        strips = max(strips, rows)
-        new = self._empty(start, stop - start, strips)
-        new.counts[kernels.BEGUN :] = old.counts[kernels.BEGUN :]
+        old, counts, first = self.stored, self.stored.counts, self.stored.first
+        strips, width = old.elements.u.shape
+        spare, useful = (counts.high - counts.low) // 2, self._useful(t)
+        start = min(counts.low - spare, max(first, useful[0]))
+        stop = max(counts.high + spare, min(first + width, useful[1]))
+        new = self._empty(old.now, start, stop - start, max(counts.strips, strips))
+        for name in ("begun", "ended", "inside", "updates"):
+            setattr(new.counts, name, getattr(counts, name))
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
-            for name in ("modes", "rows", "flags"):
-                getattr(new, name)[:, :rows, to] = getattr(old, name)[..., of]
-        new.begun[:count] = old.begun[:count] + np.array([0, first - start, first - start])
-        new.edges[:count] = old.edges[:count]
+            arrays = (new.modes, *new.elements), (old.modes, *old.elements)
+            for one, other in zip(*arrays, strict=True):
+                one[..., :strips, to] = other[..., of]
+        some = slice(counts.begun)
+        moved = Runs(old.begun.strip, old.begun.low + first - start, old.begun.high + first - start)
+        for one, other in zip((*new.begun, *new.edges), (*moved, *old.edges), strict=True):
+            one[some] = other[some]
         self.stored = new
 
     def _useful(self, t: float) -> tuple[int, int]:
@@ -159,10 +206,9 @@ class ElementRow:
         c, row = self.constants, self.stored
         if math.isfinite(c.mass_along):
             compressed = np.abs(c.law.shares * self.faded @ row.modes.reshape(self.faded.size, -1))
-            known = (compressed > FORGOTTEN * c.depth).reshape(row.flags[0].shape)
-            known = np.flatnonzero((known | row.flags[kernels.TOUCHED]).any(axis=0))
-            first = int(row.counts[kernels.FIRST])
-            return first + int(known.min(initial=0)), first + int(known.max(initial=-1)) + 1
+            known = (compressed > FORGOTTEN * c.depth).reshape(row.elements.touched.shape)
+            known = np.flatnonzero((known | row.elements.touched).any(axis=0))
+            return row.first + int(known.min(initial=0)), row.first + int(known.max(initial=-1)) + 1
         memory = -math.log(FORGOTTEN) * c.law.longest_time
         back, ahead = self.path.extremes(t, min(t + memory, max(t, self.path.end)))
         low, high = span(c.surface, self.deepest)
@@ -170,8 +216,8 @@ class ElementRow:
 
 
 def course_of(
-    path: BaseMotion, law: Element, times: Array, steps: Array, after: Any = (), about: Any = (),
-    unsure: float = 0.0, limits: Any = (-math.inf, math.inf, math.inf),
+    path: BaseMotion, law: Element, times: Array, steps: Array, instants: Instants = NOWHERE,
+    unsure: float = 0.0, limits: Limits = UNLIMITED,
 ) -> Course:  # fmt: skip
     """Return the course of steps between these times, with the motion of the base and of an element."""
     t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
@@ -187,7 +233,4 @@ def course_of(
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
     times = np.ascontiguousarray(times)  # the kernels are compiled once, for this layout
-    return Course(
-        times, motion(t)[0], motion(before)[1], over, which, np.array(after, dtype=np.int64),
-        np.array(about, dtype=float).reshape(len(after), 4), unsure, limits,
-    )  # fmt: skip
+    return Course(times, motion(t)[0], motion(before)[1], over, which, instants, unsure, limits)

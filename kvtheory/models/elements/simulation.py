@@ -3,16 +3,18 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from operator import itemgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.elements import kernels, stability
-from kvtheory.models.elements.kernels import Constants
+from kvtheory.models.elements.kernels import REPORT, Constants, Instants
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.progress import Progress, silent
+from kvtheory.records import structured
 from kvtheory.results import (
     SERIES_UNITS,
     TRANSIENT_UNITS,
@@ -89,11 +91,15 @@ ON_SPRING = ", sliding velocity to a_0/τ, spring force as friction"
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Any]
-"""Reports: the columns of a time series as on a spring, and the doubt about the peak pressure (Pa)."""
-COLUMNS = (*SERIES_UNITS, "doubt")
+"""The columns of reports by name, see `kernels.REPORT`."""
 
-Timetable = tuple[Array, Array, Array, Array]
-"""Times around the steps, their lengths, after which something is reported, and what: see `Course`."""
+
+class Timetable(NamedTuple):
+    """When steps are taken, and what is reported."""
+
+    times: Array  # before the first step and after each
+    steps: Array  # lengths
+    instants: Instants
 
 
 def simulate(
@@ -116,15 +122,17 @@ def simulate(
         )
     own_step = time_step is None and not scheme.tableau
     graded = _graded(model, path, h, max(wanted)) if own_step else {}
-    times, steps, after, about = fine = _timetable(path, wanted, h, graded)
+    fine = _timetable(path, wanted, h, graded)
     if certify:
-        times, steps, after, about = fine = _watched(path, fine)
-    asked = np.searchsorted(about[:, 0], wanted)
+        fine = _watched(path, fine)
+    times, steps, instants = fine
+    asked = np.searchsorted(instants.time, wanted)
     h = float(steps.max(initial=0.0)) or h
     warning = stability.step_warning(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)
+    best, halved = SCHEMES[DEFAULT], instants._replace(after=instants.after // 2)
+    half = Timetable(times[::2], 2.0 * steps[::2], halved)
     runs = [(model, scheme, fine, 1.0)]
     if certify:
         for shift in SHIFTS:
@@ -151,7 +159,7 @@ def simulate(
     return kind(
         **{name: rows[name][asked] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
         time_step=h, steps=len(steps),
-        element_updates=int(row.stored.counts[kernels.UPDATES]), warning=warning, model="elements",
+        element_updates=row.stored.counts.updates, warning=warning, model="elements",
         certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
     )  # fmt: skip
 
@@ -229,7 +237,7 @@ def _timetable(
 ) -> Timetable:
     """Return steps of at most h, or of the graded lengths, that end on the wanted instants."""
     asked, end = set(wanted), max(wanted)
-    times, lengths, after, about = [0.0], list[float](), list[int](), list[Any]()
+    times, lengths, instants = [0.0], list[float](), list[Any]()
     start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({0.0, *asked, *graded, *(t for t in path.changes if t < end)}):
         if stop - start > TOGETHER * step:
@@ -242,16 +250,21 @@ def _timetable(
             times[-1] = start = stop
         if stop in asked:
             Y = path.displacement(times[-1])
-            about.append((stop, path.velocity(stop), path.forward(stop), Y))
-            after.append(len(lengths))
+            instants.append((len(lengths), stop, path.velocity(stop), path.forward(stop), Y))
         step = graded.get(stop, step)
-    return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
+    return Timetable(np.array(times), np.array(lengths), _instants_of(instants))
+
+
+def _instants_of(rows: list[Any]) -> Instants:
+    """Return instants from a row of values for each."""
+    after, *columns = zip(*rows, strict=True)
+    return Instants(np.array(after), *np.array(columns, dtype=float))
 
 
 def _watched(path: BaseMotion, table: Timetable) -> Timetable:
     """Return steps with earlier instants added, ends of steps of all runs, unless others are as near."""
-    times, lengths, after, about = table
-    instants = about[:, 0]
+    times, lengths, asked = table
+    after, instants = asked.after, asked.time
     jumps = np.array(_jumps(path, math.inf))
     since = instants - jumps[np.maximum(np.searchsorted(jumps, instants) - 1, 0)]
     stride = RECENT / WATCHED * since
@@ -261,11 +274,10 @@ def _watched(path: BaseMotion, table: Timetable) -> Timetable:
     lonely = np.minimum(earlier - bounded[k - 1], bounded[k] - earlier) > 0.5 * stride
     numbers = np.interp(earlier[lonely], times, np.arange(times.size))
     more = np.setdiff1d(2 * np.rint(0.5 * numbers).astype(np.int64), after)
-    ends = times[more].tolist()
-    rows = [(t, path.velocity(t), path.forward(t), path.displacement(t)) for t in ends]
-    order = np.argsort(np.append(after, more), kind="stable")
-    about = np.vstack([about, np.reshape(rows, (-1, about.shape[1]))])[order]
-    return times, lengths, np.append(after, more)[order], about
+    rows = list(zip(*asked, strict=True))
+    for n, t in zip(more.tolist(), times[more].tolist(), strict=True):
+        rows.append((n, t, path.velocity(t), path.forward(t), path.displacement(t)))
+    return Timetable(times, lengths, _instants_of(sorted(rows, key=itemgetter(0))))
 
 
 def _run(
@@ -276,16 +288,16 @@ def _run(
 
     Should it fail, the error tells what was reported at the wanted instants.
     """
-    times, steps, _, about = table
+    times, steps, instants = table
     c, h, kept = model.constants, float(steps.max(initial=0.0)), KEPT_DEPTH
     deepest = DEEPEST[c.surface.ball]
     while True:
         row = ElementRow(c, path, scheme, kept)
         limits = stability.limits(model, path)
         course = course_of(path, c.law, *table, _unsure(c, path, h)[0], limits)
-        found = np.full((len(about), len(COLUMNS)), math.nan)
         row.compile(len(steps))
-        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
+        pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.elements.u.size)))
+        found = row.reports(instants.time.size)
         status, done, reported, until = kernels.DONE, 0, 0, -1
         while status == kernels.DONE and until < len(steps):
             until = min(done + pause, len(steps))
@@ -293,15 +305,16 @@ def _run(
             if done:
                 progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
         if status == kernels.DONE:
-            return dict(zip(COLUMNS, found.T, strict=True)), row
+            columns = structured(found, REPORT)
+            return {name: columns[name] for name in REPORT.names or ()}, row
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, h, times[done], row.state, deepest
+                status, scheme, model, path, h, times[done], row.stored.now, deepest
             )  # fmt: skip
-            asked = np.isin(about[:reported, 0], wanted)
-            told = found[:reported, : len(TRANSIENT_UNITS)][asked]
-            error.rows = tuple(map(tuple, told.tolist()))
+            asked = np.isin(instants.time[:reported], wanted)
+            columns = structured(found, REPORT)[:reported][asked]
+            error.rows = tuple(columns[list(TRANSIENT_UNITS)].tolist())
             raise error
 
 
