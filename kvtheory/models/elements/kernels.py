@@ -811,18 +811,17 @@ def explicit_step(
     now.along += along - now.along
     now.rate += gained
     now.along_rate += gained_along
-    check_balance(row, c.mass, gained / h, rates.rate[0], rates.rate[stages])
-    check_balance(
-        row, c.mass_along, gained_along / h, rates.along_rate[0], rates.along_rate[stages]
-    )
+    pulls, drags = rates.rate, rates.along_rate
+    judge_balance(now, c.weight, c.mass, gained / h, (pulls[0], pulls[stages]))
+    judge_balance(now, c.weight, c.mass_along, gained_along / h, (drags[0], drags[stages]))
     return DONE
 
 
-def check_balance(row: Row, mass: float, mean: float, first: float, last: float) -> None:
-    """Average the imbalance of forces of a step: by the mean acceleration, and those at its start and end."""
+def judge_balance(now: Any, weight: float, mass: float, mean: float, ends: Pair) -> None:
+    """Average the imbalance of forces in a step, by accelerations: the mean one, and those at its ends."""
     if math.isfinite(mass):
-        now, off = row.now, mass * abs(mean - 0.5 * (first + last))
-        largest = row.constants.weight + mass * max(abs(first), abs(last))
+        off = mass * abs(mean - 0.5 * (ends[0] + ends[1]))
+        largest = weight + mass * max(abs(ends[0]), abs(ends[1]))
         now.mean_imbalance += (off - now.mean_imbalance) / WINDOW
         now.mean_force += (largest - now.mean_force) / WINDOW
 

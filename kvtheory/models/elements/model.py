@@ -141,19 +141,22 @@ def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
     dy = c.across or strip_width(c.surface, depth, dx)
     wide = c.surface.stretch * high
     numbers = np.arange(math.floor(low / dx) - kernels.SPARE, math.ceil(high / dx) + kernels.SPARE)
-    x, found, weights = dx * (numbers + c.shift), np.zeros(3), np.ones(1)
+    x, weights = dx * (numbers + c.shift), np.ones(1)
+    extent = force = tilt = 0.0
     if dy:
         weights = kernels.weigh(np.empty(1 + int(wide / dy)), dy, wide if c.parts else 0.0)
     for j, weight in enumerate(weights):
         h, slope = kernels.surface_at(c.surface, x, j * dy)
         p = law.pressure(depth - h, -V * slope)
         pressed = (h <= depth) & (p >= 0.0)
-        sums = pressed.sum(), p[pressed].sum(), np.square(slope[pressed]).sum()
-        found += weight * dx * np.array(sums)
+        area = weight * dx
+        extent, force = extent + area * pressed.sum(), force + area * p[pressed].sum()
+        tilt += area * np.square(slope[pressed]).sum()
         for i in np.flatnonzero(np.diff(pressed)) + 1 if c.parts else ():
             out = depth - (h[i : i + 3] if pressed[i - 1] else h[i - 3 : i][::-1])
-            found[1] += weight * dx * law.stiffness * kernels.kink_area(out)[0]
-    return Contact(*found.tolist())
+            kink, *_ = kernels.kink_area(out)
+            force += area * law.stiffness * kink
+    return Contact(float(extent), float(force), float(tilt))
 
 
 def sunk_depth(c: Constants, V: float = 0.0) -> float:

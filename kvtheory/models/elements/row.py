@@ -29,7 +29,7 @@ from kvtheory.models.elements.kernels import (
 )
 from kvtheory.models.elements.model import span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
-from kvtheory.records import blanks, filled, structured
+from kvtheory.records import blanks, readable, structured
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
 from kvtheory.theory.laws import Array, Element
 
@@ -37,9 +37,12 @@ FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as zero."""
 KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
-NOWHERE = Instants(np.zeros(0, np.int64), *np.zeros((4, 0)))
-"""No instants."""
+NEVER = Instants(np.zeros(0, np.int64), *np.zeros((4, 0)))
+"""No instants are reported."""
 UNLIMITED = Limits(-math.inf, math.inf, math.inf)
+"""A run goes on however unstable it is."""
+INLINED = "run_at", "set_window", "find_runs", "press"
+"""Kernels that explicit stages call: a call hands over each array of a row anew."""
 WORTHWHILE = 10_000
 """Number of interpreted steps of a strip after which compiling pays: about a second. Loading the compiled
 kernels takes half a second; compiling them, once per installation, about twenty seconds."""
@@ -68,7 +71,7 @@ class Tally:
 @cache
 def compiled_advance() -> Any:
     """Return `kernels.advance`, compiled."""
-    compilation.register(kernels, compiled=kernels.COMPILED, _nrt=False)
+    compilation.register(kernels, INLINED, kernels.COMPILED, _nrt=False)
     return compilation.cached(kernels.advance, _nrt=False)
 
 
@@ -80,11 +83,17 @@ class ElementRow:
         kept_depth: float = KEPT_DEPTH,
     ) -> None:  # fmt: skip
         self.constants, self.path, self.compiled = constants, path, False
-        self.tableau, self.fitted = scheme.table, scheme.fitted
         self.deepest, depth = kept_depth * constants.depth, constants.depth
-        self.faded, (now,) = np.ones(constants.law.rates.size), blanks(1, INDENTER)
+        self.faded, tableau = np.ones(constants.law.rates.size), scheme.table
+        (now,), (counts,) = blanks(1, INDENTER), blanks(1, COUNTS)
         now.mean_force = constants.weight
-        self.stored = self._empty(now, 0, 1, 1)
+        self.stored = Row(
+            constants=constants, tableau=tableau, fitted=scheme.fitted, deepest=self.deepest, now=now,
+            counts=counts, faded=self.faded, rates=Motion(*np.zeros((4, len(tableau)))),
+            begun=Runs(*np.zeros((3, 1), np.int64)), ended=Runs(*np.zeros((3, 1), np.int64)),
+            edges=Edges(np.zeros((1, 2)), np.zeros((1, 2)), np.zeros((1, 2), dtype=bool)),
+            dampers=np.zeros(self.faded.size), **self._undisturbed(0, 1, 1),
+        )  # fmt: skip
         height = partial(kernels.surface_at, constants.surface)
         self.lay(depth, lambda x, y: np.maximum(depth - height(x, y)[0], 0.0))
 
@@ -113,11 +122,19 @@ class ElementRow:
         kernels.begin(row, depth)
 
     def compile(self, steps: int) -> None:
-        """Compile if that pays: once so much was interpreted in this process, or will be in these steps."""
+        """Compile if that pays: once so much was interpreted in this process, or will be in these steps.
+
+        The records of the row are then such as compiled kernels take.
+        """
         work = steps * self.stored.low.size
         pays = Tally.steps + work > WORTHWHILE and compilation.available()
         Tally.steps = max(Tally.steps, WORTHWHILE) if pays else Tally.steps + work
         self.compiled = pays and self.constants.surface.profile is None
+        if self.compiled:
+            now, counts = self.stored.now, self.stored.counts
+            self.stored = self.stored._replace(
+                now=structured([now], INDENTER)[0], counts=structured([counts], COUNTS)[0]
+            )
 
     @np.errstate(all="ignore")  # the kernels check the results
     def run(
@@ -127,15 +144,16 @@ class ElementRow:
 
         What is reported is written into `found`, see `reports`.
         """
+        advance = compiled_advance() if self.compiled else kernels.advance
         status, (step, reported) = kernels.LACKING, begin
         while status == kernels.LACKING:
-            status, step, reported = self._advance(course, found, step, reported, until)
+            status, step, reported = advance(self.stored, course, found, step, reported, until)
             if status == kernels.LACKING:
                 self._move(float(course.times[step]))
         return status, step, reported
 
     def step(self, state: IndenterState, h: float) -> IndenterState:
-        """Take one step from a state, or raise `OutgrownError` deeper than the row was made for."""
+        """Take one interpreted step from a state, or raise `OutgrownError` deeper than the row reaches."""
         now = self.stored.now
         now.depth, now.rate, now.along, now.along_rate = state[1:]
         times = state.time + np.array([0.0, h])
@@ -143,71 +161,49 @@ class ElementRow:
         status, *_ = self.run(course, self.reports(0), (0, 0), 1)
         if status != kernels.DONE:
             raise OutgrownError
-        now = self.stored.now
-        return IndenterState(
-            state.time + h, *map(float, (now.depth, now.rate, now.along, now.along_rate))
-        )
+        found = now.depth, now.rate, now.along, now.along_rate
+        return IndenterState(state.time + h, *map(float, found))
 
     def reports(self, count: int) -> Any:
         """Return so many blank reports."""
         return np.zeros(count, REPORT) if self.compiled else blanks(count, REPORT)
 
-    def _advance(self, *task: Any) -> tuple[int, int, int]:
-        """Advance by the kernels, see `kernels.advance`; compiled, these take arrays for records."""
-        if not self.compiled:
-            return kernels.advance(self.stored, *task)
-        row, advance = self.stored, compiled_advance()
-        now, counts = structured([row.now], INDENTER), structured([row.counts], COUNTS)
-        done: tuple[int, int, int] = advance(row._replace(now=now[0], counts=counts[0]), *task)
-        (now,), (counts,) = filled(INDENTER, now), filled(COUNTS, counts)
-        self.stored = row._replace(now=now, counts=counts)
-        return done
-
-    def _empty(self, now: Any, first: int, width: int, strips: int) -> Row:
-        """Return elements that are undisturbed, below an indenter."""
-        arms, shape = self.constants.law.rates.size, (strips, width)
-        runs = strips * (width // 2 + 1)
-        (counts,), stages = blanks(1, COUNTS), self.tableau.shape[0]
-        return Row(
-            constants=self.constants, tableau=self.tableau, fitted=self.fitted, deepest=self.deepest,
-            now=now, modes=np.zeros((arms, *shape)), faded=self.faded,
-            elements=Elements(*np.zeros((5, *shape)), *np.zeros((3, *shape), dtype=bool)),
-            low=np.zeros(strips, np.int64), high=np.zeros(strips, np.int64), first=first, counts=counts,
-            numbers=np.arange(float(first), first + width) + self.constants.shift,
-            begun=Runs(*np.zeros((3, runs), np.int64)), ended=Runs(*np.zeros((3, runs), np.int64)),
-            edges=Edges(*np.zeros((2, runs, 2)), np.zeros((runs, 2), dtype=bool)),
-            weights=np.ones(strips), rates=Motion(*np.zeros((4, stages))), dampers=np.zeros(arms),
-        )  # fmt: skip
+    def _undisturbed(self, first: int, width: int, strips: int) -> dict[str, Any]:
+        """Return what a row has for each element and each strip, all undisturbed."""
+        shape = strips, width
+        return {
+            "first": first, "numbers": np.arange(float(first), first + width) + self.constants.shift,
+            "modes": np.zeros((self.faded.size, *shape)),
+            "elements": Elements(*np.zeros((5, *shape)), *np.zeros((3, *shape), dtype=bool)),
+            "low": np.zeros(strips, np.int64), "high": np.zeros(strips, np.int64),
+            "weights": np.ones(strips),
+        }  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the missing elements, and those still of use."""
-        old, counts, first = self.stored, self.stored.counts, self.stored.first
+        old, counts, first = self.stored, readable(self.stored.counts), self.stored.first
         strips, width = old.elements.u.shape
         spare, useful = (counts.high - counts.low) // 2, self._useful(t)
         start = min(counts.low - spare, max(first, useful[0]))
         stop = max(counts.high + spare, min(first + width, useful[1]))
-        new = self._empty(old.now, start, stop - start, max(counts.strips, strips))
-        for name in ("begun", "ended", "inside", "updates"):
-            setattr(new.counts, name, getattr(counts, name))
+        new = self._undisturbed(start, stop - start, max(counts.strips, strips))
+        row = self.stored = with_room(old._replace(**new))
         kept, last = max(start, first), min(stop, first + width)
         if kept < last:
             to, of = slice(kept - start, last - start), slice(kept - first, last - first)
-            arrays = (new.modes, *new.elements), (old.modes, *old.elements)
-            for one, other in zip(*arrays, strict=True):
+            for one, other in zip(_blocks(row), _blocks(old), strict=True):
                 one[..., :strips, to] = other[..., of]
-        some = slice(counts.begun)
-        moved = Runs(old.begun.strip, old.begun.low + first - start, old.begun.high + first - start)
-        for one, other in zip((*new.begun, *new.edges), (*moved, *old.edges), strict=True):
-            one[some] = other[some]
-        self.stored = new
+        row.begun.low[:] += first - start
+        row.begun.high[:] += first - start
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
         c, row = self.constants, self.stored
         if math.isfinite(c.mass_along):
             compressed = np.abs(c.law.shares * self.faded @ row.modes.reshape(self.faded.size, -1))
-            known = (compressed > FORGOTTEN * c.depth).reshape(row.elements.touched.shape)
-            known = np.flatnonzero((known | row.elements.touched).any(axis=0))
+            touched = row.elements.touched
+            free = (compressed > FORGOTTEN * c.depth).reshape(touched.shape)
+            known = np.flatnonzero((free | touched).any(axis=0))
             return row.first + int(known.min(initial=0)), row.first + int(known.max(initial=-1)) + 1
         memory = -math.log(FORGOTTEN) * c.law.longest_time
         back, ahead = self.path.extremes(t, min(t + memory, max(t, self.path.end)))
@@ -215,8 +211,28 @@ class ElementRow:
         return math.floor((low - ahead) / c.spacing), math.ceil((high - back) / c.spacing)
 
 
+def _blocks(row: Row) -> tuple[Any, ...]:
+    """Return all that is known of each element, in three arrays: `Row.elements` are views of two of them."""
+    return row.modes, row.elements.u.base, row.elements.touched.base
+
+
+def with_room(row: Row) -> Row:
+    """Return the row with room for as many runs as its elements can form."""
+    strips, width = row.elements.u.shape
+    more = strips * (width // 2 + 1) - row.begun.strip.size
+    if more <= 0:
+        return row
+
+    def longer(arrays: Any) -> Any:
+        return type(arrays)(
+            *(np.concatenate([a, np.zeros((more, *a.shape[1:]), a.dtype)]) for a in arrays)
+        )
+
+    return row._replace(begun=longer(row.begun), ended=longer(row.ended), edges=longer(row.edges))
+
+
 def course_of(
-    path: BaseMotion, law: Element, times: Array, steps: Array, instants: Instants = NOWHERE,
+    path: BaseMotion, law: Element, times: Array, steps: Array, instants: Instants = NEVER,
     unsure: float = 0.0, limits: Limits = UNLIMITED,
 ) -> Course:  # fmt: skip
     """Return the course of steps between these times, with the motion of the base and of an element."""

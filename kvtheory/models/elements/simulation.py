@@ -14,7 +14,7 @@ from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.progress import Progress, silent
-from kvtheory.records import structured
+from kvtheory.records import readable, structured, value
 from kvtheory.results import (
     SERIES_UNITS,
     TRANSIENT_UNITS,
@@ -159,7 +159,7 @@ def simulate(
     return kind(
         **{name: rows[name][asked] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
         time_step=h, steps=len(steps),
-        element_updates=row.stored.counts.updates, warning=warning, model="elements",
+        element_updates=int(value(row.stored.counts, "updates")), warning=warning, model="elements",
         certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
     )  # fmt: skip
 
@@ -310,7 +310,7 @@ def _run(
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, h, times[done], row.stored.now, deepest
+                status, scheme, model, path, h, times[done], readable(row.stored.now), deepest
             )  # fmt: skip
             asked = np.isin(instants.time[:reported], wanted)
             columns = structured(found, REPORT)[:reported][asked]
