@@ -24,15 +24,19 @@ PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
 FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
-FEWEST, MOST = 8, 2_000_000
-"""Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
+FEWEST = 8
+"""Elements in contact at rest, at least: fewer do not resolve the contact."""
+MOST = 2_000_000
+"""Elements in contact at rest, at most: more do not fit in memory."""
 SAMPLES = {False: 4096, True: 256}
 """Elements in a line contact, and along a ball, without a spacing: sizes are known to a thousandth then."""
 CREEP = 1e-12
 """Share of a_0/tau that counts as rest."""
-DEPTH_RTOL, STALLED = 1e-12, 0.9
+DEPTH_RTOL = 1e-12
 """The iteration for a depth ends when a step is below this share of it: the next one would be of the order of
-rounding errors; or when a step is not below this share of the previous one."""
+rounding errors."""
+STALLED = 0.9
+"""It also ends when a step is not below this share of the previous one."""
 
 
 class Contact(NamedTuple):

@@ -37,10 +37,12 @@ PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
 ROUGHLY = 0.9
 """The iteration for a period ends when the new period is at least this share of the previous one."""
-PER_STOPPING, FINER = 4.0, 1.0 / 16.0
-"""Steps in the time in which dampers stop the mass, at least, after a jump of the drive, and so many for each
-element in half a contact, so that more elements are more accurate there, too; later the steps grow with the
-time since the jump, up to the step of the run."""
+PER_STOPPING = 4.0
+"""Fewest steps, after a jump of the drive, in the time in which dampers stop the mass; later the steps grow
+with the time since the jump, up to the step of the run."""
+FINER = 1.0 / 16.0
+"""Steps in that time for each element in half a contact, if these are more: more elements are more accurate
+there, too."""
 JUMP = 1e-6
 """Share of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
 MOST_STEPS = 20_000
@@ -74,11 +76,12 @@ KINKED = 0.05
 """Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere, and on
 arms, where pressure is extrapolated to it; and of the forces, in elements at the peak pressure, where arms
 remember a kink that moved by less than an element."""
-WATCHED, RECENT = 8, 0.5
-"""Earlier instants at which runs are also compared, for each that is reported, and the share of the time
-since the last jump of the drive over which these lie. An error swings with the masses, and a difference
-vanishes twice in a swing, at times for both coarse runs at once: compared at one instant alone, one in a
-thousand was off by more than claimed, on springs in two scenes of five."""
+WATCHED = 8
+"""Earlier instants at which runs are also compared, for each that is reported. An error swings with the
+masses, and a difference vanishes twice in a swing, at times for both coarse runs at once: compared at one
+instant alone, one in a thousand was off by more than claimed, on springs in two scenes of five."""
+RECENT = 0.5
+"""Share of the time since the last jump of the drive over which these instants lie."""
 ROUNDING = 1e-12
 """Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
@@ -145,8 +148,8 @@ def simulate(
     def part(k: int) -> Progress:
         """Return the progress of one of several runs by its share of the work; the later ones are checks."""
         begun, end = ends[k : k + 2] / ends[-1]
-        told, words = progress or silent, " for the error" * (k > 0)
-        return lambda share, said: told(float(begun + (end - begun) * share), said + words)
+        show, purpose = progress or silent, " for the error" * (k > 0)
+        return lambda share, done: show(float(begun + (end - begun) * share), done + purpose)
 
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)

@@ -26,8 +26,12 @@ RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
-GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
-"""Search for a stable step: growth above rounding, least step times the fastest rate, tolerance."""
+GROWS = 1e-10
+"""Growth of a step above rounding, beyond which it is unstable."""
+SHORTEST = 1e-6
+"""Shortest step in the search for a stable one, times the fastest rate."""
+LIMIT_RTOL = 1e-9
+"""Relative tolerance of this search."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
