@@ -832,8 +832,8 @@ def press(
     """Write p = K g + C g' + Σ s_k of the elements under the indenter, and find those in contact (Eqs. 6-12).
 
     `sinking` is the depth and its rate, `velocity` that of sliding. In contact are those that were at the
-    start of the step and, if they may be `met`, those whose free
-    surface is above the indenter, `threshold` < 0; but only where p >= 0, since none pulls (Eqs. 20-25).
+    start of the step and, if they may be `met`, those whose free surface is above the indenter, `threshold`
+    < 0; but only where p >= 0, since none pulls (Eqs. 20-25).
     """
     c, of, arms, (depth, rate) = row.constants, row.elements, law.held.size, sinking
     weigh_strips(row, depth)
@@ -943,9 +943,9 @@ class End(NamedTuple):
 def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size: int) -> End:
     """Return how a run ends beyond its last element i, to the left (`out` = -1) or to the right (1).
 
-    An edge peels where p falls to zero, between two elements by a straight
-    line, and touches where the indenter meets the free surface. A run ends at a `kink` of the shape, so far
-    outward, at the latest, and one of whole elements half an element beyond the last.
+    An edge peels where p falls to zero, between two elements by a straight line, and touches where the
+    indenter meets the free surface. A run ends at a `kink` of the shape, so far outward, at the latest, and
+    one of whole elements half an element beyond the last.
     """
     c, of = row.constants, row.elements
     if not c.parts:

@@ -97,6 +97,13 @@ Rows = dict[str, Any]
 """The columns of reports by name, see `kernels.REPORT`."""
 
 
+class Unsure(NamedTuple):
+    """Uncertainty of an edge, in elements."""
+
+    at_jumps: float  # where a damper leaves pressure on it after a change of the drive
+    anywhere: float
+
+
 class Timetable(NamedTuple):
     """When steps are taken, and what is reported."""
 
@@ -297,7 +304,7 @@ def _run(
     while True:
         row = ElementRow(c, path, scheme, kept)
         limits = stability.limits(model, path)
-        course = course_of(path, c.law, *table, _unsure(c, path, h)[0], limits)
+        course = course_of(path, c.law, *table, _unsure(c, path, h).at_jumps, limits)
         row.compile(len(steps))
         pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.elements.u.size)))
         found = row.reports(instants.time.size)
@@ -321,16 +328,14 @@ def _run(
             raise error
 
 
-def _unsure(c: Constants, path: BaseMotion, h: float) -> tuple[float, float]:
-    """Return the uncertainty of an edge in elements: where a damper leaves pressure on it, and anywhere."""
+def _unsure(c: Constants, path: BaseMotion, h: float) -> Unsure:
+    """Return how unsure edges are with steps of at most h."""
     known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
     jump = known if len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :]) else 0.0
-    return jump, known if math.isfinite(c.mass_along) else jump
+    return Unsure(jump, known if math.isfinite(c.mass_along) else jump)
 
 
-def _estimate(
-    model: Model, unsure: tuple[float, float], rows: Rows, others: list[Rows]
-) -> Certificate:
+def _estimate(model: Model, unsure: Unsure, rows: Rows, others: list[Rows]) -> Certificate:
     """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
 
     All are compared at the reported instants, and shortly before each.
@@ -345,10 +350,10 @@ def _estimate(
         apart = [float(np.nanmax(abs(rows[name] - other[name]), initial=0.0)) for other in others]
         differences[name] = max(apart[: len(SHIFTS)]) + sum(apart[len(SHIFTS) :])
     kinks, arms = bool(c.kinks.size), bool(c.law.arm_time.size)
-    edge = (unsure[1] + KINKED * (kinks or arms)) * c.spacing
+    edge = (unsure.anywhere + KINKED * (kinks or arms)) * c.spacing
     width = 2.0 * c.surface.stretch * c.half_length if c.surface.ball else 1.0
     one = c.spacing * width * float(rows["peak_pressure"].max())
-    force = (unsure[0] + KINKED * (kinks and arms)) * one
+    force = (unsure.at_jumps + KINKED * (kinks and arms)) * one
     for name, more in {
         "leading_edge": edge, "trailing_edge": edge, "normal_force": force,
         "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),
