@@ -90,7 +90,7 @@ def test_memory_does_not_grow_with_time(monkeypatch):
 
     def recorded(elements, *arguments):
         move(elements, *arguments)
-        sizes.append(elements.stored.rows[0].size)
+        sizes.append(elements.stored.elements.u.size)
 
     monkeypatch.setattr(ElementRow, "_move", recorded)
     swing = kv.Drive(function=lambda t: 0.05 + 0.1 * math.cos(50.0 * t))

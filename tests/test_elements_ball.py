@@ -92,12 +92,12 @@ def test_strips_are_added_where_the_ball_sinks():
     model = Model.of(ball(GRIPS["dead-weight"], 0.0, 0.5), 2e-5, parts=True)
     row, c = ElementRow(model.constants, kv.Drive(0.0).motion(0.5, 0.1)), model.constants
     row.lay(0.2 * c.depth, lambda x, y: np.maximum(0.2 * c.depth - model.height(x, y), 0.0))
-    begun, state = int(row.stored.counts[kernels.STRIPS]), IndenterState(0.0, 0.2 * c.depth, 0.0)
+    begun, state = row.stored.counts.strips, IndenterState(0.0, 0.2 * c.depth, 0.0)
     for _ in range(250):
         state = row.step(state, 2e-3)
     rims = [span(c.surface, share * c.depth)[1] * WIDER.stretch for share in (0.2, 1.0)]
     assert begun == 1 + int(rims[0] / c.across)
-    assert row.stored.counts[kernels.STRIPS] >= 1 + int(rims[1] / c.across)
+    assert row.stored.counts.strips >= 1 + int(rims[1] / c.across)
     assert state.depth == pytest.approx(c.depth, rel=1e-6)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements import kernels
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
@@ -77,8 +76,8 @@ def test_the_order_of_every_scheme(scheme):
 def compressed(row):
     """Return u of all stored elements of a line contact, and the forces of their arms."""
     stored, law = row.stored, row.constants.law
-    modes, touched = row.stored.modes[:, 0] * row.faded[:, None], stored.flags[kernels.TOUCHED, 0]
-    u = np.where(touched, stored.rows[kernels.U, 0], law.shares @ modes)
+    modes, touched = row.stored.modes[:, 0] * row.faded[:, None], stored.elements.touched[0]
+    u = np.where(touched, stored.elements.u[0], law.shares @ modes)
     arms = law.arm_stiffness.size
     free = law.arm_stiffness[:, None] * (u - law.from_modes @ modes) if arms else modes[:0]
     return u, np.where(touched, stored.modes[:arms, 0], free)

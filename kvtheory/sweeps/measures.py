@@ -18,10 +18,11 @@ from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.prony import solved_scene as on_arms
 from kvtheory.models.continuum.prony import trajectory
-from kvtheory.models.continuum.run import ROOM, begin, readable, with_more_room
+from kvtheory.models.continuum.run import ROOM, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
+from kvtheory.records import readable
 from kvtheory.results.certificate import AT_REST, Certificate
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory import records
 from kvtheory.compilation import Kernel
 from kvtheory.models.continuum import (
     bulk,
@@ -21,7 +22,7 @@ from kvtheory.models.continuum import (
 from kvtheory.scene import base_motion
 
 MODULES = (
-    *(base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
+    *(records, base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
     *(evaluation, maxima, deviation, bulk),
 )
 """Modules that contain kernels."""

@@ -6,13 +6,13 @@ structured arrays. Both have more room than is used; `stepping.walk` stops befor
 
 import math
 from functools import cache
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.continuum.contact import FAR, FREE, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import MOST_PROBES, MOST_STAGES, radau, stages_for
+from kvtheory.records import blanks, filled, new, record, structured
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -25,24 +25,20 @@ EVENT_SHARE, EVENT_FLOOR = 1e-4, 1e-12
 """Violation that toggles the state of an edge: a share of the tolerance, and a floor well above rounding."""
 
 
-def _record(**fields: Any) -> np.dtype[Any]:
-    return np.dtype(list(fields.items()), align=True)
-
-
-PLACE = _record(X="f8", s="f8", d="f8", Y="f8")
+PLACE = record(X="f8", s="f8", d="f8", Y="f8")
 """Ground at X, left at the time s when depth and displacement of the base were d and Y."""
-NODE = _record(inner=PLACE, outer=PLACE, step="i8", branch="f8", next="i8", joined="?")
+NODE = record(inner=PLACE, outer=PLACE, step="i8", branch="f8", next="i8", joined="?")
 """Ground between two places; the step in which it was swept, or -1; the sign of the root of p = 0 that swept
 it; the next node outward, and whether A is smooth there."""
-SIDE = _record(state="i8", node="i8", X="f8")
+SIDE = record(state="i8", node="i8", X="f8")
 """State of an edge, its innermost node, and its material coordinate."""
-STEP = _record(
+STEP = record(
     start="f8", span="f8", depth="f8", piece="i8", sides=(SIDE, (2,)), rate=("f8", (MOST_STAGES + 1,))
 )  # fmt: skip
 """Start and span of a step, depth and both sides at its start, the piece of the base motion, and the depth
 rate as powers of (s - start)/span; the depth is its exact integral."""
-EVENT = _record(s="f8", kind="i8")
-NOW = _record(
+EVENT = record(s="f8", kind="i8")
+NOW = record(
     s="f8", d="f8", v="f8", span="f8", kink="f8", x="f8", w="f8",
     piece="i8", slide="i8", met="?", smooth="?", toggles="i8",
     steps="i8", nodes="i8", events="i8", rejected="i8", evaluations="i8", sides=(SIDE, (2,)),
@@ -52,7 +48,7 @@ of the indenter along x and its rate. The piece of the drive, the piece by which
 indenter (the same one for a rigid drive), whether the start of the piece was handled, whether the last step
 continues smoothly, the changes of state at this instant; the numbers of steps, nodes, events, rejected steps
 and evaluations; and both sides."""
-GIVEN = _record(
+GIVEN = record(
     eps="f8", kappa="f8", end="f8", fixed="?", rtol="f8", allowed="f8",
     first_step="f8", longest="f8", grow="f8", straight="f8",
     eps_x="f8", damping="f8", spring="f8", sprung="?", drives="i8",
@@ -61,7 +57,7 @@ GIVEN = _record(
 step, how far the state of an edge may be violated; step-size controls; inertia, damping and stiffness of a
 spring along x, whether there is one; the number of pieces of the drive."""
 _SQUARE = "f8", (MOST_STAGES, MOST_STAGES)
-METHOD = _record(
+METHOD = record(
     stages="i8", nodes=("f8", (MOST_STAGES,)), A=_SQUARE, inverse=_SQUARE, powers=_SQUARE,
     probe_count="i8", probes=("f8", (MOST_PROBES,)), scales=("f8", (MOST_PROBES, 3)),
 )  # fmt: skip
@@ -133,7 +129,7 @@ def begin(
     if sprung:  # as wide as the pieces by which the base slides, with room for those
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
-    make, matrix = np.zeros if arrays else _blanks, np.zeros((unknowns + 3, unknowns + 1))
+    make, matrix = np.zeros if arrays else blanks, np.zeros((unknowns + 3, unknowns + 1))
     return Run(
         given=np.array([given], GIVEN) if arrays else [new(GIVEN, *given)],
         method=_method(stages, arrays),
@@ -191,7 +187,7 @@ def with_more_room(run: Run) -> Run:
     objects, sprung = isinstance(run.steps, list), len(run.along) > 1
     for name in ("steps", "nodes", "events", *(("along",) if sprung else ())):
         rows = getattr(run, name)
-        more = _blanks(len(rows), KINDS[name]) if objects else np.zeros_like(rows)
+        more = blanks(len(rows), KINDS[name]) if objects else np.zeros_like(rows)
         wider[name] = rows + more if objects else np.concatenate([rows, more])
     if sprung:
         pieces = np.pad(run.pieces, ((0, len(run.steps)), (0, 0)))
@@ -207,38 +203,8 @@ def as_arrays(run: Run) -> Run:
 
 def as_objects(run: Run) -> Run:
     """Return a run, new or in progress, with objects for interpreted kernels."""
-    records = {name: _filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
+    records = {name: filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
     return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
-
-
-def structured(rows: Any, kind: np.dtype[Any]) -> Any:
-    """Return records as a structured array; `rows` may be one already."""
-
-    def plain(record: Any) -> Any:
-        if isinstance(record, list):
-            return [plain(each) for each in record]
-        if not isinstance(record, _Record):
-            return record
-        return tuple([plain(getattr(record, name)) for name in record.layout.names or ()])
-
-    return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
-
-
-def readable(record: Any) -> Any:
-    """Return a record whose plain fields are attributes."""
-    if not isinstance(record, np.void):
-        return record
-    return SimpleNamespace(**dict(zip(record.dtype.names or (), record.tolist(), strict=True)))
-
-
-def value(record: Any, name: str) -> Any:
-    """Return one field of a record."""
-    return record[name] if isinstance(record, np.void) else getattr(record, name)
-
-
-def new(kind: np.dtype[Any], *values: Any) -> Any:
-    """Return one object with the fields of a record."""
-    return _filled(kind, values)
 
 
 @cache
@@ -249,54 +215,4 @@ def _method(stages: int, arrays: bool) -> Any:
     for name, rows in method._asdict().items():
         array = np.array(rows)
         found[name][0][tuple(slice(size) for size in array.shape)] = array
-    return found if arrays else _filled(METHOD, found.tolist())
-
-
-class _Record:
-    """An object with the fields of a record."""
-
-    layout: np.dtype[Any]
-
-    def __reduce__(self) -> Any:
-        """Return how it is made again in another process."""
-        return _blank, (self.layout,), vars(self)
-
-
-def _blank(kind: np.dtype[Any]) -> Any:
-    return _class(kind)[0]()
-
-
-@cache
-def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], int]]]:
-    """Return the class of a record, whose plain fields are zero, and its other fields with their lengths."""
-    shapes = {name: kind[name].shape or (0,) for name in kind.names or ()}
-    nested = [(name, kind[name].base, count) for name, (count, *_) in shapes.items()
-              if count or kind[name].names]  # fmt: skip
-    plain = dict.fromkeys(shapes, 0) | {n: 0.0 for n in shapes if kind[n].kind == "f"}
-    return type("Record", (_Record,), {**plain, "layout": kind}), nested
-
-
-def _blanks(count: int, kind: np.dtype[Any]) -> list[Any]:
-    """Return `count` blank objects, or zeros."""
-    if kind.names is None:
-        return [0.0] * count
-    make, nested = _class(kind)
-    found = [make() for _ in range(count)]
-    for record in found:
-        for name, part, many in nested:
-            setattr(record, name, _blanks(many, part) if many else _blanks(1, part)[0])
-    return found
-
-
-def _filled(kind: np.dtype[Any], values: Any) -> Any:
-    """Return an object or a list with these values."""
-    if isinstance(values, np.ndarray):
-        values = values.tolist()
-    if isinstance(values, list):
-        return [_filled(kind.base, value) for value in values]
-    if kind.names is None:
-        return values
-    record = _class(kind)[0]()
-    for name, value in zip(kind.names, values, strict=True):
-        setattr(record, name, _filled(kind[name], value))
-    return record
+    return found if arrays else filled(METHOD, found.tolist())

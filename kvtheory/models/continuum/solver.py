@@ -24,7 +24,8 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, maxima, stepping
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
-from kvtheory.models.continuum.run import Run, Spring, StepControl, readable, structured, value
+from kvtheory.models.continuum.run import Run, Spring, StepControl
+from kvtheory.records import readable, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion

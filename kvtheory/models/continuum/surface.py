@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.contact import SIDES, instant
-from kvtheory.models.continuum.run import NODE, PLACE, new, step_at, structured
+from kvtheory.models.continuum.run import NODE, PLACE, step_at
 from kvtheory.models.continuum.solver import Trajectory
+from kvtheory.records import new, structured
 from kvtheory.scene import base_motion as drive_
 
 Array = NDArray[np.float64]

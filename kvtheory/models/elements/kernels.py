@@ -17,45 +17,37 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.records import record
+from kvtheory.results.table import SERIES_UNITS
 from kvtheory.theory.laws import Array, Element, ElementStep
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Pair = tuple[float, float]
 
-DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCES, LAST, GAINED, CURVED = range(9)
-"""The indenter: depth, its rate, both along x; means of the forces of explicit steps and their imbalance; the
-last step, and the first and second backward difference of the rate along x."""
-U, HEIGHT, SLOPE, MEETS, PRESSURE = range(5)
-"""Numbers of each element: its compression in contact; h and dh/dx; how far the indenter must sink from a
-given depth to press it; its pressure."""
-TOUCHED, LATE, PRESSED = range(3)
-"""Flags of each element: in contact at the start of a step; coming into contact or leaving it in the step; in
-contact at an instant."""
-OLD, NEW, FALLS = range(3)
-"""Of an edge of a run: kink of the surface at start and end of a step, and whether the edge moves inward."""
-FIRST, LOW, HIGH, STRIPS, BEGUN, ENDED, INSIDE, UPDATES = range(8)
-"""Counts: the first element stored; the range and the strips needed; the runs in contact at the start of a
-step and at its end; elements in these; element updates."""
-F_Z, F_X, LEFT, RIGHT, PEAK, DOUBT = 4, 5, 6, 7, 8, 11
-"""Places in a report, whose order is that of `simulation.COLUMNS`."""
 DONE, LACKING, OUTGROWN, THROWN_UP, THROWN_ALONG, UNBALANCED = range(6)
-"""How a run ended, or why it paused."""
+"""How a run ended, or why it paused: elements are lacking, the indenter sank deeper than the row was made
+for, it is thrown up or along x, or the forces do not balance its motion."""
 
 FAR = 1e200
 """Height (m) where the indenter has no surface."""
-SPARE, UNMET = 7, 3
-"""Elements beyond those that can be met, and those at each end of the window that never are: edges are
-extrapolated from three."""
+SPARE = 7
+"""Elements of the window beyond those that can be met."""
+UNMET = 3
+"""Padding at both ends of the window, of elements that are never met: edges are extrapolated from three."""
 SMALL_FIT = 1e-2
 """Below it, the exponential fit is taken from its series, where the closed form cancels."""
-NEWTON_STEPS, SLIDE_STEPS = 60, 30
-"""Limits that are never reached: the iterations end after two or three."""
+NEWTON_STEPS = 60
+"""Limit on the iteration for the depth, never reached: it ends after two or three steps."""
+SLIDE_STEPS = 30
+"""Likewise for the place along x."""
 SLIDE_RTOL = 1e-8
 """Newton's method along x has converged when its step is below this share of the static half length."""
-ROOM, MORE_ROOM = 0.02, 4.0
+ROOM = 0.02
 """Initial bound on how far the indenter sinks in a step beyond its present rate, as a share of the static
-depth, and the factor by which it grows if the indenter sinks farther."""
+depth."""
+MORE_ROOM = 4.0
+"""Factor by which this bound grows if the indenter sinks farther."""
 STANDS = 1e-12
 """Share of the static depth: an edge whose overlap falls by less in a step does not move inward."""
 STRAIGHT = 0.25
@@ -67,9 +59,24 @@ WINDOW = 40
 FAINT = 1e-100
 """Share to which a mode decays before all are stored anew."""
 TINY = 1e-300
-"""Instead of 0 in a division."""
+"""Replaces a zero divisor."""
 BLOCK = 32
 """Flags that are looked at together."""
+
+INDENTER = record(
+    depth="f8", rate="f8", along="f8", along_rate="f8", mean_force="f8", mean_imbalance="f8",
+    last_step="f8", difference="f8", second_difference="f8",
+)  # fmt: skip
+"""Depth of the indenter and its rate, both along x; means over explicit steps of the largest force and of the
+imbalance of forces; the length of the last step, and the backward differences of the rate along x."""
+COUNTS = record(
+    low="i8", high="i8", strips="i8", begun="i8", ended="i8", inside="i8", updates="i8"
+)  # fmt: skip
+"""The range of elements needed, and the strips; the runs in contact at the start of a step and at its end;
+elements in these; updates of elements."""
+REPORT = record(**dict.fromkeys((*SERIES_UNITS, "doubt", "left", "right"), "f8"))
+"""The columns of a time series as on a spring, the doubt about the peak pressure (Pa), and the left and right
+edge, whichever leads."""
 
 
 class Surface(NamedTuple):
@@ -113,32 +120,71 @@ class Constants(NamedTuple):
     )
 
 
+class Elements(NamedTuple):
+    """What is known of each element, over strips and elements."""
+
+    u: Array  # compression in contact
+    height: Array  # h, the height of the indenter above its lowest point
+    slope: Array  # dh/dx
+    threshold: Array  # how far the indenter must sink from a given depth to press the element
+    pressure: Array
+    touched: Flags  # in contact at the start of a step
+    changed: Flags  # comes into contact or leaves it in the step
+    pressed: Flags  # in contact at an instant
+
+
+class Runs(NamedTuple):
+    """Runs of elements in contact: of each its strip, its first element, and one after its last."""
+
+    strip: Integers
+    low: Integers
+    high: Integers
+
+
+class Edges(NamedTuple):
+    """What is known of each edge, over runs and sides."""
+
+    kink_before: Array  # of the surface, at the start of a step
+    kink_after: Array  # and at its end
+    inward: Flags  # whether the edge moves inward
+
+
+class Motion(NamedTuple):
+    """Depth and its rate, and both along x, or what these change by in a unit of time, at each stage."""
+
+    depth: Array
+    rate: Array
+    along: Array
+    along_rate: Array
+
+
 class Row(NamedTuple):
     """The stored elements, and the state of the indenter above them.
 
     The compression of a free element is the sum over its modes of `law.shares` times `faded` times `modes`:
     nothing changes in it while it is free, only `faded` decays. On arms, an element in contact has their
-    forces there, and its compression is in `rows`.
+    forces there, and its compression is in `elements`.
     """
 
     constants: Constants
     tableau: Array
     fitted: bool
     deepest: float  # the depth that the row is made for
-    state: Array
+    now: Any  # an `INDENTER`
     modes: Array
     faded: Array
-    rows: Array  # over kinds, strips and elements, as `flags`
-    flags: Flags
+    elements: Elements
     low: Integers  # the first element of each strip that is near the indenter
     high: Integers  # and that behind the last
-    counts: Integers
+    first: int  # the first element stored
+    counts: Any  # `COUNTS`
     numbers: Array  # i + shift
-    begun: Integers  # runs in contact at the start of a step
-    ended: Integers  # and at its end
-    edges: Array
+    begun: Runs  # in contact at the start of a step
+    ended: Runs  # and at its end
+    edges: Edges
     weights: Array
-    stages: Array
+    rates: Motion
+    dampers: Array  # work space for the compressions of the dampers of an element
 
 
 # Loops over elements
@@ -147,6 +193,11 @@ class Row(NamedTuple):
 def over(low: Any, high: Any) -> Any:
     """Return the elements from `low` to before `high`: one by one if compiled, else all as one slice."""
     return (slice(low, high),) if low < high else ()
+
+
+def run_at(runs: Runs, r: int) -> tuple[int, int, int]:
+    """Return the strip of a run, its first element, and one after its last."""
+    return runs.strip[r], runs.low[r], runs.high[r]
 
 
 def next_flag(flags: Flags, low: Any, high: Any, wanted: bool) -> Any:
@@ -309,37 +360,37 @@ def set_window(row: Row, places: Pair, depth: float) -> int:
     if not (depth < row.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
         return OUTGROWN
     s, dx, dy = row.constants.surface, row.constants.spacing, row.constants.across
-    first, (stored, width) = row.counts[FIRST], row.rows.shape[1:]
+    first, (stored, width) = row.first, row.elements.u.shape
     left, right = extent(s, depth, -1.0), extent(s, depth, 1.0)
-    strips, runs, r = 1 + int(s.stretch * right / dy) if dy else 1, row.counts[BEGUN], 0
+    strips, runs, r = 1 + int(s.stretch * right / dy) if dy else 1, row.counts.begun, 0
     if runs:  # an element may stay in contact above the plane z = 0
-        strips = max(strips, row.begun[runs - 1, 0] + 1)
+        strips = max(strips, row.begun.strip[runs - 1] + 1)
     for j in range(min(strips, stored)):
         share = j * dy / max(s.stretch * right, FAINT)
         bent = math.sqrt(max(1.0 - share * share, 0.0))
         low = math.floor((-left * bent - max(places[0], places[1])) / dx) - SPARE - first
         high = math.ceil((right * bent - min(places[0], places[1])) / dx) + SPARE + 1 - first
-        while r < runs and row.begun[r, 0] == j:
-            low, high = min(low, row.begun[r, 1] - SPARE), max(high, row.begun[r, 2] + SPARE)
+        while r < runs and row.begun.strip[r] == j:
+            low, high = min(low, row.begun.low[r] - SPARE), max(high, row.begun.high[r] + SPARE)
             r += 1
         fits = low >= 0 and high <= width and strips <= stored
         if j == 0 or not fits:
-            row.counts[LOW], row.counts[HIGH] = low + first, high + first
-            row.counts[STRIPS] = strips
+            row.counts.low, row.counts.high = low + first, high + first
+            row.counts.strips = strips
         if not fits:
             return LACKING
         row.low[j], row.high[j] = low, high
-        row.counts[UPDATES] += high - low
+        row.counts.updates += high - low
     return DONE
 
 
 def press_to(row: Row, sunk: float) -> int:
     """Flag the elements that the indenter presses when it has sunk so far, and return their number."""
     found = 0
-    for j in range(row.counts[STRIPS]):
-        meets, pressed = row.rows[MEETS, j], row.flags[PRESSED, j]
+    for j in range(row.counts.strips):
+        threshold, pressed = row.elements.threshold[j], row.elements.pressed[j]
         for i in over(row.low[j], row.high[j]):
-            pressed[i] = meets[i] <= sunk
+            pressed[i] = threshold[i] <= sunk
             found += total(pressed[i])
     return found
 
@@ -347,35 +398,31 @@ def press_to(row: Row, sunk: float) -> int:
 def find_runs(row: Row) -> None:
     """Find the runs of elements that are flagged as pressed."""
     count = inside = 0
-    for j in range(row.counts[STRIPS]):
-        pressed, high = row.flags[PRESSED, j], row.high[j]
+    for j in range(row.counts.strips):
+        pressed, high = row.elements.pressed[j], row.high[j]
         start = next_flag(pressed, row.low[j], high, True)
         while start < high:
             stop = next_flag(pressed, start, high, False)
-            row.ended[count, 0], row.ended[count, 1], row.ended[count, 2] = j, start, stop
+            row.ended.strip[count], row.ended.low[count], row.ended.high[count] = j, start, stop
             count, inside = count + 1, inside + stop - start
             start = next_flag(pressed, stop, high, True)
-    row.counts[ENDED], row.counts[INSIDE] = count, inside
+    row.counts.ended, row.counts.inside = count, inside
 
 
 def begin(row: Row, depth: float) -> None:
     """Take the runs at the end of a step, and their kinks, for those at the start of the next."""
-    for r in range(row.counts[ENDED]):
-        j, low, high = row.ended[r, 0], row.ended[r, 1], row.ended[r, 2]
-        u, height, mode, grown = (
-            row.rows[U, j],
-            row.rows[HEIGHT, j],
-            row.modes[0, j],
-            1.0 / row.faded[0],
-        )
+    for r in range(row.counts.ended):
+        j, low, high = run_at(row.ended, r)
+        u, height = row.elements.u[j], row.elements.height[j]
+        mode, grown = row.modes[0, j], 1.0 / row.faded[0]
         for i in over(low, high):
             u[i] = depth - height[i]
         for i in over(low, low if row.constants.law.arm_time.size else high):
             mode[i] = (depth - height[i]) * grown
-        row.begun[r, 0], row.begun[r, 1], row.begun[r, 2] = j, low, high
+        row.begun.strip[r], row.begun.low[r], row.begun.high[r] = j, low, high
         for side in range(2):
-            row.edges[r, side, OLD] = row.edges[r, side, NEW]
-    row.counts[BEGUN] = row.counts[ENDED]
+            row.edges.kink_before[r, side] = row.edges.kink_after[r, side]
+    row.counts.begun = row.counts.ended
 
 
 # Where the indenter meets them
@@ -384,16 +431,17 @@ def begin(row: Row, depth: float) -> None:
 def approach(
     row: Row, fall: Array, place: float, depth: float, back: float = 0.0, inclined: bool = True
 ) -> None:
-    """Write h, dh/dx, and to `MEETS` how far the indenter must sink from a depth to meet free elements.
+    """Write h, dh/dx, and to `threshold` how far the indenter must sink from a depth to meet free elements.
 
     The base has moved by `place` under the indenter, and by `back` less where dh/dx is taken, if it is wanted
     (`inclined`). `fall` are the decay factors of the modes of free elements over the step.
     """
     c = row.constants
     s, law, numbers = c.surface, c.law, row.numbers
-    for j in range(row.counts[STRIPS]):
+    for j in range(row.counts.strips):
         y, low, high = j * c.across, row.low[j], row.high[j]
-        height, slope, meets = row.rows[HEIGHT, j], row.rows[SLOPE, j], row.rows[MEETS, j]
+        at = row.elements
+        height, slope, threshold = at.height[j], at.slope[j], at.threshold[j]
         for i in over(low, high if s.exponent == 2.0 else low):
             x = c.spacing * numbers[i] + place
             height[i] = x * x * (0.5 / s.size) + s.across * (y * y)
@@ -401,11 +449,11 @@ def approach(
             x = c.spacing * numbers[i] + place
             height[i], slope[i] = surface_at(s, x, y)
         for i in over(low, high if back or (s.exponent == 2.0 and inclined) else low):
-            slope[i] = surface_at(s, c.spacing * numbers[i] + (place - back), y)[1]
+            _, slope[i] = surface_at(s, c.spacing * numbers[i] + (place - back), y)
         for k in range(fall.size):
             mode, share = row.modes[k, j], law.shares[k] * row.faded[k] * fall[k]
             for i in over(low, high):
-                meets[i] = (meets[i] if k else height[i] - depth) + share * mode[i]
+                threshold[i] = (threshold[i] if k else height[i] - depth) + share * mode[i]
 
 
 def gap(row: Row, j: int, i: int, place: float, depth: float) -> float:
@@ -413,8 +461,8 @@ def gap(row: Row, j: int, i: int, place: float, depth: float) -> float:
     c, u = row.constants, 0.0
     for k in range(row.faded.size):
         u += c.law.shares[k] * row.faded[k] * row.modes[k, j, i]
-    h = surface_at(c.surface, c.spacing * row.numbers[i] + place, j * c.across)[0]
-    return 0.0 if row.flags[TOUCHED, j, i] else float(depth - h - u)
+    h, _ = surface_at(c.surface, c.spacing * row.numbers[i] + place, j * c.across)
+    return 0.0 if row.elements.touched[j, i] else float(depth - h - u)
 
 
 # An element over a step
@@ -428,13 +476,13 @@ def change_contact(row: Row, law: ElementStep, j: int, i: int, g: float, rise: f
     """
     arm, y, of, leaves = (
         row.modes[:, j, i],
-        row.stages[6],
+        row.dampers,
         row.constants.law,
-        row.flags[TOUCHED, j, i],
+        row.elements.touched[j, i],
     )
     for k in range(arm.size):
         mode = arm[k] * row.faded[k] * law.fall[k]
-        y[k] = row.rows[U, j, i] - arm[k] / of.arm_stiffness[k] if leaves else mode
+        y[k] = row.elements.u[j, i] - arm[k] / of.arm_stiffness[k] if leaves else mode
     for k in range(arm.size):
         new = 0.0
         for m in range(arm.size):
@@ -446,32 +494,32 @@ def change_contact(row: Row, law: ElementStep, j: int, i: int, g: float, rise: f
 def finish(row: Row, law: ElementStep, depth: float, sunk: float) -> None:
     """Complete a step: at this depth, the elements that are flagged as pressed are on the indenter.
 
-    `sunk` is how far the indenter sank since `MEETS` was written.
+    `sunk` is how far the indenter sank since `threshold` was written.
     """
-    arms = law.held.size
-    for j in range(row.counts[STRIPS]):
-        low, high, height, meets = row.low[j], row.high[j], row.rows[HEIGHT, j], row.rows[MEETS, j]
-        u, pressed, touched = row.rows[U, j], row.flags[PRESSED, j], row.flags[TOUCHED, j]
-        late = row.flags[LATE, j]
+    arms, of = law.held.size, row.elements
+    for j in range(row.counts.strips):
+        low, high = row.low[j], row.high[j]
+        u, height, threshold = of.u[j], of.height[j], of.threshold[j]
+        pressed, touched, changed = of.pressed[j], of.touched[j], of.changed[j]
         for k in range(arms):
             arm, held, ramp = row.modes[k, j], law.held[k], law.ramp[k]
             for i in over(low, high):
                 loaded = held * arm[i] + ramp * (depth - height[i] - u[i])
                 arm[i] = choose(touched[i] & pressed[i], loaded, arm[i])
         for i in over(low, high if arms else low):
-            late[i] = pressed[i] != touched[i]
-        n = next_flag(late, low, high, True) if arms else high
+            changed[i] = pressed[i] != touched[i]
+        n = next_flag(changed, low, high, True) if arms else high
         while n < high:
-            change_contact(row, law, j, n, depth - height[n], sunk - meets[n])
-            n = next_flag(late, n + 1, high, True)
+            change_contact(row, law, j, n, depth - height[n], sunk - threshold[n])
+            n = next_flag(changed, n + 1, high, True)
         for i in over(low, high):
             touched[i] = pressed[i]
     for k in range(row.faded.size):
         row.faded[k] *= law.fall[k]
         if row.faded[k] < FAINT:
-            for j in range(row.flags.shape[1]):
+            for j in range(row.low.size):
                 for i in over(0, row.numbers.size):
-                    contact = row.flags[TOUCHED, j, i] & (arms > 0)
+                    contact = row.elements.touched[j, i] & (arms > 0)
                     row.modes[k, j, i] *= choose(contact, 1.0, row.faded[k])
             row.faded[k] = 1.0
     begin(row, depth)
@@ -516,17 +564,17 @@ def implicit_step(row: Row, law: ElementStep, Y: Pair) -> int:
 
     On a spring, so is the place along x: for every place there is one depth.
     """
-    c, state, h = row.constants, row.state, law.h
-    depth, along, theta, known = state[DEPTH], state[ALONG], 1.0, not c.parts
-    gained = state[GAINED] * h / max(state[LAST], h)
-    guess = state[ALONG_RATE] + gained / 2.0 + 5.0 / 12.0 * state[CURVED]  # Adams-Bashforth
+    c, now, h = row.constants, row.now, law.h
+    depth, along, theta, known = now.depth, now.along, 1.0, not c.parts
+    gained = now.difference * h / max(now.last_step, h)
+    guess = now.along_rate + gained / 2.0 + 5.0 / 12.0 * now.second_difference  # Adams-Bashforth
     slid = h * guess / (1.0 + 0.25 * c.spring_along * h * h / c.mass_along)
     sunk = new_along_rate = 0.0
-    weigh_strips(row, depth + 0.5 * h * state[RATE])
+    weigh_strips(row, depth + 0.5 * h * now.rate)
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
-        first = h * state[RATE]
+        first = h * now.rate
         sinks = max(2.0 * first, 0.0) + ROOM * c.depth
         while True:
             status = set_window(row, (place, place - travel), depth + sinks)
@@ -537,8 +585,8 @@ def implicit_step(row: Row, law: ElementStep, Y: Pair) -> int:
             find_runs(row)
             if not known:
                 judge_edges(row, place - travel, depth, first)
-            wide = max(number_in(row, row.ended, row.counts[ENDED]),
-                       number_in(row, row.begun, row.counts[BEGUN]))  # fmt: skip
+            wide = max(number_in(row, row.ended, row.counts.ended),
+                       number_in(row, row.begun, row.counts.begun))  # fmt: skip
             theta = (
                 exponential_fit(h * law.damping * c.spacing * wide / c.mass) if row.fitted else 1.0
             )
@@ -554,17 +602,17 @@ def implicit_step(row: Row, law: ElementStep, Y: Pair) -> int:
             break
     finish(row, law, depth + sunk, sunk)
     if math.isfinite(c.mass):
-        state[RATE] = final_velocity(sunk, state[RATE], h, theta)
-    state[DEPTH] = depth + sunk
+        now.rate = final_velocity(sunk, now.rate, h, theta)
+    now.depth = depth + sunk
     if math.isfinite(c.mass_along):
-        gained = new_along_rate - state[ALONG_RATE]
-        state[CURVED] = gained - state[GAINED] if state[LAST] == h else 0.0
-        state[GAINED], state[ALONG], state[ALONG_RATE] = gained, along + slid, new_along_rate
+        gained = new_along_rate - now.along_rate
+        now.second_difference = gained - now.difference if now.last_step == h else 0.0
+        now.difference, now.along, now.along_rate = gained, along + slid, new_along_rate
     return DONE
 
 
 def find_thresholds(row: Row, law: ElementStep, place: float, travel: float, depth: float) -> None:
-    """Find how far the indenter must sink to press each element at the end of the step: `MEETS`.
+    """Find how far the indenter must sink to press each element at the end of the step: `threshold`.
 
     There the mean pressure would vanish: at the place of a free element then, and above that of one in
     contact now.
@@ -573,21 +621,21 @@ def find_thresholds(row: Row, law: ElementStep, place: float, travel: float, dep
     sprung = math.isfinite(c.mass_along)
     approach(row, law.fall, place, depth, 0.5 * travel if sprung else 0.0, sprung)
     relaxed = 1.0 - c.law.stiffness / law.stiffness
-    for r in range(row.counts[BEGUN] if law.held.size else 0):
-        j, low, high = row.begun[r, 0], row.begun[r, 1], row.begun[r, 2]
-        u, height, meets = row.rows[U, j], row.rows[HEIGHT, j], row.rows[MEETS, j]
+    for r in range(row.counts.begun if law.held.size else 0):
+        j, low, high = run_at(row.begun, r)
+        u, height, threshold = row.elements.u[j], row.elements.height[j], row.elements.threshold[j]
         for i in over(low, high):
-            meets[i] = relaxed * u[i] + (height[i] - depth)
+            threshold[i] = relaxed * u[i] + (height[i] - depth)
         for k in range(law.held.size):
             arm, share = row.modes[k, j], law.weights[k] / law.stiffness
             for i in over(low, high):
-                meets[i] -= share * arm[i]
+                threshold[i] -= share * arm[i]
     for n in range(c.kinks.size if c.law.damping and not c.across and travel else 0):
         pass_kink(row, c.kinks[n], place, travel, depth, law.h)
-    for j in range(row.counts[STRIPS]):
+    for j in range(row.counts.strips):
         for end in (row.low[j], row.high[j] - UNMET):
             for i in over(end, end + UNMET):
-                row.rows[MEETS, j, i] = math.inf
+                row.elements.threshold[j, i] = math.inf
 
 
 def pass_kink(row: Row, kink: float, place: float, travel: float, depth: float, h: float) -> None:
@@ -596,19 +644,21 @@ def pass_kink(row: Row, kink: float, place: float, travel: float, depth: float, 
     What a damper has of the compression by a tip is left at the end of the step, and so is its mean
     pressure; without this, a wedge stands on its tip at the first order in the spacing.
     """
-    c, height, meets = row.constants, row.rows[HEIGHT, 0], row.rows[MEETS, 0]
-    now = (kink - place) / c.spacing - row.numbers[0]
-    start, end = min(now, now + travel / c.spacing), max(now, now + travel / c.spacing)
+    c, of = row.constants, row.elements
+    height, slope, threshold = of.height[0], of.slope[0], of.threshold[0]
+    passed = (kink - place) / c.spacing - row.numbers[0]
+    start, end = min(passed, passed + travel / c.spacing), max(passed, passed + travel / c.spacing)
     low = max(math.floor(start + NEAR) + 1, row.low[0])
     high = min(math.ceil(end - NEAR), row.high[0])
-    g = depth - surface_at(c.surface, kink, 0.0)[0]
+    h_kink, _ = surface_at(c.surface, kink, 0.0)
+    g = depth - h_kink
     for i in over(low, high):
         x = c.spacing * row.numbers[i] + place
         left = g * np.exp((kink - x) / travel * h * c.law.rates[0])
         lowest = np.minimum(height[i], depth - left)
-        meets[i], height[i] = meets[i] + lowest - height[i], lowest
+        threshold[i], height[i] = threshold[i] + lowest - height[i], lowest
         # It is pressed by the flank that it comes from.
-        row.rows[SLOPE, 0, i] = surface_at(c.surface, x - travel, 0.0)[1]
+        _, slope[i] = surface_at(c.surface, x - travel, 0.0)
 
 
 def judge_edges(row: Row, place: float, depth: float, first: float) -> None:
@@ -617,18 +667,18 @@ def judge_edges(row: Row, place: float, depth: float, first: float) -> None:
     It is that at the start of a step, at this place and depth, against that at its end, if the indenter sinks
     by `first`. This is decided once in a step, so that the iteration cannot oscillate.
     """
-    for r in range(row.counts[ENDED]):
+    for r in range(row.counts.ended):
         for side in range(2):
-            j, i = row.ended[r, 0], row.ended[r, 2] if side else row.ended[r, 1] - 1
-            change = first - row.rows[MEETS, j, i] - gap(row, j, i, place, depth)
-            row.edges[r, side, FALLS] = 1.0 if change < -STANDS * row.constants.depth else 0.0
+            j, i = row.ended.strip[r], row.ended.high[r] if side else row.ended.low[r] - 1
+            change = first - row.elements.threshold[j, i] - gap(row, j, i, place, depth)
+            row.edges.inward[r, side] = change < -STANDS * row.constants.depth
 
 
-def number_in(row: Row, runs: Integers, count: int) -> float:
+def number_in(row: Row, runs: Runs, count: int) -> float:
     """Return the number of elements in runs, by the weights of their strips."""
     width = 0.0
     for r in range(count):
-        width += row.weights[runs[r, 0]] * (runs[r, 2] - runs[r, 1])
+        width += row.weights[runs.strip[r]] * (runs.high[r] - runs.low[r])
     return width
 
 
@@ -636,23 +686,24 @@ def solve_depth(row: Row, law: ElementStep, theta: float, sunk: float) -> float:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element comes into contact or detaches, F_z is quadratic in the depth: one step of Newton's
-    method with the second derivative is exact. Elements in contact are those with `MEETS` <= `sunk`, so that
-    their number tells whether they are the same.
+    method with the second derivative is exact. Elements in contact are those with `threshold` <= `sunk`, so
+    that their number tells whether they are the same.
     """
-    c, state, h, k = row.constants, row.state, law.h, law.stiffness * row.constants.spacing
+    c, now, h, k = row.constants, row.now, law.h, law.stiffness * row.constants.spacing
     for _ in range(NEWTON_STEPS if math.isfinite(c.mass) else 0):
         area, width, bent, _ = add_kinks(row, law, sunk)
-        for r in range(row.counts[ENDED]):
-            j, low, high = row.ended[r, 0], row.ended[r, 1], row.ended[r, 2]
-            area += row.weights[j] * (sunk * (high - low) - summed(row.rows[MEETS, j], low, high))
+        for r in range(row.counts.ended):
+            j, low, high = run_at(row.ended, r)
+            threshold = row.elements.threshold[j]
+            area += row.weights[j] * (sunk * (high - low) - summed(threshold, low, high))
             width += row.weights[j] * (high - low)
-        mean = state[DEPTH] - c.depth + theta * sunk
-        change_of_rate = final_velocity(sunk, state[RATE], h, theta) - state[RATE]
+        mean = now.depth - c.depth + theta * sunk
+        change_of_rate = final_velocity(sunk, now.rate, h, theta) - now.rate
         residual = c.mass * change_of_rate / h - c.weight + c.spring * mean + k * area
         slope = c.mass / (theta * h * h) + theta * c.spring + k * width
         root = math.sqrt(max(slope * slope - 2.0 * residual * k * bent, 0.0))
         sunk -= 2.0 * residual / (slope + root)
-        if press_to(row, sunk) == row.counts[INSIDE]:
+        if press_to(row, sunk) == row.counts.inside:
             break
         find_runs(row)
     return sunk
@@ -667,23 +718,23 @@ def add_kinks(row: Row, law: ElementStep, sunk: float) -> tuple[float, float, fl
     """
     area = wider = bent = push = 0.0
     relaxed = 1.0 - row.constants.law.stiffness / law.stiffness
-    for r in range(row.counts[ENDED] if row.constants.parts else 0):
-        j, old = row.ended[r, 0], r < row.counts[BEGUN] and row.begun[r, 0] == row.ended[r, 0]
-        weight, meets = row.weights[j], row.rows[MEETS, j]
+    edges = row.edges
+    for r in range(row.counts.ended if row.constants.parts else 0):
+        j = row.ended.strip[r]
+        old = r < row.counts.begun and row.begun.strip[r] == j
+        weight, slope = row.weights[j], row.elements.slope[j]
+        threshold = row.elements.threshold[j]
         for side in range(2):
-            edge, out = row.edges[r, side], 2 * side - 1
-            i = row.ended[r, 2] if side else row.ended[r, 1] - 1
-            edge[NEW] = 0.0
-            if not edge[FALLS]:
-                overlap = sunk - meets[i], sunk - meets[i + out], sunk - meets[i + 2 * out]
-                edge[NEW], more, bend = kink_area(overlap)
-                added = edge[NEW] - (relaxed * edge[OLD] if old else 0.0)
-                area, wider, bent = (
-                    area + weight * added,
-                    wider + weight * more,
-                    bent + weight * bend,
-                )
-                push += weight * added * row.rows[SLOPE, j, i - out]
+            out = 2 * side - 1
+            i = row.ended.high[r] if side else row.ended.low[r] - 1
+            edges.kink_after[r, side] = 0.0
+            if not edges.inward[r, side]:
+                w, far, farthest = threshold[i], threshold[i + out], threshold[i + 2 * out]
+                kink, more, bend = kink_area((sunk - w, sunk - far, sunk - farthest))
+                added = kink - (relaxed * edges.kink_before[r, side] if old else 0.0)
+                edges.kink_after[r, side] = kink
+                area, wider = area + weight * added, wider + weight * more
+                bent, push = bent + weight * bend, push + weight * added * slope[i - out]
     return area, wider, bent, push
 
 
@@ -693,28 +744,29 @@ def solve_along(row: Row, law: ElementStep, sunk: float, slid: float) -> Pair:
     An element pushes along x with its pressure times the slope halfway through the step, so that the
     mean forces do the very work by which elements of a parabola are compressed.
     """
-    c, state, h = row.constants, row.state, law.h
+    c, now, h = row.constants, row.now, law.h
     M_x, c_x, k_x, k = c.mass_along, c.damping_along, c.spring_along, law.stiffness * c.spacing
-    width, inclined, tilted, area = 0.0, 0.0, 0.0, add_kinks(row, law, sunk)[3]
-    for r in range(row.counts[ENDED]):
-        j, low, high = row.ended[r, 0], row.ended[r, 1], row.ended[r, 2]
-        weight, slope, meets = row.weights[j], row.rows[SLOPE, j], row.rows[MEETS, j]
+    width = inclined = tilted = 0.0
+    _, _, _, area = add_kinks(row, law, sunk)
+    for r in range(row.counts.ended):
+        j, low, high = run_at(row.ended, r)
+        weight, slope, threshold = row.weights[j], row.elements.slope[j], row.elements.threshold[j]
         leaning = summed(slope, low, high)
         width, inclined = width + weight * (high - low), inclined + weight * leaning
         tilted += weight * dotted(slope, slope, low, high)
-        area += weight * (sunk * leaning - dotted(slope, meets, low, high))
+        area += weight * (sunk * leaning - dotted(slope, threshold, low, high))
     # Oscillations too fast for the step are damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * c.spacing * tilted) / M_x + swing * swing * swing
     theta = exponential_fit(z) if row.fitted else 1.0
-    change_of_rate = final_velocity(slid, state[ALONG_RATE], h, theta) - state[ALONG_RATE]
-    held = c_x * slid / h + k_x * (state[ALONG] + theta * slid)
+    change_of_rate = final_velocity(slid, now.along_rate, h, theta) - now.along_rate
+    held = c_x * slid / h + k_x * (now.along + theta * slid)
     residual = M_x * change_of_rate / h + held + k * area
     # As the foundation gives way along x, the depth changes, too.
     normal = c.mass / (h * h) + c.spring + k * width
     stiff = k * tilted - (k * inclined) * (k * inclined) / normal
     slid -= residual / (M_x / (theta * h * h) + c_x / h + theta * k_x + stiff)
-    return slid, final_velocity(slid, state[ALONG_RATE], h, theta)
+    return slid, final_velocity(slid, now.along_rate, h, theta)
 
 
 # The explicit step
@@ -729,59 +781,70 @@ def explicit_step(
     end. F_z = dx Σ p over whole elements (Eqs. 12-17). Arms are loaded along a straight line from the start
     of the step to each stage, which leaves the order two.
     """
-    c, state, h = row.constants, row.state, laws[2].h
-    stages, begun = row.tableau.shape[0] - 1, Y[0] - state[ALONG]
-    rates, at = row.stages, row.stages[stages + 1]  # of depth, its rate, and both along x
+    c, now, h = row.constants, row.now, laws[2].h
+    rates, stages, begun = row.rates, row.tableau.shape[0] - 1, Y[0] - now.along
     for i in range(stages + 1):
         n = int(2.0 * row.tableau[i, 0])
-        for m in range(4):
-            at[m] = state[m]
-            for k in range(i):
-                at[m] += h * row.tableau[i, k + 1] * rates[k, m]
-        place = Y[n] - at[ALONG]
-        status = set_window(row, (begun, place), max(at[DEPTH], state[DEPTH]))
+        depth, rate, along, along_rate = now.depth, now.rate, now.along, now.along_rate
+        for k in range(i):
+            share = h * row.tableau[i, k + 1]
+            depth, rate = depth + share * rates.depth[k], rate + share * rates.rate[k]
+            along += share * rates.along[k]
+            along_rate += share * rates.along_rate[k]
+        place = Y[n] - along
+        status = set_window(row, (begun, place), max(depth, now.depth))
         if status != DONE:
             return status
-        press(row, laws[n], at, place, V[n] - at[ALONG_RATE], True)
-        pull = c.weight - c.spring * (at[DEPTH] - c.depth)
-        drag = -c.spring_along * at[ALONG] - c.damping_along * at[ALONG_RATE]
-        for r in range(row.counts[ENDED]):
-            j, low, high = row.ended[r, 0], row.ended[r, 1], row.ended[r, 2]
-            p, weight = row.rows[PRESSURE, j], c.spacing * row.weights[j]
+        press(row, laws[n], (depth, rate), place, V[n] - along_rate, True)
+        pull = c.weight - c.spring * (depth - c.depth)
+        drag = -c.spring_along * along - c.damping_along * along_rate
+        for r in range(row.counts.ended):
+            j, low, high = run_at(row.ended, r)
+            p, weight = row.elements.pressure[j], c.spacing * row.weights[j]
             pull -= weight * summed(p, low, high)
-            drag -= weight * dotted(p, row.rows[SLOPE, j], low, high)
-        rates[i, DEPTH], rates[i, RATE] = at[RATE], pull / c.mass  # Eq. 17
-        rates[i, ALONG], rates[i, ALONG_RATE] = at[ALONG_RATE], drag / c.mass_along
-    finish(row, laws[2], at[DEPTH], 0.0)
-    for m in range(4):
-        at[m] -= state[m]
-        state[m] += at[m]
-    for m, mass in ((RATE, c.mass), (ALONG_RATE, c.mass_along)):
-        if math.isfinite(mass):
-            first, last = rates[0, m], rates[stages, m]
-            off = mass * abs(at[m] / h - 0.5 * (first + last))
-            largest = c.weight + mass * max(abs(first), abs(last))
-            state[IMBALANCE] += (off - state[IMBALANCE]) / WINDOW
-            state[FORCES] += (largest - state[FORCES]) / WINDOW
+            drag -= weight * dotted(p, row.elements.slope[j], low, high)
+        rates.depth[i], rates.rate[i] = rate, pull / c.mass  # Eq. 17
+        rates.along[i], rates.along_rate[i] = along_rate, drag / c.mass_along
+    finish(row, laws[2], depth, 0.0)
+    gained, gained_along = rate - now.rate, along_rate - now.along_rate
+    now.depth += depth - now.depth
+    now.along += along - now.along
+    now.rate += gained
+    now.along_rate += gained_along
+    pulls, drags = rates.rate, rates.along_rate
+    judge_balance(now, c.weight, c.mass, gained / h, (pulls[0], pulls[stages]))
+    judge_balance(now, c.weight, c.mass_along, gained_along / h, (drags[0], drags[stages]))
     return DONE
 
 
-def press(row: Row, law: ElementStep, at: Array, place: float, velocity: float, met: bool) -> None:
+def judge_balance(now: Any, weight: float, mass: float, mean: float, ends: Pair) -> None:
+    """Average the imbalance of forces in a step, by accelerations: the mean one, and those at its ends."""
+    if math.isfinite(mass):
+        off = mass * abs(mean - 0.5 * (ends[0] + ends[1]))
+        largest = weight + mass * max(abs(ends[0]), abs(ends[1]))
+        now.mean_imbalance += (off - now.mean_imbalance) / WINDOW
+        now.mean_force += (largest - now.mean_force) / WINDOW
+
+
+def press(
+    row: Row, law: ElementStep, sinking: Pair, place: float, velocity: float, met: bool
+) -> None:
     """Write p = K g + C g' + Σ s_k of the elements under the indenter, and find those in contact (Eqs. 6-12).
 
-    In contact are those that were at the start of the step and, if they may be `met`, those whose free
-    surface is above the indenter, `MEETS` < 0; but only where p >= 0, since none pulls (Eqs. 20-25).
+    `sinking` is the depth and its rate, `velocity` that of sliding. In contact are those that were at the
+    start of the step and, if they may be `met`, those whose free surface is above the indenter, `threshold`
+    < 0; but only where p >= 0, since none pulls (Eqs. 20-25).
     """
-    c, depth, arms = row.constants, at[DEPTH], law.held.size
+    c, of, arms, (depth, rate) = row.constants, row.elements, law.held.size, sinking
     weigh_strips(row, depth)
     approach(row, law.fall, place, depth)
     glassy = c.law.stiffness + law.ramp.sum()
-    for j in range(row.counts[STRIPS]):
-        low, high, height, meets = row.low[j], row.high[j], row.rows[HEIGHT, j], row.rows[MEETS, j]
-        p, u, slope = row.rows[PRESSURE, j], row.rows[U, j], row.rows[SLOPE, j]
-        touched, pressed = row.flags[TOUCHED, j], row.flags[PRESSED, j]
+    for j in range(row.counts.strips):
+        low, high, touched, pressed = row.low[j], row.high[j], of.touched[j], of.pressed[j]
+        p, u, threshold = of.pressure[j], of.u[j], of.threshold[j]
+        height, slope = of.height[j], of.slope[j]
         for i in over(low, high):
-            g, g_rate = depth - height[i], at[RATE] - velocity * slope[i]
+            g, g_rate = depth - height[i], rate - velocity * slope[i]
             p[i] = c.law.stiffness * g + c.law.damping * g_rate
         for k in range(arms):
             arm = row.modes[k, j]
@@ -789,99 +852,112 @@ def press(row: Row, law: ElementStep, at: Array, place: float, velocity: float, 
                 loaded = law.held[k] * arm[i] + law.ramp[k] * (depth - height[i] - u[i])
                 p[i] += choose(touched[i], loaded, 0.0)
         for i in over(low, high if arms else low):
-            p[i] = choose(touched[i], p[i], -glassy * meets[i])
+            p[i] = choose(touched[i], p[i], -glassy * threshold[i])
         for i in over(low, high):
-            pressed[i] = (touched[i] | (met & (meets[i] < 0.0))) & (p[i] >= 0.0)
+            pressed[i] = (touched[i] | (met & (threshold[i] < 0.0))) & (p[i] >= 0.0)
     find_runs(row)
 
 
 # Forces and edges at an instant
 
 
-def report(row: Row, none: ElementStep, about: Array, unsure: float, found: Array) -> int:
-    """Write the report at an instant into `found`, in the order of `simulation.COLUMNS`.
+def report(
+    row: Row, none: ElementStep, instants: "Instants", n: int, unsure: float, found: Any
+) -> int:
+    """Write the report at an instant into `found`, a `REPORT`.
 
-    `none` is the law over no time, `about` is (time, V, whether the base moves or moved last with V >= 0, Y).
-    At a kink of the shape, where p jumps, a run is divided in two. Where the pressure is highest at an edge,
-    its doubt is `unsure` times what it differs by between the elements there.
+    `none` is the law over no time. At a kink of the shape, where p jumps, a run is divided in two. Where the
+    pressure is highest at an edge, its doubt is `unsure` times what it differs by between the elements there.
     """
-    c, state = row.constants, row.state
-    time, V, forward, depth = about[0], about[1], about[2], state[DEPTH]
-    sliding = V - state[ALONG_RATE]
+    c, now = row.constants, row.now
+    V, forward, depth = instants.velocity[n], instants.forward[n], now.depth
+    sliding = V - now.along_rate
     # An element on a kink is still on the flank before it.
     behind = math.copysign(NEAR * c.spacing, sliding) if c.kinks.size and sliding else 0.0
-    place = about[3] - state[ALONG] - behind
+    place = instants.displacement[n] - now.along - behind
     status = set_window(row, (place, place), depth)
     if status != DONE:
         return status
-    press(row, none, state, place, sliding, False)
-    found[:] = 0.0
-    found[LEFT] = found[RIGHT] = math.nan
-    for r in range(row.counts[ENDED]):
-        j, low, stop = row.ended[r, 0], row.ended[r, 1], row.ended[r, 2]
+    press(row, none, (depth, now.rate), place, sliding, False)
+    found.normal_force = found.friction_force = found.peak_pressure = found.doubt = 0.0
+    found.left = found.right = math.nan
+    for r in range(row.counts.ended):
+        j, low, stop = run_at(row.ended, r)
         kinks, before = c.kinks.size if j == 0 and c.parts else 0, -math.inf
-        for n in range(kinks + 1):
+        for k in range(kinks + 1):
             after, high = math.inf, stop
-            if n < kinks:
-                after = (c.kinks[n] - place) / c.spacing - row.numbers[0]
+            if k < kinks:
+                after = (c.kinks[k] - place) / c.spacing - row.numbers[0]
                 high = max(low, min(stop, math.floor(after) + 1))
             if high > low:
                 report_run(row, (j, low, high), (before, after), place, unsure, found)
             low, before = high, after
-    if state[ALONG_RATE] and abs(sliding) > c.creep:
+    if now.along_rate and abs(sliding) > c.creep:
         forward = 1.0 if sliding > 0.0 else 0.0
-    left, right = found[LEFT], found[RIGHT]
-    found[LEFT], found[RIGHT] = (left, right) if forward else (right, left)
-    found[0], found[1], found[2], found[3] = time, V, depth, state[RATE]
-    found[9] = sliding
-    found[10] = c.spring_along * state[ALONG] + c.damping_along * state[ALONG_RATE]
+    found.leading_edge = found.left if forward else found.right
+    found.trailing_edge = found.right if forward else found.left
+    found.time, found.velocity = instants.time[n], V
+    found.depth, found.depth_rate, found.sliding_velocity = depth, now.rate, sliding
+    found.spring_force = c.spring_along * now.along + c.damping_along * now.along_rate
     return DONE
 
 
 def report_run(
-    row: Row, run: tuple[int, int, int], kinks: Pair, place: float, unsure: float, found: Array
+    row: Row, run: tuple[int, int, int], kinks: Pair, place: float, unsure: float, found: Any
 ) -> None:
     """Add the forces of a run, or of its part between two kinks, to a report, and its peak and edges."""
-    (j, low, high), c = run, row.constants
-    p, slope = row.rows[PRESSURE, j], row.rows[SLOPE, j]
+    (j, low, high), (before, after), c = run, kinks, row.constants
+    p, slope = row.elements.pressure[j], row.elements.slope[j]
     top = low + int(np.argmax(p[low:high]))
-    first = end_run(row, j, low, -1, place, low - kinks[0], high - low)
-    last = end_run(row, j, high - 1, 1, place, kinks[1] - (high - 1), high - low)
+    first = end_run(row, j, low, -1, place, low - before, high - low)
+    last = end_run(row, j, high - 1, 1, place, after - (high - 1), high - low)
     weight = c.spacing * row.weights[j]
-    found[F_Z] += weight * (summed(p, low, high) + first[1] + last[1])
-    found[F_X] -= weight * (dotted(p, slope, low, high) + first[2] + last[2])
-    if p[top] > found[PEAK] or not found[PEAK]:
-        reach = first[0] if top == low else 1.0, last[0] if top == high - 1 else 1.0
-        if (top == low and low - kinks[0] <= 1.0) or (top == high - 1 and kinks[1] - top <= 1.0):
+    found.normal_force += weight * (summed(p, low, high) + first.gained + last.gained)
+    along = dotted(p, slope, low, high) + first.gained_along + last.gained_along
+    found.friction_force -= weight * along
+    if p[top] > found.peak_pressure or not found.peak_pressure:
+        reach = first.outward if top == low else 1.0, last.outward if top == high - 1 else 1.0
+        if (top == low and low - before <= 1.0) or (top == high - 1 and after - top <= 1.0):
             reach = -1.0, -1.0  # no parabola across a kink
-        found[PEAK], found[DOUBT] = find_peak(row, p, top, reach, low, high)
+        found.peak_pressure, found.doubt = find_peak(row, p, top, reach, low, high)
     for end in (first, last):
-        if end[3] > found[PEAK]:
-            found[PEAK], found[DOUBT] = end[3], end[4] + unsure * end[5]
+        if end.pressure > found.peak_pressure:
+            found.peak_pressure, found.doubt = end.pressure, end.doubt + unsure * end.jump
     if j == 0:
-        left = c.spacing * (row.numbers[low] - first[0]) + place
-        found[LEFT] = left if math.isnan(found[LEFT]) else found[LEFT]
-        found[RIGHT] = c.spacing * (row.numbers[high - 1] + last[0]) + place
+        left = c.spacing * (row.numbers[low] - first.outward) + place
+        found.left = left if math.isnan(found.left) else found.left
+        found.right = c.spacing * (row.numbers[high - 1] + last.outward) + place
 
 
-def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size: int) -> Any:
-    """Return how far outward of the last element i of a run the edge is, in elements.
+class End(NamedTuple):
+    """The end of a run."""
 
-    Then what the sums of p and of p h' gain by ending there, p at the edge, its doubt, and how much p differs
-    between the elements beside it. An edge peels where p falls to zero, between two elements by a straight
-    line, and touches where the indenter meets the free surface. A run ends at a `kink` of the shape, so far
-    outward, at the latest, and one of whole elements half an element beyond the last.
+    outward: float  # how far outward of the last element the edge is, in elements
+    gained: float  # what the sum of p gains by ending there
+    gained_along: float  # and that of p h'
+    pressure: float  # at the edge
+    doubt: float  # about it
+    jump: float  # how much p differs between the elements beside it
+
+
+def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size: int) -> End:
+    """Return how a run ends beyond its last element i, to the left (`out` = -1) or to the right (1).
+
+    An edge peels where p falls to zero, between two elements by a straight line, and touches where the
+    indenter meets the free surface. A run ends at a `kink` of the shape, so far outward, at the latest, and
+    one of whole elements half an element beyond the last.
     """
-    c = row.constants
+    c, of = row.constants, row.elements
     if not c.parts:
-        return 0.5, 0.0, 0.0, 0.0, 0.0, 0.0
-    p, slope, meets = row.rows[PRESSURE, j], row.rows[SLOPE, j], row.rows[MEETS, j]
+        return End(0.5, 0.0, 0.0, 0.0, 0.0, 0.0)
+    p, slope, threshold = of.pressure[j], of.slope[j], of.threshold[j]
     inside, outside, within = p[i], p[i + out], p[i - out] if size > 1 else p[i]
-    share, doubt, touched = 1.0, 0.0, row.flags[TOUCHED, j, i + out]
+    share, doubt, touched = 1.0, 0.0, of.touched[j, i + out]
     if c.law.arm_time.size and not touched:
         outside = 2.0 * inside - within
     peels = max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
-    touches, straight = touching((-meets[i + out], -meets[i + 2 * out], -meets[i + 3 * out]))
+    w, far, farthest = -threshold[i + out], -threshold[i + 2 * out], -threshold[i + 3 * out]
+    touches, straight = touching((w, far, farthest))
     if not touched and (straight or math.isinf(peels)):
         share = 1.0 - touches
     p_kink = inside + kink * (inside - within) if kink <= share else 0.0
@@ -890,10 +966,10 @@ def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size:
     if p_kink > 0.0:
         share, p_edge, doubt = kink, p_kink, abs(p_kink - inside)
     x = c.spacing * (row.numbers[i] + (share - NEAR) * out) + place
-    steep = surface_at(c.surface, x, j * c.across)[1]
+    _, steep = surface_at(c.surface, x, j * c.across)
     gained = 0.5 * (share * (inside + p_edge) - inside)
     along = 0.5 * (share * (slope[i] * inside + steep * p_edge) - slope[i] * inside)
-    return share, gained, along, p_edge, doubt, abs(inside - outside)
+    return End(share, gained, along, p_edge, doubt, abs(inside - outside))
 
 
 def touching(overlap: Any) -> tuple[float, bool]:
@@ -942,6 +1018,24 @@ def find_peak(row: Row, p: Array, k: int, reach: Pair, low: int, high: int) -> A
 # The run
 
 
+class Instants(NamedTuple):
+    """Instants that are reported."""
+
+    after: Integers  # the step after which each is
+    time: Array
+    velocity: Array  # V, of the base
+    forward: Array  # 1 if the base moves, or moved last, with V >= 0, else 0
+    displacement: Array  # Y, of the base
+
+
+class Limits(NamedTuple):
+    """What no stable run reaches."""
+
+    rate: float  # of the depth, downward positive
+    along_rate: float
+    imbalance: float  # of forces, as a share of the largest
+
+
 class Course(NamedTuple):
     """The steps of a run, and what is reported."""
 
@@ -950,10 +1044,9 @@ class Course(NamedTuple):
     V: Array  # likewise, at the end just before it
     law: ElementStep  # over steps of no length, and over half and all of each length
     which: Integers  # number of the length of each step
-    after: Integers  # after which step an instant is reported
-    about: Array  # argument of `report`
-    unsure: float  # likewise
-    limits: tuple[float, float, float]  # of rates and of the imbalance of forces, in a stable run
+    instants: Instants
+    unsure: float  # argument of `report`
+    limits: Limits
 
 
 def law_at(of: ElementStep, k: int) -> ElementStep:
@@ -963,14 +1056,13 @@ def law_at(of: ElementStep, k: int) -> ElementStep:
 
 
 def advance(
-    row: Row, course: Course, found: Array, step: int, reported: int, until: int
+    row: Row, course: Course, found: Any, step: int, reported: int, until: int
 ) -> tuple[int, int, int]:
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    none, state = law_at(course.law, 0), row.state
+    none, now, instants = law_at(course.law, 0), row.now, course.instants
     while True:
-        while reported < course.after.size and course.after[reported] == step:
-            about = course.about[reported]
-            status = report(row, none, about, course.unsure, found[reported])
+        while reported < instants.after.size and instants.after[reported] == step:
+            status = report(row, none, instants, reported, course.unsure, found[reported])
             if status != DONE:
                 return status, step, reported
             reported += 1
@@ -985,15 +1077,15 @@ def advance(
             status = implicit_step(row, law, (Y[0], Y[2]))
         if status != DONE:
             return status, step, reported
-        state[LAST] = law.h
+        now.last_step = law.h
         step += 1
         # No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond
         # that it has left the foundation, and only a spring can lift it faster. But an unstable step does
         # not always throw it off: when the contact gives way, the oscillation may settle at some amplitude,
         # or on a wrong state at rest, with forces that do not balance M δ'' = W - k_s (δ - δ_0) - F_z.
-        if not state[RATE] >= course.limits[0]:  # NaN is not above it either
+        if not now.rate >= course.limits.rate:  # NaN is not above it either
             return THROWN_UP, step, reported
-        if not abs(state[ALONG_RATE]) <= course.limits[1]:
+        if not abs(now.along_rate) <= course.limits.along_rate:
             return THROWN_ALONG, step, reported
-        if step >= WINDOW and state[IMBALANCE] > course.limits[2] * state[FORCES]:
+        if step >= WINDOW and now.mean_imbalance > course.limits.imbalance * now.mean_force:
             return UNBALANCED, step, reported

@@ -24,15 +24,19 @@ PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
 FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
-FEWEST, MOST = 8, 2_000_000
-"""Elements in contact at rest: fewer do not resolve the contact, more do not fit in memory."""
+FEWEST = 8
+"""Elements in contact at rest, at least: fewer do not resolve the contact."""
+MOST = 2_000_000
+"""Elements in contact at rest, at most: more do not fit in memory."""
 SAMPLES = {False: 4096, True: 256}
 """Elements in a line contact, and along a ball, without a spacing: sizes are known to a thousandth then."""
 CREEP = 1e-12
 """Share of a_0/tau that counts as rest."""
-DEPTH_RTOL, STALLED = 1e-12, 0.9
+DEPTH_RTOL = 1e-12
 """The iteration for a depth ends when a step is below this share of it: the next one would be of the order of
-rounding errors; or when a step is not below this share of the previous one."""
+rounding errors."""
+STALLED = 0.9
+"""It also ends when a step is not below this share of the previous one."""
 
 
 class Contact(NamedTuple):
@@ -141,19 +145,22 @@ def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
     dy = c.across or strip_width(c.surface, depth, dx)
     wide = c.surface.stretch * high
     numbers = np.arange(math.floor(low / dx) - kernels.SPARE, math.ceil(high / dx) + kernels.SPARE)
-    x, found, weights = dx * (numbers + c.shift), np.zeros(3), np.ones(1)
+    x, weights = dx * (numbers + c.shift), np.ones(1)
+    extent = force = tilt = 0.0
     if dy:
         weights = kernels.weigh(np.empty(1 + int(wide / dy)), dy, wide if c.parts else 0.0)
     for j, weight in enumerate(weights):
         h, slope = kernels.surface_at(c.surface, x, j * dy)
         p = law.pressure(depth - h, -V * slope)
         pressed = (h <= depth) & (p >= 0.0)
-        sums = pressed.sum(), p[pressed].sum(), np.square(slope[pressed]).sum()
-        found += weight * dx * np.array(sums)
+        area = weight * dx
+        extent, force = extent + area * pressed.sum(), force + area * p[pressed].sum()
+        tilt += area * np.square(slope[pressed]).sum()
         for i in np.flatnonzero(np.diff(pressed)) + 1 if c.parts else ():
             out = depth - (h[i : i + 3] if pressed[i - 1] else h[i - 3 : i][::-1])
-            found[1] += weight * dx * law.stiffness * kernels.kink_area(out)[0]
-    return Contact(*found.tolist())
+            kink, *_ = kernels.kink_area(out)
+            force += area * law.stiffness * kink
+    return Contact(float(extent), float(force), float(tilt))
 
 
 def sunk_depth(c: Constants, V: float = 0.0) -> float:

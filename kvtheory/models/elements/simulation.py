@@ -3,17 +3,19 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from operator import itemgetter
 from time import thread_time
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.elements import kernels, stability
-from kvtheory.models.elements.kernels import Constants
+from kvtheory.models.elements.kernels import REPORT, Constants, Instants
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.progress import Progress, silent
+from kvtheory.records import readable, structured, value
 from kvtheory.results import (
     SERIES_UNITS,
     TRANSIENT_UNITS,
@@ -36,10 +38,12 @@ PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
 ROUGHLY = 0.9
 """The iteration for a period ends when the new period is at least this share of the previous one."""
-PER_STOPPING, FINER = 4.0, 1.0 / 16.0
-"""Steps in the time in which dampers stop the mass, at least, after a jump of the drive, and so many for each
-element in half a contact, so that more elements are more accurate there, too; later the steps grow with the
-time since the jump, up to the step of the run."""
+PER_STOPPING = 4.0
+"""Fewest steps, after a jump of the drive, in the time in which dampers stop the mass; later the steps grow
+with the time since the jump, up to the step of the run."""
+FINER = 1.0 / 16.0
+"""Steps in that time for each element in half a contact, if these are more: more elements are more accurate
+there, too."""
 JUMP = 1e-6
 """Share of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
 MOST_STEPS = 20_000
@@ -73,11 +77,12 @@ KINKED = 0.05
 """Uncertainty of an edge, in elements, under a shape with kinks, whose overlap is straight anywhere, and on
 arms, where pressure is extrapolated to it; and of the forces, in elements at the peak pressure, where arms
 remember a kink that moved by less than an element."""
-WATCHED, RECENT = 8, 0.5
-"""Earlier instants at which runs are also compared, for each that is reported, and the share of the time
-since the last jump of the drive over which these lie. An error swings with the masses, and a difference
-vanishes twice in a swing, at times for both coarse runs at once: compared at one instant alone, one in a
-thousand was off by more than claimed, on springs in two scenes of five."""
+WATCHED = 8
+"""Earlier instants at which runs are also compared, for each that is reported. An error swings with the
+masses, and a difference vanishes twice in a swing, at times for both coarse runs at once: compared at one
+instant alone, one in a thousand was off by more than claimed, on springs in two scenes of five."""
+RECENT = 0.5
+"""Share of the time since the last jump of the drive over which these instants lie."""
 ROUNDING = 1e-12
 """Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
@@ -90,11 +95,22 @@ ON_SPRING = ", sliding velocity to a_0/τ, spring force as friction"
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Any]
-"""Reports: the columns of a time series as on a spring, and the doubt about the peak pressure (Pa)."""
-COLUMNS = (*SERIES_UNITS, "doubt")
+"""The columns of reports by name, see `kernels.REPORT`."""
 
-Timetable = tuple[Array, Array, Array, Array]
-"""Times around the steps, their lengths, after which something is reported, and what: see `Course`."""
+
+class Unsure(NamedTuple):
+    """Uncertainty of an edge, in elements."""
+
+    at_jumps: float  # where a damper leaves pressure on it after a change of the drive
+    anywhere: float
+
+
+class Timetable(NamedTuple):
+    """When steps are taken, and what is reported."""
+
+    times: Array  # before the first step and after each
+    steps: Array  # lengths
+    instants: Instants
 
 
 def simulate(
@@ -117,15 +133,17 @@ def simulate(
         )
     own_step = time_step is None and not scheme.tableau
     graded = _graded(model, path, h, max(wanted)) if own_step else {}
-    times, steps, after, about = fine = _timetable(path, wanted, h, graded)
+    fine = _timetable(path, wanted, h, graded)
     if certify:
-        times, steps, after, about = fine = _watched(path, fine)
-    asked = np.searchsorted(about[:, 0], wanted)
+        fine = _watched(path, fine)
+    times, steps, instants = fine
+    asked = np.searchsorted(instants.time, wanted)
     h = float(steps.max(initial=0.0)) or h
     warning = stability.step_warning(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    best, half = SCHEMES[DEFAULT], (times[::2], 2.0 * steps[::2], after // 2, about)
+    best, halved = SCHEMES[DEFAULT], instants._replace(after=instants.after // 2)
+    half = Timetable(times[::2], 2.0 * steps[::2], halved)
     runs = [(model, scheme, fine, 1.0)]
     if certify:
         for shift in SHIFTS:
@@ -138,8 +156,8 @@ def simulate(
     def part(k: int) -> Progress:
         """Return the progress of one of several runs by its share of the work; the later ones are checks."""
         begun, end = ends[k : k + 2] / ends[-1]
-        told, words = progress or silent, " for the error" * (k > 0)
-        return lambda share, said: told(float(begun + (end - begun) * share), said + words)
+        show, purpose = progress or silent, " for the error" * (k > 0)
+        return lambda share, done: show(float(begun + (end - begun) * share), done + purpose)
 
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
@@ -152,7 +170,7 @@ def simulate(
     return kind(
         **{name: rows[name][asked] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
         time_step=h, steps=len(steps),
-        element_updates=int(row.stored.counts[kernels.UPDATES]), warning=warning, model="elements",
+        element_updates=int(value(row.stored.counts, "updates")), warning=warning, model="elements",
         certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
     )  # fmt: skip
 
@@ -230,7 +248,7 @@ def _timetable(
 ) -> Timetable:
     """Return steps of at most h, or of the graded lengths, that end on the wanted instants."""
     asked, end = set(wanted), max(wanted)
-    times, lengths, after, about = [0.0], list[float](), list[int](), list[Any]()
+    times, lengths, instants = [0.0], list[float](), list[Any]()
     start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({0.0, *asked, *graded, *(t for t in path.changes if t < end)}):
         if stop - start > TOGETHER * step:
@@ -243,16 +261,21 @@ def _timetable(
             times[-1] = start = stop
         if stop in asked:
             Y = path.displacement(times[-1])
-            about.append((stop, path.velocity(stop), path.forward(stop), Y))
-            after.append(len(lengths))
+            instants.append((len(lengths), stop, path.velocity(stop), path.forward(stop), Y))
         step = graded.get(stop, step)
-    return np.array(times), np.array(lengths), np.array(after), np.array(about, dtype=float)
+    return Timetable(np.array(times), np.array(lengths), _instants_of(instants))
+
+
+def _instants_of(rows: list[Any]) -> Instants:
+    """Return instants from a row of values for each."""
+    after, *columns = zip(*rows, strict=True)
+    return Instants(np.array(after), *np.array(columns, dtype=float))
 
 
 def _watched(path: BaseMotion, table: Timetable) -> Timetable:
     """Return steps with earlier instants added, ends of steps of all runs, unless others are as near."""
-    times, lengths, after, about = table
-    instants = about[:, 0]
+    times, lengths, asked = table
+    after, instants = asked.after, asked.time
     jumps = np.array(_jumps(path, math.inf))
     since = instants - jumps[np.maximum(np.searchsorted(jumps, instants) - 1, 0)]
     stride = RECENT / WATCHED * since
@@ -262,11 +285,10 @@ def _watched(path: BaseMotion, table: Timetable) -> Timetable:
     lonely = np.minimum(earlier - bounded[k - 1], bounded[k] - earlier) > 0.5 * stride
     numbers = np.interp(earlier[lonely], times, np.arange(times.size))
     more = np.setdiff1d(2 * np.rint(0.5 * numbers).astype(np.int64), after)
-    ends = times[more].tolist()
-    rows = [(t, path.velocity(t), path.forward(t), path.displacement(t)) for t in ends]
-    order = np.argsort(np.append(after, more), kind="stable")
-    about = np.vstack([about, np.reshape(rows, (-1, about.shape[1]))])[order]
-    return times, lengths, np.append(after, more)[order], about
+    rows = list(zip(*asked, strict=True))
+    for n, t in zip(more.tolist(), times[more].tolist(), strict=True):
+        rows.append((n, t, path.velocity(t), path.forward(t), path.displacement(t)))
+    return Timetable(times, lengths, _instants_of(sorted(rows, key=itemgetter(0))))
 
 
 def _run(
@@ -277,46 +299,46 @@ def _run(
 
     Should it fail, the error tells what was reported at the wanted instants.
     """
-    times, steps, _, about = table
+    times, steps, instants = table
     c, h, kept = model.constants, float(steps.max(initial=0.0)), KEPT_DEPTH
     deepest = DEEPEST[c.surface.ball]
     while True:
         row = ElementRow(c, path, scheme, kept)
         limits = stability.limits(model, path)
-        course = course_of(path, c.law, *table, _unsure(c, path, h)[0], limits)
-        found = np.full((len(about), len(COLUMNS)), math.nan)
+        course = course_of(path, c.law, *table, _unsure(c, path, h).at_jumps, limits)
+        found = row.reports(instants.time.size)
         status, done, reported, until, begun = kernels.DONE, 0, 0, -1, thread_time()
         while status == kernels.DONE and until < len(steps):
             left = (thread_time() - begun) * (len(steps) / max(done, 1) - 1.0)
-            row.compile(course, found, left)
-            pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.rows[0].size)))
+            row.compile(course, left)
+            found = structured(found, REPORT) if row.compiled else found
+            pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.elements.u.size)))
             until = min(done + pause, len(steps))
             status, done, reported = row.run(course, found, (done, reported), until)
             if done:
                 progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
         if status == kernels.DONE:
-            return dict(zip(COLUMNS, found.T, strict=True)), row
+            columns = structured(found, REPORT)
+            return {name: columns[name] for name in REPORT.names or ()}, row
         kept *= MORE_ROOM
         if status != kernels.OUTGROWN or kept > deepest:
             error = stability.divergence(
-                status, scheme, model, path, h, times[done], row.state, deepest
+                status, scheme, model, path, h, times[done], readable(row.stored.now), deepest
             )  # fmt: skip
-            asked = np.isin(about[:reported, 0], wanted)
-            told = found[:reported, : len(TRANSIENT_UNITS)][asked]
-            error.rows = tuple(map(tuple, told.tolist()))
+            asked = np.isin(instants.time[:reported], wanted)
+            columns = structured(found, REPORT)[:reported][asked]
+            error.rows = tuple(columns[list(TRANSIENT_UNITS)].tolist())
             raise error
 
 
-def _unsure(c: Constants, path: BaseMotion, h: float) -> tuple[float, float]:
-    """Return the uncertainty of an edge in elements: where a damper leaves pressure on it, and anywhere."""
+def _unsure(c: Constants, path: BaseMotion, h: float) -> Unsure:
+    """Return how unsure edges are with steps of at most h."""
     known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
     jump = known if len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :]) else 0.0
-    return jump, known if math.isfinite(c.mass_along) else jump
+    return Unsure(jump, known if math.isfinite(c.mass_along) else jump)
 
 
-def _estimate(
-    model: Model, unsure: tuple[float, float], rows: Rows, others: list[Rows]
-) -> Certificate:
+def _estimate(model: Model, unsure: Unsure, rows: Rows, others: list[Rows]) -> Certificate:
     """Estimate the error from runs of the best scheme: two coarse ones, and one as fine for other schemes.
 
     All are compared at the reported instants, and shortly before each.
@@ -331,10 +353,10 @@ def _estimate(
         apart = [float(np.nanmax(abs(rows[name] - other[name]), initial=0.0)) for other in others]
         differences[name] = max(apart[: len(SHIFTS)]) + sum(apart[len(SHIFTS) :])
     kinks, arms = bool(c.kinks.size), bool(c.law.arm_time.size)
-    edge = (unsure[1] + KINKED * (kinks or arms)) * c.spacing
+    edge = (unsure.anywhere + KINKED * (kinks or arms)) * c.spacing
     width = 2.0 * c.surface.stretch * c.half_length if c.surface.ball else 1.0
     one = c.spacing * width * float(rows["peak_pressure"].max())
-    force = (unsure[0] + KINKED * (kinks and arms)) * one
+    force = (unsure.at_jumps + KINKED * (kinks and arms)) * one
     for name, more in {
         "leading_edge": edge, "trailing_edge": edge, "normal_force": force,
         "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),

@@ -6,11 +6,12 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.kernels import Constants
+from kvtheory.models.elements.kernels import Constants, Limits
 from kvtheory.models.elements.model import Model, contact, sunk_depth
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
@@ -25,8 +26,12 @@ RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
 IMBALANCE = 0.05
 """Upper bound on the mean imbalance in a stable run, as a share of the forces, besides single elements."""
-GROWS, SHORTEST, LIMIT_RTOL = 1e-10, 1e-6, 1e-9
-"""Search for a stable step: growth above rounding, least step times the fastest rate, tolerance."""
+GROWS = 1e-10
+"""Growth of a step above rounding, beyond which it is unstable."""
+SHORTEST = 1e-6
+"""Shortest step in the search for a stable one, times the fastest rate."""
+LIMIT_RTOL = 1e-9
+"""Relative tolerance of this search."""
 ELEMENTS = 4.0
 """Elements, of all in contact at rest, whose entering and leaving may upset the balance in a stable run."""
 
@@ -122,29 +127,32 @@ def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     )
 
 
-def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
-    """Return the rate of the depth, the speed along x and the imbalance that no stable run reaches."""
+def limits(model: Model, path: BaseMotion) -> Limits:
+    """Return the rates and the imbalance that no stable run reaches."""
     c, fastest = model.constants, model.fastest(path)
     arms = model.contact.extent * float(c.law.arm_stiffness.sum())
     rates = 1.0 / c.law.retardation_time + math.sqrt(c.spring / c.mass) + math.sqrt(arms / c.mass)
     thrown = c.depth * rates + fastest * model.steepest
-    return (
-        -RISE * thrown if math.isfinite(c.mass) else -math.inf,
-        RISE * (fastest + math.sqrt(model.at_rest.energy / c.mass_along)),
-        IMBALANCE + ELEMENTS * c.spacing / (2.0 * c.half_length),
+    return Limits(
+        rate=-RISE * thrown if math.isfinite(c.mass) else -math.inf,
+        along_rate=RISE * (fastest + math.sqrt(model.at_rest.energy / c.mass_along)),
+        imbalance=IMBALANCE + ELEMENTS * c.spacing / (2.0 * c.half_length),
     )
 
 
 def divergence(
-    status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, state: Array,
+    status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, now: Any,
     deepest: float,
 ) -> DivergenceError:  # fmt: skip
-    """Return the error about a run that was found to be unstable, or sank to `deepest` static depths."""
-    share = state[kernels.IMBALANCE] / max(state[kernels.FORCES], kernels.TINY)
+    """Return the error about a run that was found to be unstable, or sank to `deepest` static depths.
+
+    `now` is the `INDENTER` then.
+    """
+    share = now.mean_imbalance / max(now.mean_force, kernels.TINY)
     sign = {
         kernels.OUTGROWN: f"the indenter sank to {deepest:g} times its static depth",
-        kernels.THROWN_UP: f"the indenter is thrown upward with {-state[kernels.RATE]:.3g} m/s",
-        kernels.THROWN_ALONG: f"the indenter is thrown along x with {abs(state[kernels.ALONG_RATE]):.3g} m/s",
+        kernels.THROWN_UP: f"the indenter is thrown upward with {-now.rate:.3g} m/s",
+        kernels.THROWN_ALONG: f"the indenter is thrown along x with {abs(now.along_rate):.3g} m/s",
         kernels.UNBALANCED: f"the forces fail to balance the motion by {share:.0%}",
     }[status]
     return DivergenceError(

@@ -51,7 +51,7 @@ from kvtheory.models.continuum.prony.contact import (
 from kvtheory.models.continuum.prony.records import SEGMENT
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.trajectory import Trajectory
-from kvtheory.models.continuum.run import readable, structured
+from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as drive_
 
 Array = NDArray[np.float64]

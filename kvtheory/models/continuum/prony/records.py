@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.prony.contact import NEVER, OWN, ROWS, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.records import blanks, new, record, structured
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.theory.laws import Element
 
@@ -17,24 +17,24 @@ ROOM = 48
 FARTHEST = 5e6
 """Largest sum of A_i that a step may reach, over the root of the tolerance: for rounding."""
 
-SIDE = r_._record(
+SIDE = record(
     state="i8", segment="i8", own="i8", index="i8", xi="f8", sigma="f8", near="f8", pace="f8"
 )  # fmt: skip
 """State of an edge; the segment in which it moves, of the contact if it peels, of free ground if it touches;
 that which it writes; the step in which the element there passed an edge; xi_e; the instant at which it did,
 that at which the edge began in the segment, and the rate of that instant."""
-SEGMENT = r_._record(
+SEGMENT = record(
     edge="i8", step="i8", next="i8", a="f8", b="f8", X_a="f8", X_b="f8"
 )  # fmt: skip
 """Edge and first step of a segment, the next one outward on free ground, the instants and X at its ends."""
-STEP = r_._record(
+STEP = record(
     start="f8", span="f8", depth="f8", along="f8", piece="i8", kinked=("i8", (2,)), first="i8",
     count="i8", since="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
 have a kink there; where the contact's segments are in `chain`, and their number; the first step of the count
 of the accumulators; both sides at its start."""
-NOW = r_._record(
+NOW = record(
     s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
     chain="i8", first="i8", count="i8", since="i8", toggles="i8", rejected="i8", evaluations="i8",
     kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
@@ -44,7 +44,7 @@ steps, segments and entries in `chain`; the contact there; the first step of the
 `Run.here`; the changes at this instant, numbers of rejected
 steps and evaluations; whether the histories of the edges have a kink here, and whether the last step
 continues smoothly; both sides."""
-GIVEN = r_._record(
+GIVEN = record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
     counted="f8", first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
 )  # fmt: skip
@@ -112,13 +112,13 @@ def begin(
     method[:3] = tableau.A, tableau.inverse, tableau.powers
     method[3, :3] = tableau.nodes, method[1].sum(axis=1), np.full(n, 1.0 / math.comb(2 * n, n))
     run = Run(
-        given=[r_.new(GIVEN, *given)],
-        now=r_._blanks(1, NOW),
+        given=[new(GIVEN, *given)],
+        now=blanks(1, NOW),
         pieces=drive.rows,
-        steps=r_._blanks(1 if arrays else ROOM, STEP),
+        steps=blanks(1 if arrays else ROOM, STEP),
         rows=np.zeros((ROOM, ROWS, n + 1)),
         memory=np.zeros((ROOM, count, OWN, n + 1)),
-        segments=r_._blanks(3 if arrays else 2 * ROOM, SEGMENT),
+        segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64),
         method=method,
         arms=np.stack(columns, axis=1),
@@ -148,7 +148,7 @@ def _longer(rows: Any, count: int) -> Any:
 def as_arrays(run: Run) -> Run:
     """Return a run, new or in progress, with arrays for compiled kernels."""
     kinds = {"given": GIVEN, "now": NOW, "steps": STEP, "segments": SEGMENT}
-    return run._replace(**{n: r_.structured(getattr(run, n), kind) for n, kind in kinds.items()})
+    return run._replace(**{n: structured(getattr(run, n), kind) for n, kind in kinds.items()})
 
 
 def _rest(run: Run) -> None:
@@ -187,7 +187,7 @@ def with_more_room(run: Run) -> Run:
     for name, kind in more.items():
         records = getattr(run, name)
         if isinstance(records, list):
-            wider[name] = records + r_._blanks(len(records), kind)
+            wider[name] = records + blanks(len(records), kind)
         else:
             wider[name] = _longer(records, 2 * len(records))
     return run._replace(**wider)

@@ -23,7 +23,8 @@ from kvtheory.models.continuum.prony import (
     walk,
 )
 from kvtheory.models.continuum.prony.records import STEP, Run, as_arrays, begin, with_more_room
-from kvtheory.models.continuum.run import Spring, StepControl, readable, structured
+from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.records import readable, structured
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
