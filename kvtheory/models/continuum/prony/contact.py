@@ -80,18 +80,22 @@ def derivative(row: Any, theta: float) -> float:
     return total
 
 
-def past(powers: Any, i: Any, theta: float) -> Any:
-    """Return a polynomial of an arm at `theta`; `powers` (arms, coefficients) are those of a step."""
-    last = powers.shape[1] - 1
-    found = 0.0 * theta + powers[i, last]
+def past(powers: Any, index: int, i: Any, theta: float) -> Any:
+    """Return a quantity of an arm in a step at `theta`; `powers` are (steps, arms, coefficients)."""
+    last = powers.shape[2] - 1
+    found = 0.0 * theta + powers[index, i, last]
     for k in range(last - 1, -1, -1):
-        found = found * theta + powers[i, k]
+        found = found * theta + powers[index, i, k]
     return found
 
 
 def past_stress(run: Run, index: int, i: Any, edge: int, theta: float) -> Any:
     """Return s_i of the element at an edge in the step `index` at `theta`."""
-    return past(run.memory.stress_at_edge[index, :, :, edge], i, theta)
+    powers, last = run.memory.stress_at_edge, run.given.stages
+    found = 0.0 * theta + powers[index, i, last, edge]
+    for k in range(last - 1, -1, -1):
+        found = found * theta + powers[index, i, k, edge]
+    return found
 
 
 def accumulated(run: Run, index: int, theta: float) -> None:
@@ -99,8 +103,8 @@ def accumulated(run: Run, index: int, theta: float) -> None:
     run.now.restart = run.steps[index].restart
     memory, element = run.memory, run.element
     for i in over(run.given.arms):
-        element.accumulated_depth[i] = past(memory.accumulated_depth[index], i, theta)
-        element.accumulated_slide[i] = past(memory.accumulated_slide[index], i, theta)
+        element.accumulated_depth[i] = past(memory.accumulated_depth, index, i, theta)
+        element.accumulated_slide[i] = past(memory.accumulated_slide, index, i, theta)
 
 
 def at_present(run: Run) -> None:
@@ -165,8 +169,8 @@ def pressed(
         k = run.arms.stiffness[i]
         element.stress[i] = k * (element.accumulated_depth[i] - xi * element.accumulated_slide[i])
         if index != NEVER:
-            A = past(memory.accumulated_depth[index], i, theta)
-            then = A - xi_e * past(memory.accumulated_slide[index], i, theta)
+            A = past(memory.accumulated_depth, index, i, theta)
+            then = A - xi_e * past(memory.accumulated_slide, index, i, theta)
             T = run.arms.relaxation_time[i]
             left = element.stress_at_edge[i] + k * (T / (T + run.steps[index].span) * deeper - then)
             element.stress[i] += left * np.exp(np.minimum((sigma - s) / T, 1.0))
@@ -187,8 +191,8 @@ def carried_over(run: Run, s: float, X: float, entered: int) -> float:
         _, _, Y, _, theta = motion(run, j - 1, start)
         depth, slide = memory.accumulated_depth, memory.accumulated_slide
         for i in over(run.given.arms):
-            A = past(depth[j - 1], i, theta) - depth[j, i, 0]
-            B = past(slide[j - 1], i, theta) - slide[j, i, 0]
+            A = past(depth, j - 1, i, theta) - depth[j, i, 0]
+            B = past(slide, j - 1, i, theta) - slide[j, i, 0]
             stress = run.arms.stiffness[i] * (A - (X + Y) * B)
             stress = stress * np.exp((start - s) / run.arms.relaxation_time[i])
             run.element.stress[i] += stress

@@ -56,8 +56,8 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         d, v, Y, number, theta = motion(run, index, s)
         first = second = 0.0
         for k in over(run.given.arms):
-            first += total(past(memory.force[index], k, theta))
-            second += total(past(memory.moment[index], k, theta))
+            first += total(past(memory.force, index, k, theta))
+            second += total(past(memory.moment, index, k, theta))
         edges, along = run.polynomials.edges[index], run.polynomials.offset_rate[index]
         l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
         found.depth[i], found.depth_rate[i] = d, v

@@ -494,10 +494,10 @@ def _commit_arms(run: Run, theta: float) -> None:
             state.accumulated_slide[i] = stages.accumulated_slide[i, last]
             state.force[i], state.moment[i] = stages.force[i, last], stages.moment[i, last]
         else:
-            state.accumulated_depth[i] = past(memory.accumulated_depth[index], i, theta)
-            state.accumulated_slide[i] = past(memory.accumulated_slide[index], i, theta)
-            state.force[i] = past(memory.force[index], i, theta)
-            state.moment[i] = past(memory.moment[index], i, theta)
+            state.accumulated_depth[i] = past(memory.accumulated_depth, index, i, theta)
+            state.accumulated_slide[i] = past(memory.accumulated_slide, index, i, theta)
+            state.force[i] = past(memory.force, index, i, theta)
+            state.moment[i] = past(memory.moment, index, i, theta)
         for k in range(2):
             at_end = stages.stress_at_edge[i, last, k]
             state.stress_at_edge[i, k] = (
