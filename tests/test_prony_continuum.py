@@ -93,7 +93,7 @@ def test_it_ends_in_steady_sliding():
 
 
 def test_a_long_slide_on_slow_arms_ends_in_steady_sliding():
-    """Over 360 half lengths and back, with accumulators that are counted anew on the way."""
+    """Over 360 half lengths and back, with accumulators that are restarted on the way."""
     history = [(0.0, 30.0), (0.03, 30.0), (0.03, -30.0), (0.06, -30.0)]
     arms, at, x = [(3e10, 5e-4), (5e9, 2e-3)], [0.03, 0.06], np.linspace(-2.4e-3, 1e-3, 5)
     scene = sliding(arms, kv.Drive(history=history), 0.06, support=kv.Fixed(3e-4))

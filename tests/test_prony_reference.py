@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum.prony import evaluation as e_
 from kvtheory.models.continuum.prony.energy import volume
+from kvtheory.models.continuum.prony.records import ARM, together
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 from tests import SCENES, prony_reference
@@ -150,12 +150,13 @@ def impulse(motion):
     U + sum S_i = 4/3 f_z = f, S_i' = k_i U' - S_i/T_i, so S = k f/(1 + sum k) + R, R' = A S, A as for a
     free element. The modes of R are integrated on panels that double from the end of a step backwards.
     """
-    k, T = motion.run.arms[:, :2].T
+    arms = together(motion.run.arms, ARM)
+    k, T = arms["stiffness"], arms["relaxation_time"]
     glass, ratio = 1.0 + k.sum(), np.sqrt(k / T)
     rates, modes = np.linalg.eigh(np.outer(ratio, ratio) / glass - np.diag(1.0 / T))
     gain, out = rates * (modes.T @ ratio) / glass, np.sqrt(k * T) @ modes
     x, weights = (np.polynomial.legendre.leggauss(12) + np.array([[1.0], [0.0]])) * 0.5
-    force = lambda s: motion.states(s, peaks=False)[e_.NORMAL_FORCE] * 4.0 / 3.0  # noqa: E731
+    force = lambda s: motion.states(s, peaks=False)["normal_force"] * 4.0 / 3.0  # noqa: E731
     ends = np.append(motion.steps["start"], motion.counts.s)
     R, worst, seldom = -gain / rates * force([0.0]), 0.0, max(len(ends) // 6, 1)
     for n, (start, end) in enumerate(itertools.pairwise(ends), 1):

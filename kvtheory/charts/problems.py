@@ -18,7 +18,6 @@ from kvtheory.charts import naive
 from kvtheory.charts.naive import Array, Piece, scaled_scene
 from kvtheory.charts.work_precision import MISSED, NO_LIMIT, WRONG, Clock, Reference
 from kvtheory.models.continuum import evaluation, solver
-from kvtheory.models.continuum.prony import evaluation as prony
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion
@@ -195,7 +194,7 @@ def by_continuum(
     if problem.arms:
         run: Any = trajectory.solve(drive, problem.arms, numbers, drive.end, rtol, **how)
         found = run.states(s, peaks=False)
-        return Curves(found[prony.DEPTH], found[prony.FRICTION_FORCE]), run.counts.evaluations
+        return Curves(found["depth"], found["friction_force"]), run.counts.evaluations
     motion = solver.solve(drive, *numbers, drive.end, rtol, **how)
     found = motion.states(s).T
     curves = Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE])

@@ -9,7 +9,6 @@ import numpy as np
 
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima
-from kvtheory.models.continuum.prony import evaluation as p_
 from kvtheory.models.continuum.prony.solved_scene import SolvedPronyScene
 from kvtheory.models.continuum.solved_scene import COLUMNS
 from kvtheory.sweeps.plan import Array
@@ -34,10 +33,10 @@ class PronyMotion:
     def states(self, s: Any) -> Array:
         """Return the states at an array of scaled times; peak pressures only if they are wanted."""
         there = self.solution.motion.states(s, peaks=self.peaks)
-        found = np.full((there.shape[1], e_.SIZE), math.nan)
+        found = np.full((there.size, e_.SIZE), math.nan)
         for name, values in self.solution.scaled_series(there, np.asarray(s)).items():
             found[:, COLUMNS[name]] = values
-        found[:, [e_.ALONG, e_.ALONG_RATE]] = there[[p_.ALONG_X, p_.ALONG_RATE]].T
+        found[:, e_.ALONG], found[:, e_.ALONG_RATE] = there["offset"], there["offset_rate"]
         return found
 
     @cached_property

@@ -9,7 +9,7 @@ has
     A_i' = d' + lambda B_i - A_i/T_i,   B_i' = 2 lambda - B_i/T_i,
 
 A_i and B_i starting at zero; those in contact at rest lack the term in brackets. Where A_i and B_i were
-counted anew at s_0 (see `counting`), elements that entered before also have, with those of the old count,
+restarted at s_0 (see `restarts`), elements that entered before also have the stress carried over from before,
 e^-(s - s_0)/T_i k_i (A_i - xi B_i)(s_0). The moments F_i and M_i of s_i over the contact, from which both
 forces follow, obey, with I_n = int xi^n dxi, summed over both edges,
 
@@ -20,12 +20,12 @@ An edge peels at p = 0, or touches the free surface, d - xi^2 = u: zero on groun
 where an edge left it at sigma, the solution of u + sum s_i = 0, a sum of N modes. It peels as long as p of
 the element there would fall, and touches as long as it rises.
 
-A step stores polynomials over its length, a row for each quantity, and one of each arm in `memory`. A loop
+A step stores `polynomials` over its length, and those of each arm in `memory`. A loop
 `for i in over(count)` runs over arms: compiled, i is one after the other; interpreted, all at once, as a
 slice. The memory is evaluated from them, also within the step that is being solved. A segment is ground
-over which one edge passed one way without a kink: it is told from the rows of this edge, and the instants
-at its ends. The contact is a sequence of segments from left to right; the free ground on each side is a
-list that begins at the edge. An edge that passes the end of a segment, or turns, ends a step.
+over which one edge passed one way without a kink: it is told from the polynomials of this edge, and the
+instants at its ends. The contact is a sequence of segments from left to right; the free ground on each side
+is a list that begins at the edge. An edge that passes the end of a segment, or turns, ends a step.
 """
 
 import math
@@ -33,21 +33,8 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.models.continuum.prony.records import NEVER, PEELING, SIDES, TOUCHING, Run
 from kvtheory.scene.base_motion import evaluate
-
-RATE, ALONG, EDGES, ROWS = 0, 1, 2, 4
-"""Rows of a step: d', x', both edges xi_e; their number."""
-DEPTHS, SLIDES, STRESSES, FORCES, MOMENTS, OWN = 0, 1, 2, 4, 5, 6
-"""Rows of an arm: A_i, B_i, s_e at both edges, F_i, M_i; their number."""
-STIFFNESS, TIME, FALL, SHARE = range(4)
-"""Columns of an arm: k_i, T_i, rate and share of a free mode."""
-
-PEELING, TOUCHING, FREE = 0, 1, 2
-"""States of an edge; both are free in flight."""
-SIDES = (-1.0, 1.0)
-NEVER = -1
-"""Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest, or free
-ground between two places that was never touched."""
 
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
@@ -61,8 +48,6 @@ GOLDEN = 0.3819660112501051
 
 SEVERAL = 4
 """Arms from which on they are evaluated as an array where the kernels are interpreted."""
-
-Run = Any
 
 
 def over(count: int) -> Any:
@@ -95,27 +80,38 @@ def derivative(row: Any, theta: float) -> float:
     return total
 
 
-def past(run: Run, index: int, i: Any, row: int, theta: float) -> Any:
-    """Return a polynomial of an arm in the step `index` at `theta`."""
-    powers, found = run.memory[index], 0.0 * run.arms[i, STIFFNESS]
-    for k in range(powers.shape[2] - 1, -1, -1):
-        found = found * theta + powers[i, row, k]
+def past(powers: Any, index: int, i: Any, theta: float) -> Any:
+    """Return a quantity of an arm in a step at `theta`; `powers` are (steps, arms, coefficients)."""
+    last = powers.shape[2] - 1
+    found = 0.0 * theta + powers[index, i, last]
+    for k in range(last - 1, -1, -1):
+        found = found * theta + powers[index, i, k]
+    return found
+
+
+def past_stress(run: Run, index: int, i: Any, edge: int, theta: float) -> Any:
+    """Return s_i of the element at an edge in the step `index` at `theta`."""
+    powers, last = run.memory.stress_at_edge, run.given.stages
+    found = 0.0 * theta + powers[index, i, last, edge]
+    for k in range(last - 1, -1, -1):
+        found = found * theta + powers[index, i, k, edge]
     return found
 
 
 def accumulated(run: Run, index: int, theta: float) -> None:
-    """Write A_i and B_i at a time of a step into `here`, and where they begin to count."""
-    run.now.since = run.steps[index].since
-    for i in over(len(run.arms)):
-        for row in (DEPTHS, SLIDES):
-            run.here[i, row] = past(run, index, i, row, theta)
+    """Write A_i and B_i at a time of a step into `element`, and when they were restarted."""
+    run.now.restart = run.steps[index].restart
+    memory, element = run.memory, run.element
+    for i in over(run.given.arms):
+        element.accumulated_depth[i] = past(memory.accumulated_depth, index, i, theta)
+        element.accumulated_slide[i] = past(memory.accumulated_slide, index, i, theta)
 
 
 def at_present(run: Run) -> None:
-    """Write A_i and B_i at present into `here`."""
-    for i in over(len(run.arms)):
-        for row in (DEPTHS, SLIDES):
-            run.here[i, row] = run.state[i, row]
+    """Write A_i and B_i at present into `element`."""
+    for i in over(run.given.arms):
+        run.element.accumulated_depth[i] = run.state.accumulated_depth[i]
+        run.element.accumulated_slide[i] = run.state.accumulated_slide[i]
 
 
 def integral(row: Any, theta: float) -> float:
@@ -131,11 +127,13 @@ def motion(run: Run, index: int, s: float) -> tuple[float, float, float, float, 
     step = run.steps[index]
     theta = (s - step.start) / step.span
     Y, number, _ = evaluate(run.pieces[step.piece], s)
-    d = step.depth + step.span * integral(run.rows[index, RATE], theta)
+    rate = run.polynomials.depth_rate[index]
+    d = step.depth + step.span * integral(rate, theta)
     if run.given.sprung:
-        Y -= step.along + step.span * integral(run.rows[index, ALONG], theta)
-        number -= value(run.rows[index, ALONG], theta)
-    return d, value(run.rows[index, RATE], theta), Y, number, theta
+        along = run.polynomials.offset_rate[index]
+        Y -= step.along + step.span * integral(along, theta)
+        number -= value(along, theta)
+    return d, value(rate, theta), Y, number, theta
 
 
 def step_of(run: Run, edge: int, index: int, sigma: float) -> int:
@@ -151,53 +149,55 @@ def step_of(run: Run, edge: int, index: int, sigma: float) -> int:
 def pressed(
     run: Run, s: float, d: float, Y: float, xi: float, edge: int, index: int, sigma: float
 ) -> tuple[float, float]:
-    """Return p and xi of an element in contact, and write its s_i into `here`, which has A_i and B_i.
+    """Return p and xi of an element in contact, and write its s_i into `element`, which has A_i and B_i.
 
     It entered at `sigma`, in the step `index`, at this edge; at `xi` if it was in contact at rest. Between
     the stages of that step the polynomials leave a gap or an overlap there. The indenter closes it at once,
     and an arm keeps the share of this stress that it would keep over the step.
     """
     theta = xi_e = deeper = 0.0
-    here = run.here
+    memory, element = run.memory, run.element
     if index != NEVER:
         d_e, _, Y_e, _, theta = motion(run, index, sigma)
-        xi_e = value(run.rows[index, EDGES + edge], theta)
+        xi_e = value(run.polynomials.edges[index, :, edge], theta)
         xi, deeper = xi_e - Y_e + Y, d_e - xi_e * xi_e
-        for i in over(len(run.arms)):
-            here[i, FORCES] = past(run, index, i, STRESSES + edge, theta)
-            deeper += total(here[i, FORCES])
+        for i in over(run.given.arms):
+            element.stress_at_edge[i] = past_stress(run, index, i, edge, theta)
+            deeper += total(element.stress_at_edge[i])
     p = d - xi * xi
-    for i in over(len(run.arms)):
-        k = run.arms[i, STIFFNESS]
-        here[i, STRESSES] = k * (here[i, DEPTHS] - xi * here[i, SLIDES])
+    for i in over(run.given.arms):
+        k = run.arms.stiffness[i]
+        element.stress[i] = k * (element.accumulated_depth[i] - xi * element.accumulated_slide[i])
         if index != NEVER:
-            then = past(run, index, i, DEPTHS, theta) - xi_e * past(run, index, i, SLIDES, theta)
-            kept = run.arms[i, TIME] / (run.arms[i, TIME] + run.steps[index].span)
-            left = here[i, FORCES] + k * (kept * deeper - then)
-            here[i, STRESSES] += left * np.exp(np.minimum((sigma - s) / run.arms[i, TIME], 1.0))
-        p += total(here[i, STRESSES])
-    if run.now.since > 0:
-        p += counted_before(run, s, xi - Y, 0 if index == NEVER else run.steps[index].since)
+            A = past(memory.accumulated_depth, index, i, theta)
+            then = A - xi_e * past(memory.accumulated_slide, index, i, theta)
+            T = run.arms.relaxation_time[i]
+            left = element.stress_at_edge[i] + k * (T / (T + run.steps[index].span) * deeper - then)
+            element.stress[i] += left * np.exp(np.minimum((sigma - s) / T, 1.0))
+        p += total(element.stress[i])
+    if run.now.restart > 0:
+        p += carried_over(run, s, xi - Y, 0 if index == NEVER else run.steps[index].restart)
     return p, xi
 
 
-def counted_before(run: Run, s: float, X: float, entered: int) -> float:
-    """Add to the s_i of the element at `X` what earlier counts know of it, since that when it entered.
+def carried_over(run: Run, s: float, X: float, entered: int) -> float:
+    """Add to the s_i of the element at `X` the stress carried over from before the last restart.
 
-    Return the sum.
+    `entered` is the last restart when the element entered. Return the sum of this stress.
     """
-    j, added = run.now.since, 0.0
+    j, added, memory = run.now.restart, 0.0, run.memory
     while j > entered:
         start = run.steps[j].start
         _, _, Y, _, theta = motion(run, j - 1, start)
-        for i in over(len(run.arms)):
-            A = past(run, j - 1, i, DEPTHS, theta) - run.memory[j, i, DEPTHS, 0]
-            B = past(run, j - 1, i, SLIDES, theta) - run.memory[j, i, SLIDES, 0]
-            stress = run.arms[i, STIFFNESS] * (A - (X + Y) * B)
-            stress = stress * np.exp((start - s) / run.arms[i, TIME])
-            run.here[i, STRESSES] += stress
+        depth, slide = memory.accumulated_depth, memory.accumulated_slide
+        for i in over(run.given.arms):
+            A = past(depth, j - 1, i, theta) - depth[j, i, 0]
+            B = past(slide, j - 1, i, theta) - slide[j, i, 0]
+            stress = run.arms.stiffness[i] * (A - (X + Y) * B)
+            stress = stress * np.exp((start - s) / run.arms.relaxation_time[i])
+            run.element.stress[i] += stress
             added += total(stress)
-        j = run.steps[j - 1].since
+        j = run.steps[j - 1].restart
     return added
 
 
@@ -209,33 +209,34 @@ def free(
     If the polynomials left it with a pressure, it rises at once.
     """
     d_e, _, Y_e, _, theta = motion(run, index, sigma)
-    xi_e = value(run.rows[index, EDGES + edge], theta)
-    xi, arms, here, u = xi_e - Y_e + Y, run.arms, run.here, 0.0
+    xi_e = value(run.polynomials.edges[index, :, edge], theta)
+    xi, arms, element, u = xi_e - Y_e + Y, run.arms, run.element, 0.0
     p_e = u_e = d_e - xi_e * xi_e
-    for i in over(len(arms)):
-        here[i, FORCES] = past(run, index, i, STRESSES + edge, theta)
-        p_e += total(here[i, FORCES])
+    for i in over(run.given.arms):
+        element.stress_at_edge[i] = past_stress(run, index, i, edge, theta)
+        p_e += total(element.stress_at_edge[i])
     higher = p_e / (1.0 + run.given.glass)
     u_e -= higher
-    for i in over(len(arms)):
-        here[i, FORCES] -= arms[i, STIFFNESS] * higher
-    for m in range(len(arms)):
+    for i in over(run.given.arms):
+        element.stress_at_edge[i] -= arms.stiffness[i] * higher
+    for m in range(run.given.arms):
         mode = 0.0
-        for i in over(len(arms)):
-            mode += total(run.to_modes[m, i] * (u_e - here[i, FORCES] / arms[i, STIFFNESS]))
-        here[m, MOMENTS] = mode * math.exp(min((sigma - s) * arms[m, FALL], 1.0))
-        u += arms[m, SHARE] * here[m, MOMENTS]
-    for i in over(len(arms)):
-        here[i, STRESSES] = 0.0
-        for m in range(len(arms)):
-            here[i, STRESSES] += run.from_modes[i, m] * here[m, MOMENTS]
+        for i in over(run.given.arms):
+            strain = element.stress_at_edge[i] / arms.stiffness[i]
+            mode += total(run.to_modes[m, i] * (u_e - strain))
+        element.mode[m] = mode * math.exp(min((sigma - s) * arms.mode_rate[m], 1.0))
+        u += arms.mode_share[m] * element.mode[m]
+    for i in over(run.given.arms):
+        element.stress[i] = 0.0
+        for m in range(run.given.arms):
+            element.stress[i] += run.from_modes[i, m] * element.mode[m]
     return u - d + xi * xi, xi
 
 
 def edge_at(
     run: Run, k: int, s: float, d: float, Y: float, xi: float, index: int, sigma: float
 ) -> tuple[float, int, float]:
-    """Return xi of an edge, the step and the instant of the element there; write its s_i into `here`.
+    """Return xi of an edge, the step and the instant of the element there; write its s_i into `element`.
 
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
     or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
@@ -244,8 +245,8 @@ def edge_at(
     """
     side, state = run.now.sides[k], run.now.sides[k].state
     if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
-        for i in over(len(run.arms)):
-            run.here[i, STRESSES] = 0.0
+        for i in over(run.given.arms):
+            run.element.stress[i] = 0.0
         return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
     segment, span = run.segments[side.segment], s - run.now.s
     edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
@@ -301,13 +302,13 @@ def _beyond_end(run: Run, k: int, xi: float, f: float) -> float:
     slope, outward = 2.0 * xi, SIDES[k]
     if run.now.sides[k].state == PEELING:
         outward = -SIDES[k]
-        for i in over(len(run.arms)):
-            slope += total(run.arms[i, STIFFNESS] * run.here[i, SLIDES])
+        for i in over(run.given.arms):
+            slope += total(run.arms.stiffness[i] * run.element.accumulated_slide[i])
     return xi - outward * max(min(f / abs(slope), FARTHEST), -FARTHEST)
 
 
 def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) -> float:
-    """Return p, or the gap if the edge touches, where the segment of an edge ends; `here` has A_i and B_i.
+    """Return p, or the gap if the edge touches, where the segment of an edge ends; `element` has A_i and B_i.
 
     An end that is beyond the `middle` of the contact is passed by the other edge.
     """

@@ -22,33 +22,25 @@ with s_i = sum_j f_ij m_j: that of free ground follows from the ground at presen
 edge meets again from the element at this edge.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum.energy import Ledger, entries
-from kvtheory.models.continuum.prony import evaluation as e_
-from kvtheory.models.continuum.prony.contact import (
-    ALONG,
-    DEPTHS,
-    EDGES,
-    FALL,
-    FORCES,
+from kvtheory.models.continuum.prony.records import (
+    ARM,
+    ARM_STATE,
     FREE,
-    MOMENTS,
     NEVER,
     PEELING,
-    RATE,
-    SHARE,
-    SLIDES,
-    STIFFNESS,
-    STRESSES,
-    TIME,
+    POLYNOMIAL,
+    SEGMENT,
     TOUCHING,
+    named,
+    together,
 )
-from kvtheory.models.continuum.prony.records import SEGMENT
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.records import readable, structured
@@ -62,9 +54,14 @@ HALVINGS = 52
 """Bisections for the instant at which an edge passed an element."""
 BLOCK = 20
 """Number of times at which the integrals over the ground are evaluated together."""
-VOLUME, STORED, LOST = range(3)
-"""The integrals over the ground: of u, of u^2 + sum s_i^2/k_i, and of what free elements lost since an edge
-left them."""
+
+
+class Integrals(NamedTuple):
+    """Integrals over the ground: of u, of u^2 + sum s_i^2/k_i, of what was lost since an edge left it."""
+
+    volume: Array
+    stored: Array
+    lost: Array
 
 
 class Ground:
@@ -73,15 +70,17 @@ class Ground:
     def __init__(self, motion: Trajectory) -> None:
         run, self.motion = motion.run, motion
         count = motion.counts.steps
-        self.steps, self.rows, self.memory = motion.steps, run.rows[:count], run.memory[:count]
+        self.steps = motion.steps
+        self.polynomials = named(together(run.polynomials, POLYNOMIAL)[:count])
+        self.memory = named(together(run.memory, ARM_STATE)[:count])
         self.segments = structured(run.segments[: motion.counts.segments], SEGMENT)
-        self.pieces, self.arms = np.asarray(run.pieces), np.asarray(run.arms)
+        self.pieces, self.arms = np.asarray(run.pieces), named(together(run.arms, ARM))
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]
         longest = float(motion.counts.s)
         self.ages = [
             fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
-            for fastest in (1.0 / self.arms[:, FALL].max(), self.arms[:, TIME].min())
+            for fastest in (1.0 / self.arms.mode_rate.max(), self.arms.relaxation_time.min())
         ]
 
     def step_at(self, s: Array) -> Any:
@@ -110,7 +109,7 @@ class Ground:
         step = self.steps[index]
         theta = (sigma - step["start"]) / step["span"]
         Y, number = self.slid(index, theta, sigma)
-        powers = self.rows[index, EDGES + edge].T
+        powers = self.polynomials.edges[index, :, edge].T
         xi = polynomial.polyval(theta, powers, tensor=False)
         rate = polynomial.polyval(theta, polynomial.polyder(powers), tensor=False) / step["span"]
         return xi - Y, rate - number, index, theta
@@ -118,7 +117,7 @@ class Ground:
     def slid(self, index: Any, theta: Array, s: Array) -> tuple[Array, Array]:
         """Return Y and lambda of the base under the indenter."""
         step = self.steps[index]
-        piece, along = self.pieces[step["piece"]].T, self.rows[index, ALONG].T
+        piece, along = self.pieces[step["piece"]].T, self.polynomials.offset_rate[index].T
         t, powers = s - piece[drive_.START], piece[drive_.POWERS :]
         Y = piece[drive_.DISPLACEMENT] + polynomial.polyval(
             t, polynomial.polyint(powers), tensor=False
@@ -138,14 +137,16 @@ class Ground:
             low, high = np.where(before, middle, low), np.where(before, high, middle)
         return high
 
-    def integrals(self, s: Array) -> Array:
-        """Return the three integrals, in the contact and outside it, at times: (2, 3, times)."""
+    def integrals(self, s: Array) -> tuple[Integrals, Integrals]:
+        """Return the integrals at times, in the contact and outside it."""
         blocks = [self._block(s[i : i + BLOCK]) for i in range(0, s.size, BLOCK)]
-        return np.concatenate([np.zeros((2, 3, 0)), *blocks], axis=-1)
+        found = np.concatenate([np.zeros((2, 3, 0)), *blocks], axis=-1)
+        return Integrals(*found[0]), Integrals(*found[1])
 
     def _block(self, s: Array) -> Array:
+        """Return the integrals at a few times: (2, 3, times)."""
         states = self.motion.states(s, peaks=False)
-        l, r, Y = states[e_.LEFT], states[e_.RIGHT], states[e_.TRAVEL]
+        (l, r), Y = states["edges"].T, states["way"]
         indices = enumerate(self.step_at(s).tolist())
         rows = [(i, *part) for i, index in indices for part in self.parts[index]]
         found = np.zeros((2, 3, s.size))
@@ -177,7 +178,7 @@ class Ground:
             of = inside[which] == contact
             k = which[of]
             values = self._values(
-                s[owner[k]], nodes[of], segment["edge"][k], rest[k], contact, states[:, owner[k]]
+                s[owner[k]], nodes[of], segment["edge"][k], rest[k], contact, states[owner[k]]
             )
             for n, value in enumerate(values):
                 found[0 if contact else 1, n] = np.bincount(owner[k], weights[of] * value, s.size)
@@ -195,51 +196,47 @@ class Ground:
         return np.unique(np.concatenate([[low], inner, [high]]))
 
     def _values(
-        self, s: Array, nodes: Array, edge: Any, rest: Any, contact: bool, states: Array
-    ) -> list[Array]:
+        self, s: Array, nodes: Array, edge: Any, rest: Any, contact: bool, states: Any
+    ) -> Integrals:
         """Return the three integrands at times `s` for elements that the edges passed at `nodes`.
 
         Those in contact at rest have X instead of an instant.
         """
-        k, T = self.arms[:, STIFFNESS, None], self.arms[:, TIME, None]
+        k, T = self.arms.stiffness[:, None], self.arms.relaxation_time[:, None]
         X, rate, index, theta = self.place(edge, np.where(rest, 0.0, nodes))
         X, rate = np.where(rest, nodes, X), np.where(rest, 1.0, np.abs(rate))
-        past = lambda row: polynomial.polyval(theta, self.memory[index, :, row].T, tensor=False)  # noqa: E731
-        stress = polynomial.polyval(theta, self.memory[index, :, STRESSES + edge].T, tensor=False)
+        memory = self.memory
+        stress = self._stress(index, edge, theta)
         if contact:
-            xi, now = X + states[e_.TRAVEL], self.step_at(s)
-            u, xi_e = states[e_.DEPTH] - xi * xi, X + self.slid(index, theta, nodes)[0]
-            left = stress - k * (past(DEPTHS) - xi_e * past(SLIDES))
+            xi, now = X + states["way"], self.step_at(s)
+            u, xi_e = states["depth"] - xi * xi, X + self.slid(index, theta, nodes)[0]
+            A = _of_arms(memory.accumulated_depth, index, theta)
+            B = _of_arms(memory.accumulated_slide, index, theta)
+            left = stress - k * (A - xi_e * B)
             fade = np.exp(np.minimum((nodes - s) / T, 0.0))
             when = (s - self.starts[now]) / self.steps["span"][now]
-            A, B = (
-                polynomial.polyval(when, self.memory[now, :, row].T, tensor=False)
-                for row in (DEPTHS, SLIDES)
-            )
+            A = _of_arms(memory.accumulated_depth, now, when)
+            B = _of_arms(memory.accumulated_slide, now, when)
             stress = k * (A - xi * B) + np.where(rest, 0.0, left * fade)
-            self._count_before(stress, s, X, now, np.where(rest, 0, index))
+            self._carry_over(stress, s, X, now, np.where(rest, 0, index))
             lost = np.zeros_like(u)
         else:
             age, modes = np.maximum(s - nodes, 0.0), self._modes(stress)
             lost = self._lost(modes, age)
-            modes = modes * np.exp(-age * self.arms[:, FALL, None])
-            u = np.einsum("m,mq->q", self.arms[:, SHARE], modes)
+            modes = modes * np.exp(-age * self.arms.mode_rate[:, None])
+            u = np.einsum("m,mq->q", self.arms.mode_share, modes)
             stress = np.einsum("im,mq->iq", self.motion.run.from_modes, modes)
-        return [u * rate, (u * u + (stress * stress / k).sum(axis=0)) * rate, lost * rate]
+        return Integrals(u * rate, (u * u + (stress * stress / k).sum(axis=0)) * rate, lost * rate)
 
     def _modes(self, stress: Array) -> Array:
         """Return the modes of elements with these stresses, whose pressure is zero."""
-        each = -stress.sum(axis=0) - stress / self.arms[:, STIFFNESS, None]
+        each = -stress.sum(axis=0) - stress / self.arms.stiffness[:, None]
         return np.asarray(np.einsum("mi,iq->mq", self.motion.run.to_modes, each))
 
     def _lost(self, modes: Array, age: Array) -> Array:
         """Return what free elements lost since an edge left them with these modes."""
-        k, T, rates, f = (
-            self.arms[:, STIFFNESS],
-            self.arms[:, TIME],
-            self.arms[:, FALL],
-            self.motion.run.from_modes,
-        )
+        arms, f = self.arms, self.motion.run.from_modes
+        k, T, rates = arms.stiffness, arms.relaxation_time, arms.mode_rate
         each = np.einsum("ij,il,i->jl", f, f, 1.0 / (k * T))
         both = rates[:, None] + rates
         faded = -np.expm1(-both[..., None] * age) / both[..., None]
@@ -251,25 +248,24 @@ class Ground:
         theta = (s - self.starts[index]) / self.steps["span"][index]
         number = self.slid(index, theta, s)[1]
 
-        def along(row: int) -> Array:
-            return polynomial.polyval(theta, self.rows[index, row].T, tensor=False)
+        def along(powers: Array) -> Array:
+            return polynomial.polyval(theta, powers.T, tensor=False)
 
-        def arms(row: int) -> Array:
-            return polynomial.polyval(theta, self.memory[index, :, row].T, tensor=False)
-
-        step, rate, F, M = self.steps[index], along(RATE), arms(FORCES), arms(MOMENTS)
+        polynomials, memory, step = self.polynomials, self.memory, self.steps[index]
+        rate = along(polynomials.depth_rate[index])
+        F, M = _of_arms(memory.force, index, theta), _of_arms(memory.moment, index, theta)
         d = step["depth"] + step["span"] * polynomial.polyval(
-            theta, polynomial.polyint(self.rows[index, RATE].T), tensor=False
+            theta, polynomial.polyint(polynomials.depth_rate[index].T), tensor=False
         )
-        l, r = along(EDGES), along(EDGES + 1)
+        l, r = (along(polynomials.edges[index, :, k]) for k in range(2))
         of_arrays: Any = forces
         _, friction = of_arrays(l, r, d, F.sum(axis=0), M.sum(axis=0))
-        power = 2.0 * self.arms[:, STIFFNESS, None] * (rate * F - 2.0 * number * M)
+        power = 2.0 * self.arms.stiffness[:, None] * (rate * F - 2.0 * number * M)
         for k, side in enumerate((-1.0, 1.0)):
             _, moves, _, _ = self.place(k, s)
             flies = step["sides"]["state"][:, k] == FREE
-            power += side * np.where(flies, 0.0, moves) * arms(STRESSES + k) ** 2
-        w = along(ALONG)
+            power += side * np.where(flies, 0.0, moves) * self._stress(index, k, theta) ** 2
+        w = along(polynomials.offset_rate[index])
         return (number + w) * friction, w * w, power
 
     def spent(self, s: float, damping: float) -> tuple[float, float, float, float]:
@@ -283,7 +279,8 @@ class Ground:
             (width * WEIGHTS).reshape(-1),
         )
         drive, damper, powers = self.powers(t)
-        kept = -np.expm1(2.0 * (t - s) / self.arms[:, TIME, None]) / self.arms[:, STIFFNESS, None]
+        fade = 2.0 * (t - s) / self.arms.relaxation_time[:, None]
+        kept = -np.expm1(fade) / self.arms.stiffness[:, None]
         rows = (
             drive,
             0.375 * (kept * powers).sum(axis=0),
@@ -307,32 +304,41 @@ class Ground:
             edge = segment["edge"]
             sigma = self.instants(edge, X, segment["a"], np.minimum(segment["b"], s[at]))
             _, _, then, theta = self.place(edge, sigma)
-            stress = polynomial.polyval(
-                theta, self.memory[then, :, STRESSES + edge].T, tensor=False
-            )
+            stress = self._stress(then, edge, theta)
             found[at] += self._lost(self._modes(stress), s[at] - sigma) * np.abs(moves)
         return found
 
-    def _count_before(self, stress: Array, s: Array, X: Array, now: Any, entered: Any) -> None:
-        """Add to stresses in the steps `now` what earlier counts of the accumulators know of the elements."""
-        since, k, T = self.steps["since"], self.arms[:, STIFFNESS, None], self.arms[:, TIME, None]
-        j, first = since[now], since[entered]
+    def _stress(self, index: Any, edge: Any, theta: Array) -> Array:
+        """Return s_i of the elements at edges in steps at theta."""
+        powers = self.memory.stress_at_edge[index, :, :, edge]
+        return np.asarray(polynomial.polyval(theta, powers.T, tensor=False))
+
+    def _carry_over(self, stress: Array, s: Array, X: Array, now: Any, entered: Any) -> None:
+        """Add to stresses in the steps `now` those carried over from before restarts of the accumulators."""
+        restart, memory = self.steps["restart"], self.memory
+        k, T = self.arms.stiffness[:, None], self.arms.relaxation_time[:, None]
+        j, first = restart[now], restart[entered]
         while (of := np.nonzero(j > first)[0]).size:
             start, last = self.starts[j[of]], j[of] - 1
             theta = (start - self.starts[last]) / self.steps["span"][last]
             A, B = (
-                polynomial.polyval(theta, self.memory[last, :, row].T, tensor=False)
-                - self.memory[j[of], :, row, 0].T
-                for row in (DEPTHS, SLIDES)
+                _of_arms(powers, last, theta) - powers[j[of], :, 0].T
+                for powers in (memory.accumulated_depth, memory.accumulated_slide)
             )
             xi = X[of] + self.slid(last, theta, start)[0]
             stress[:, of] += k * (A - xi * B) * np.exp((start - s[of]) / T)
-            j[of] = since[last]
+            j[of] = restart[last]
+
+
+def _of_arms(powers: Array, index: Any, theta: Array) -> Array:
+    """Return a quantity of the arms in steps at theta: (arms, times)."""
+    return np.asarray(polynomial.polyval(theta, powers[index].T, tensor=False))
 
 
 def volume(motion: Trajectory, s: float) -> float:
     """Return U = int u dxi over the whole surface; f_z = 3/4 (U + sum S_i), S_i' = k_i U' - S_i/T_i (F14)."""
-    return float(Ground(motion).integrals(np.array([s]))[:, VOLUME, 0].sum())
+    within, outside = Ground(motion).integrals(np.array([s]))
+    return float(within.volume[0] + outside.volume[0])
 
 
 def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
@@ -348,7 +354,8 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     times, ground, given = np.asarray(s, dtype=float), Ground(motion), readable(motion.run.given[0])
     flat = times.reshape(-1)
     sums = np.array([ground.spent(t, given.damping) for t in flat.tolist()]).reshape(-1, 4).T
-    found, over = motion.states(flat, peaks=False), ground.integrals(flat)
-    sums[2] += 0.75 * over[1, LOST]
-    moving = found[[e_.DEPTH, e_.RATE, e_.ALONG_X, e_.ALONG_RATE]]
-    return entries(given, moving, sums, 0.375 * over[:, STORED], times.shape)
+    states, (within, outside) = motion.states(flat, peaks=False), ground.integrals(flat)
+    sums[2] += 0.75 * outside.lost
+    moving = np.array([states[name] for name in ("depth", "depth_rate", "offset", "offset_rate")])
+    stored = 0.375 * np.array([within.stored, outside.stored])
+    return entries(given, moving, sums, stored, times.shape)

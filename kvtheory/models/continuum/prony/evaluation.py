@@ -1,17 +1,9 @@
 """The state at any time of a motion on a Prony series: depth, edges, forces, pressure, free surface."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from kvtheory.models.continuum.prony.contact import (
-    ALONG,
-    EDGES,
-    FORCES,
-    FREE,
-    MOMENTS,
-    NEVER,
-    PEELING,
-    TIME,
     accumulated,
     free,
     integral,
@@ -22,17 +14,31 @@ from kvtheory.models.continuum.prony.contact import (
     total,
     value,
 )
-from kvtheory.models.continuum.prony.records import Run
+from kvtheory.models.continuum.prony.records import FREE, NEVER, PEELING, Run
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.walk import walk
 from kvtheory.models.continuum.run import step_at
+from kvtheory.records import record
 from kvtheory.scene.base_motion import evaluate
 
-DEPTH, RATE, NUMBER, DRIVE, ALONG_X, ALONG_RATE, LEFT, RIGHT = range(8)
-NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, TRAVEL, LEFT_STATE, RIGHT_STATE = range(8, 14)
-SIZE = 14
-"""Columns of a state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x',
-both edges, both forces, the largest pressure, Y, and the states of both edges."""
+STATE = record(
+    depth="f8", depth_rate="f8", sliding_velocity="f8", drive_velocity="f8", offset="f8",
+    offset_rate="f8", edges=("f8", (2,)), normal_force="f8", friction_force="f8", peak_pressure="f8",
+    way="f8", edge_states=("i8", (2,)), pressure="f8", compression="f8",
+)  # fmt: skip
+"""A state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x', both edges,
+both forces, the largest pressure, Y, the states of both edges; p and u at a place, if asked for."""
+
+
+class Contact(NamedTuple):
+    """A time, with depth, Y of the base under the indenter and both edges at this time."""
+
+    s: float
+    d: float
+    Y: float
+    l: float
+    r: float
+
 
 REFINED, BISECTIONS, SAMPLES, LAYER = 12, 60, 3, 0.25
 """Golden sections in the search for the peak between two samples, before a parabola; bisections for the
@@ -43,115 +49,117 @@ ROUNDING = 1e-12
 
 
 def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
-    """Write the state at each of the `times` into a row of `found`, with peak pressures if wanted."""
+    """Write the state at each of the `times` into `found`, with peak pressures if wanted."""
     for i in range(len(times)):
-        s, row = times[i], found[i]
+        s = times[i]
         index = step_at(run, s)
-        step, rows = run.steps[index], run.rows[index]
+        step, memory = run.steps[index], run.memory
         d, v, Y, number, theta = motion(run, index, s)
         first = second = 0.0
-        for k in over(len(run.arms)):
-            first += total(past(run, index, k, FORCES, theta))
-            second += total(past(run, index, k, MOMENTS, theta))
-        l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
-        row[DEPTH], row[RATE], row[NUMBER], row[TRAVEL] = d, v, number, Y
-        row[LEFT], row[RIGHT] = l, r
-        row[DRIVE] = evaluate(run.pieces[step.piece], s)[1]
-        row[ALONG_X] = step.along + step.span * integral(rows[ALONG], theta)
-        row[ALONG_RATE] = value(rows[ALONG], theta)
-        row[NORMAL_FORCE], row[FRICTION_FORCE] = forces(l, r, d, first, second)
-        row[LEFT_STATE], row[RIGHT_STATE] = step.sides[0].state, step.sides[1].state
+        for k in over(run.given.arms):
+            first += total(past(memory.force, index, k, theta))
+            second += total(past(memory.moment, index, k, theta))
+        edges, along = run.polynomials.edges[index], run.polynomials.offset_rate[index]
+        l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
+        found.depth[i], found.depth_rate[i] = d, v
+        found.sliding_velocity[i], found.way[i] = number, Y
+        found.drive_velocity[i] = evaluate(run.pieces[step.piece], s)[1]
+        found.offset[i] = step.along + step.span * integral(along, theta)
+        found.offset_rate[i] = value(along, theta)
+        found.normal_force[i], found.friction_force[i] = forces(l, r, d, first, second)
         if step.sides[0].state == FREE:
-            row[LEFT] = row[RIGHT] = math.nan
-        row[PEAK_PRESSURE] = 0.0
+            l = r = math.nan
+        found.edges[i, 0], found.edges[i, 1] = l, r
+        for side in range(2):
+            found.edge_states[i, side] = step.sides[side].state
+        found.peak_pressure[i] = 0.0
         if peaks:
             accumulated(run, index, theta)
-            row[PEAK_PRESSURE] = peak(run, index, s, row)
+            found.peak_pressure[i] = peak(run, index, Contact(s, d, Y, l, r))
 
 
-def pressure_of(run: Run, s: float, state: Any, number: int, place: float) -> float:
-    """Return p of an element of a segment, -inf outside of the contact; `here` has the present accumulators.
+def pressure_of(run: Run, at: Contact, number: int, place: float) -> float:
+    """Return p of an element of a segment, -inf outside of the contact; `element` has the accumulators.
 
     The place is the instant at which the element entered, or X if it was in contact at rest.
     """
-    segment, Y = run.segments[number], state[TRAVEL]
+    segment = run.segments[number]
     at_rest = segment.step == NEVER
     index = NEVER if at_rest else step_at(run, place)
-    p, xi = pressed(run, s, state[DEPTH], Y, place + Y, segment.edge, index, place)
-    slack = 1e-12 * (1.0 + abs(Y))
-    return p if state[LEFT] - slack <= xi <= state[RIGHT] + slack else -math.inf
+    p, xi = pressed(run, at.s, at.d, at.Y, place + at.Y, segment.edge, index, place)
+    slack = 1e-12 * (1.0 + abs(at.Y))
+    return p if at.l - slack <= xi <= at.r + slack else -math.inf
 
 
-def peak(run: Run, index: int, s: float, state: Any) -> float:
+def peak(run: Run, index: int, at: Contact) -> float:
     """Return the largest pressure: of samples in each segment, refined by golden sections about the best."""
-    largest, step, fastest = 0.0, run.steps[index], math.inf
-    for i in range(len(run.arms)):
-        fastest = min(fastest, LAYER * run.arms[i, TIME])
+    largest, step, fastest, s = 0.0, run.steps[index], math.inf, at.s
+    for i in range(run.given.arms):
+        fastest = min(fastest, LAYER * run.arms.relaxation_time[i])
     for i in range(step.first, step.first + step.count):
         number = run.chain[i]
         segment = run.segments[number]
         at_rest = segment.step == NEVER
-        low = max(segment.X_a, state[LEFT] - state[TRAVEL]) if at_rest else segment.a
-        high = min(segment.X_b, state[RIGHT] - state[TRAVEL]) if at_rest else min(segment.b, s)
+        low = max(segment.X_a, at.l - at.Y) if at_rest else segment.a
+        high = min(segment.X_b, at.r - at.Y) if at_rest else min(segment.b, s)
         if not at_rest:
-            low, high = inside(run, s, state, number, low, high)
+            low, high = inside(run, at, number, low, high)
         if not high - low > ROUNDING * s:
             continue
         j = NEVER if at_rest else step_at(run, low)
-        best, before, after, last, at = -math.inf, low, high, low, low
+        best, before, after, last, place = -math.inf, low, high, low, low
         while True:
-            p = pressure_of(run, s, state, number, at)
+            p = pressure_of(run, at, number, place)
             if p > best:
                 best, before, after = p, last, math.inf
             elif after == math.inf:
-                after = at
-            if at >= high:
+                after = place
+            if place >= high:
                 break
-            last = at
+            last = place
             width = (high - low) / (2 * SAMPLES)
             if not at_rest:
-                while j < index and run.steps[j + 1].start <= at:
+                while j < index and run.steps[j + 1].start <= place:
                     j += 1
                 width = min(run.steps[j].span, high - low) / SAMPLES
-                width = min(width, max(0.5 * (s - at), fastest))
-            at = at + width if at + 1.5 * width < high else high  # not twice, but for rounding
+                width = min(width, max(0.5 * (s - place), fastest))
+            # not twice, but for rounding
+            place = place + width if place + 1.5 * width < high else high
         largest = max(largest, best)
         if best > 0.0:
-            largest = max(largest, golden(run, s, state, number, before, min(after, high)))
+            largest = max(largest, golden(run, at, number, before, min(after, high)))
     return largest
 
 
-def inside(
-    run: Run, s: float, state: Any, number: int, low: float, high: float
-) -> tuple[float, float]:
+def inside(run: Run, at: Contact, number: int, low: float, high: float) -> tuple[float, float]:
     """Return the instants between which the elements of a segment entered that are in contact."""
-    first, last = (LEFT, RIGHT) if run.segments[number].edge == 1 else (RIGHT, LEFT)
-    if pressure_of(run, s, state, number, low) == -math.inf:
-        low = instant_of(run, number, s, state[first] - state[TRAVEL])
-    if pressure_of(run, s, state, number, high) == -math.inf:
-        high = instant_of(run, number, s, state[last] - state[TRAVEL])
+    first, last = (at.l, at.r) if run.segments[number].edge == 1 else (at.r, at.l)
+    if pressure_of(run, at, number, low) == -math.inf:
+        low = instant_of(run, number, at.s, first - at.Y)
+    if pressure_of(run, at, number, high) == -math.inf:
+        high = instant_of(run, number, at.s, last - at.Y)
     return low, high
 
 
-def golden(run: Run, s: float, state: Any, number: int, low: float, high: float) -> float:
+def golden(run: Run, at: Contact, number: int, low: float, high: float) -> float:
     """Return the largest pressure between two places of a segment: by golden sections, then a parabola."""
     one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    f, g = (pressure_of(run, s, state, number, one), pressure_of(run, s, state, number, two))
+    f, g = (pressure_of(run, at, number, one), pressure_of(run, at, number, two))
     beside, h = two, g
     for _ in range(REFINED):
         if f > g:
             beside, h, high, two, g = two, g, two, one, f
             one = high - GOLDEN * (high - low)
-            f = pressure_of(run, s, state, number, one)
+            f = pressure_of(run, at, number, one)
         else:
             beside, h, low, one, f = one, f, one, two, g
             two = low + GOLDEN * (high - low)
-            g = pressure_of(run, s, state, number, two)
+            g = pressure_of(run, at, number, two)
     largest = max(f, g)
     fall, rise = (f - h) * (one - two), (f - g) * (one - beside)
     if min(f, g, h) > -math.inf and fall != rise:
         top = one - 0.5 * (fall * (one - two) - rise * (one - beside)) / (fall - rise)
-        largest = max(largest, pressure_of(run, s, state, number, min(max(top, low), high)))
+        largest = max(largest, pressure_of(run, at, number, min(max(top, low), high)))
     return largest
 
 
@@ -175,59 +183,57 @@ def instant_of(run: Run, number: int, s: float, X: float) -> float:
 def _place(run: Run, edge: int, s: float) -> float:
     index = step_at(run, s)
     _, _, Y, _, theta = motion(run, index, s)
-    return value(run.rows[index, EDGES + edge], theta) - Y
+    return value(run.polynomials.edges[index, :, edge], theta) - Y
 
 
-def pressure(run: Run, s: float, state: Any, xi: float) -> float:
+def pressure(run: Run, at: Contact, xi: float) -> float:
     """Return the pressure at one place, zero outside of the contact."""
-    index, X = step_at(run, s), xi - state[TRAVEL]
+    index, X = step_at(run, at.s), xi - at.Y
     step = run.steps[index]
-    if not state[LEFT] <= xi <= state[RIGHT]:
+    if not at.l <= xi <= at.r:
         return 0.0
-    accumulated(run, index, (s - step.start) / step.span)
+    accumulated(run, index, (at.s - step.start) / step.span)
     largest = 0.0
     for i in range(step.first, step.first + step.count):
         segment = run.segments[run.chain[i]]
         if segment.step == NEVER:
             if segment.X_a <= X <= segment.X_b:
-                largest = max(largest, pressure_of(run, s, state, run.chain[i], X))
+                largest = max(largest, pressure_of(run, at, run.chain[i], X))
         else:
-            sigma = instant_of(run, run.chain[i], s, X)
+            sigma = instant_of(run, run.chain[i], at.s, X)
             if not math.isnan(sigma):
-                largest = max(largest, pressure_of(run, s, state, run.chain[i], sigma))
+                largest = max(largest, pressure_of(run, at, run.chain[i], sigma))
     return largest
 
 
-def surface(run: Run, s: float, state: Any, xi: float) -> float:
+def compression(run: Run, at: Contact, xi: float) -> float:
     """Return the compression at one place: under the indenter, or where an edge left the ground."""
-    index, X = step_at(run, s), xi - state[TRAVEL]
-    if state[LEFT] <= xi <= state[RIGHT]:
-        return float(state[DEPTH] - xi * xi)
+    index, X = step_at(run, at.s), xi - at.Y
+    if at.l <= xi <= at.r:
+        return float(at.d - xi * xi)
     for k in range(2):
         side = run.steps[index].sides[k]
-        if side.state != FREE and (xi < state[LEFT]) != (k == 0):
+        if side.state != FREE and (xi < at.l) != (k == 0):
             continue
         number = side.own if side.state == PEELING else side.segment
         while number != NEVER:
             segment = run.segments[number]
-            sigma = math.nan if segment.step == NEVER else instant_of(run, number, s, X)
+            sigma = math.nan if segment.step == NEVER else instant_of(run, number, at.s, X)
             if not math.isnan(sigma):
-                gap, _ = free(
-                    run, s, state[DEPTH], state[TRAVEL], segment.edge, step_at(run, sigma), sigma
-                )
-                return gap + state[DEPTH] - xi * xi
+                gap, _ = free(run, at.s, at.d, at.Y, segment.edge, step_at(run, sigma), sigma)
+                return gap + at.d - xi * xi
             number = segment.next
     return 0.0
 
 
-WALK, STATES, WITHOUT_PEAKS, PRESSURE, SURFACE = range(5)
+WALK, STATES, WITHOUT_PEAKS, PRESSURE, COMPRESSION = range(5)
 """Tasks of `perform`."""
 
 
 def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
-    """Perform a task, the only entry to the kernels: walk, or write states at times, pressures or heights.
+    """Perform a task, the only entry to the kernels: walk, or write states at times, or p or u at places.
 
-    The latter are at the places that follow one time, whose state is in the first row.
+    These places follow one time, whose state `found` has first.
     """
     one = Run(run.given[0], run.now[0], *run[2:])
     if task == WALK:
@@ -235,9 +241,11 @@ def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
     if task in (STATES, WITHOUT_PEAKS):
         states(one, times, found, task == STATES)
     else:
+        l, r = found.edges[0, 0], found.edges[0, 1]
+        at = Contact(times[0], found.depth[0], found.way[0], l, r)
         for i in range(1, len(times)):
             if task == PRESSURE:
-                found[i, 0] = pressure(one, times[0], found[0], times[i])
+                found.pressure[i] = pressure(one, at, times[i])
             else:
-                found[i, 0] = surface(one, times[0], found[0], times[i])
+                found.compression[i] = compression(one, at, times[i])
     return 0

@@ -8,22 +8,12 @@ element of them, or above ground that was never touched, vanishes first.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.continuum.prony.contact import (
-    EDGES,
-    FORCES,
-    FREE,
     GOLDEN,
-    MOMENTS,
-    NEVER,
-    OWN,
-    ROWS,
-    SIDES,
-    STRESSES,
-    TOUCHING,
     at_far_end,
     derivative,
     edge_at,
@@ -33,8 +23,9 @@ from kvtheory.models.continuum.prony.contact import (
     step_of,
     value,
 )
+from kvtheory.models.continuum.prony.records import FREE, NEVER, SIDES, TOUCHING, Run
 from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, turn
-from kvtheory.models.continuum.prony.step import INDEX, SIGMA, prepare, solve
+from kvtheory.models.continuum.prony.step import prepare, solve
 from kvtheory.scene.base_motion import evaluate
 
 CLOSED = 0.03
@@ -49,9 +40,14 @@ bisections for the instant at which the gap vanishes."""
 SAME = 1e-12
 """Relative distance of two places that counts as rounding."""
 
-Run = Any
-Gap = tuple[float, int, int, float]
-"""The least gap; on which side it is, in which segment, or beyond all, and at which instant, or X, there."""
+
+class Gap(NamedTuple):
+    """A gap, on which side it is, in which segment, or beyond all, and at which instant, or X, there."""
+
+    size: float
+    side: int
+    segment: int
+    at: float
 
 
 def closed(run: Run) -> float:
@@ -69,8 +65,8 @@ def time_left(run: Run) -> float:
     now = run.now
     if now.steps == 0:
         return math.inf
-    rows = run.rows[now.steps - 1]
-    rate = derivative(rows[EDGES + 1], 1.0) - derivative(rows[EDGES], 1.0)
+    edges = run.polynomials.edges[now.steps - 1]
+    rate = derivative(edges[:, 1], 1.0) - derivative(edges[:, 0], 1.0)
     if not rate < 0.0 or not now.smooth:
         return math.inf
     width = now.sides[1].xi - now.sides[0].xi
@@ -91,14 +87,15 @@ def close(run: Run, span: float) -> bool:
             turn(run, k)
     prepare(run, span)
     X = 0.5 * (here(run, 0) + here(run, 1))
-    for i in over(len(run.arms)):
-        mean = 0.5 * (run.state[i, STRESSES] + run.state[i, STRESSES + 1])
-        run.here[i, STRESSES], run.here[i, STRESSES + 1] = mean, mean
-        run.here[i, FORCES] = run.here[i, MOMENTS] = 0.0 * mean
+    stages, j = run.arm_stages, run.given.stages - 1
     if not _without_forces(run, 0.5 * (l + r)):
         return False
-    xi = X + motion(run, now.steps, now.s + span)[2]
-    _end_with(run, l, r, xi, xi)
+    for i in over(run.given.arms):
+        mean = 0.5 * (run.state.stress_at_edge[i, 0] + run.state.stress_at_edge[i, 1])
+        stages.stress_at_edge[i, j, 0] = stages.stress_at_edge[i, j, 1] = mean
+        stages.force[i, j] = stages.moment[i, j] = 0.0 * mean
+    _, _, Y, _, _ = motion(run, now.steps, now.s + span)
+    _end_with(run, l, r, X + Y, X + Y)
     return True
 
 
@@ -110,9 +107,10 @@ def fly(run: Run) -> None:
         side.segment, side.own, side.near = end(run, k), NEVER, here(run, k)
         side.state, now.kinked[k] = FREE, 1
     now.count, now.smooth = 0, False
-    for i in over(len(run.arms)):
-        for row in range(STRESSES, OWN):
-            run.state[i, row] = 0.0
+    for i in over(run.given.arms):
+        run.state.force[i] = run.state.moment[i] = 0.0
+        for k in range(2):
+            run.state.stress_at_edge[i, k] = 0.0
 
 
 def _without_forces(run: Run, xi: float) -> bool:
@@ -121,35 +119,37 @@ def _without_forces(run: Run, xi: float) -> bool:
     for k in range(2):
         now.sides[k].state = FREE
         for j in range(n):
-            run.stages[EDGES + k, j] = xi
-    for i in over(len(run.arms)):
-        for row in range(STRESSES, OWN):
-            for j in range(n):
-                run.arm_stages[i, row, j] = 0.0
+            run.stages.edges[j, k] = xi
+    for i in over(run.given.arms):
+        for j in range(n):
+            run.arm_stages.force[i, j] = run.arm_stages.moment[i, j] = 0.0
+            for k in range(2):
+                run.arm_stages.stress_at_edge[i, j, k] = 0.0
     return solve(run)
 
 
 def _end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
-    """Let edges, stresses and moments change uniformly over a step, to those in `here`."""
-    now, n, rows, memory = (
-        run.now,
-        run.given.stages,
-        run.rows[run.now.steps],
-        run.memory[run.now.steps],
-    )
-    for k, first, last in ((0, l, l_end), (1, r, r_end)):
-        for m in range(n + 1):
-            rows[EDGES + k, m] = 0.0
-        rows[EDGES + k, 0], rows[EDGES + k, 1] = first, last - first
-        run.stages[EDGES + k, n - 1] = last
-    for i in over(len(run.arms)):
-        for row in range(STRESSES, OWN):
-            for m in range(n + 1):
-                memory[i, row, m] = 0.0
-            memory[i, row, 0] = run.state[i, row]
-            memory[i, row, 1] = run.here[i, row] - run.state[i, row]
-            run.arm_stages[i, row, n - 1] = run.here[i, row]
+    """Let edges, stresses and moments change uniformly over a step, to those at the last stage."""
+    now, n, state, last = run.now, run.given.stages, run.state, run.arm_stages
+    edges = run.polynomials.edges[now.steps]
+    for k, first, end_of in ((0, l, l_end), (1, r, r_end)):
+        _uniform(edges[:, k], first, end_of)
+        run.stages.edges[n - 1, k] = end_of
+    memory, index = run.memory, now.steps
+    for i in range(run.given.arms):
+        _uniform(memory.force[index, i], state.force[i], last.force[i, n - 1])
+        _uniform(memory.moment[index, i], state.moment[i], last.moment[i, n - 1])
+        for k in range(2):
+            first, end_of = state.stress_at_edge[i, k], last.stress_at_edge[i, n - 1, k]
+            _uniform(memory.stress_at_edge[index, i, :, k], first, end_of)
     now.smooth = False
+
+
+def _uniform(powers: Any, first: float, last: float) -> None:
+    """Write the polynomial that changes uniformly over a step."""
+    for m in range(len(powers)):
+        powers[m] = 0.0
+    powers[0], powers[1] = first, last - first
 
 
 def distance(run: Run) -> float:
@@ -164,18 +164,18 @@ def distance(run: Run) -> float:
 
 def least_gap(run: Run, s: float, d: float, Y: float) -> Gap:
     """Return the least gap between the indenter and the ground, at a time in flight."""
-    found, side, number, at = math.inf, 0, NEVER, 0.0
+    found = Gap(math.inf, 0, NEVER, 0.0)
     for k in range(2):
         segment, outer = run.now.sides[k].segment, run.now.sides[k].near
         while segment != NEVER:
-            gap, x = _gap_above(run, segment, s, d, Y, found)
-            if gap < found:
-                found, side, number, at = gap, k, segment, x
+            gap, x = _gap_above(run, segment, s, d, Y, found.size)
+            if gap < found.size:
+                found = Gap(gap, k, segment, x)
             outer, segment = far_end(run.segments[segment], k), int(run.segments[segment].next)
         xi = SIDES[k] * max(SIDES[k] * (outer + Y), 0.0)
-        if xi * xi - d < found:
-            found, side, number, at = xi * xi - d, k, NEVER, xi - Y
-    return found, side, number, at
+        if xi * xi - d < found.size:
+            found = Gap(xi * xi - d, k, NEVER, xi - Y)
+    return found
 
 
 def _gap_above(
@@ -239,8 +239,8 @@ def touches_at(run: Run, theta: float, number: int, x: float) -> float:
 def _gap_at(run: Run, number: int, x: float, s: float, d: float, Y: float) -> float:
     """Return the gap above an element, and write its stresses."""
     if number == NEVER or run.segments[number].step == NEVER:
-        for i in over(len(run.arms)):
-            run.here[i, STRESSES] = 0.0
+        for i in over(run.given.arms):
+            run.element.stress[i] = 0.0
         return float((x + Y) * (x + Y) - d)
     part = run.segments[number]
     return free(run, s, d, Y, part.edge, step_of(run, part.edge, part.step, x), x)[0]
@@ -256,11 +256,11 @@ def land(run: Run, side: int, number: int, x: float) -> None:
         part = run.segments[number]
         index = step_of(run, part.edge, part.step, x)
         _, _, Y_e, _, theta = motion(run, index, x)
-        X = value(run.rows[index, EDGES + part.edge], theta) - Y_e
+        X = value(run.polynomials.edges[index, :, part.edge], theta) - Y_e
     for k in range(2):
         now.sides[k].xi, now.sides[k].sigma = X + Y, x
-        for i in over(len(run.arms)):
-            run.state[i, STRESSES + k] = run.here[i, STRESSES]
+        for i in over(run.given.arms):
+            run.state.stress_at_edge[i, k] = run.element.stress[i]
     inward, part_of = now.sides[1 - side].segment, now.sides[side].segment
     outer = now.sides[side].near
     while part_of != number:  # the ground between, met in the other direction
@@ -304,7 +304,7 @@ def open_contact(run: Run, span: float) -> bool:
     prepare(run, span)
     if not _without_forces(run, xi):
         return False
-    s, last = now.s + span, run.stages[ROWS:, n - 1]
+    s, stages, arm_stages, j = now.s + span, run.stages, run.arm_stages, n - 1
     d, _, Y, _, _ = motion(run, now.steps, s)
     for k in range(2):
         side = now.sides[k]
@@ -314,14 +314,13 @@ def open_contact(run: Run, span: float) -> bool:
         place, index, sigma = edge_at(run, k, s, d, Y, xi, side.index, side.sigma)
         if not abs(place) < math.inf:
             return False
-        run.stages[EDGES + k, n - 1], last[INDEX + k], last[SIGMA + k] = place, index, sigma
-        for i in over(len(run.arms)):
-            run.arm_stages[i, STRESSES + k, n - 1] = run.here[i, STRESSES]
-    l, r = run.stages[EDGES, n - 1], run.stages[EDGES + 1, n - 1]
-    for i in over(len(run.arms)):
-        first, second = run.arm_stages[i, STRESSES, n - 1], run.arm_stages[i, STRESSES + 1, n - 1]
-        run.here[i, STRESSES], run.here[i, STRESSES + 1] = first, second
-        run.here[i, FORCES] = 0.5 * (r - l) * (first + second)
-        run.here[i, MOMENTS] = 0.5 * (r - l) * (l * first + r * second)
+        stages.edges[j, k], stages.entry_step[j, k], stages.entry_time[j, k] = place, index, sigma
+        for i in over(run.given.arms):
+            arm_stages.stress_at_edge[i, j, k] = run.element.stress[i]
+    l, r = stages.edges[j, 0], stages.edges[j, 1]
+    for i in over(run.given.arms):
+        first, second = arm_stages.stress_at_edge[i, j, 0], arm_stages.stress_at_edge[i, j, 1]
+        arm_stages.force[i, j] = 0.5 * (r - l) * (first + second)
+        arm_stages.moment[i, j] = 0.5 * (r - l) * (l * first + r * second)
     _end_with(run, xi, xi, l, r)
     return bool(l < r)

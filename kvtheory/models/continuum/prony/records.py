@@ -1,16 +1,23 @@
 """A transient on a Prony series in progress: its records, interpreted or compiled."""
 
 import math
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.prony.contact import NEVER, OWN, ROWS, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.records import blanks, new, record, structured
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.theory.laws import Element
+
+PEELING, TOUCHING, FREE = 0, 1, 2
+"""States of an edge; both are free in flight."""
+SIDES = (-1.0, 1.0)
+NEVER = -1
+"""Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest, or free
+ground between two places that was never touched."""
 
 ROOM = 48
 """Initial capacity in steps."""
@@ -29,48 +36,82 @@ SEGMENT = record(
 """Edge and first step of a segment, the next one outward on free ground, the instants and X at its ends."""
 STEP = record(
     start="f8", span="f8", depth="f8", along="f8", piece="i8", kinked=("i8", (2,)), first="i8",
-    count="i8", since="i8", sides=(SIDE, (2,)),
+    count="i8", restart="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
-have a kink there; where the contact's segments are in `chain`, and their number; the first step of the count
-of the accumulators; both sides at its start."""
+have a kink there; where the contact's segments are in `chain`, and their number; the first step since the
+last restart of the accumulators; both sides at its start."""
 NOW = record(
     s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
-    chain="i8", first="i8", count="i8", since="i8", toggles="i8", rejected="i8", evaluations="i8",
+    chain="i8", first="i8", count="i8", restart="i8", toggles="i8", rejected="i8", evaluations="i8",
     kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Time, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
-steps, segments and entries in `chain`; the contact there; the first step of the count of the accumulators in
-`Run.here`; the changes at this instant, numbers of rejected
-steps and evaluations; whether the histories of the edges have a kink here, and whether the last step
-continues smoothly; both sides."""
+steps, segments and entries in `chain`; the contact there; the first step since the last restart of the
+accumulators in `Run.element`; the changes at this instant, numbers of rejected steps and evaluations; whether
+the histories of the edges have a kink here, and whether the last step continues smoothly; both sides."""
 GIVEN = record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
-    counted="f8", first_step="f8", longest="f8", grow="f8", stages="i8", fixed="?", sprung="?",
+    last_power="f8", farthest="f8", first_step="f8", longest="f8", grow="f8", stages="i8", arms="i8",
+    fixed="?", sprung="?",
 )  # fmt: skip
 """Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; sum
-K_i/K; the largest sum of A_i that a step may reach; controls of the step size; number of stages; whether the
-indenter is fixed, and held by a spring."""
+K_i/K; the last coefficient of a polynomial in Legendre's over that of its last power; the largest sum of A_i
+that a step may reach; controls of the step size; numbers of stages and of arms; whether the indenter is
+fixed, and held by a spring."""
+
+
+METHOD = record(A="f8", inverse="f8", powers="f8")
+"""An entry of A, of its inverse, and of the matrix of the powers of theta from the stages."""
+ARM = record(stiffness="f8", relaxation_time="f8", mode_rate="f8", mode_share="f8")
+"""k_i and T_i of an arm; rate and share of a free mode."""
+_OF_CONTACT: Any = {
+    "accumulated_depth": "f8", "accumulated_slide": "f8", "stress_at_edge": ("f8", (2,)),
+    "force": "f8", "moment": "f8",
+}  # fmt: skip
+ARM_STATE = record(**_OF_CONTACT)
+"""A_i, B_i, s_e at both edges, F_i and M_i of an arm; or a coefficient of each as a polynomial in a step."""
+ARM_STAGE = record(**_OF_CONTACT, source="f8")
+"""The same at a stage, and the source of the equation that is being solved, see `step.relax`."""
+ELEMENT = record(
+    accumulated_depth="f8", accumulated_slide="f8", stress="f8", stress_at_edge="f8", mode="f8"
+)  # fmt: skip
+"""Of an arm of one element: A_i and B_i at this time, s_i, s_i as an edge passed the element, and a free
+mode."""
+POLYNOMIAL = record(depth_rate="f8", offset_rate="f8", edges=("f8", (2,)))
+"""A coefficient of d', x' and both xi_e as polynomials over a step."""
+STAGE = record(
+    node="f8", of_start="f8", time="f8", depth_rate="f8", offset_rate="f8", depth="f8", offset="f8",
+    way="f8", sliding_velocity="f8", edges=("f8", (2,)), entry_time=("f8", (2,)),
+    entry_step=("i8", (2,)), edge_velocity=("f8", (2,)),
+)  # fmt: skip
+"""Node of a stage and the sum of its row of A^-1; s, d', x', d, x; Y and lambda of the base under the
+indenter; of both edges xi_e, the instant and the step in which the element there passed an edge, and the
+velocity through the material."""
+UNKNOWN = record(change="f8", move="f8", residual="f8", before="f8", image="f8", back="f8")
+"""Of an unknown of Broyden's method: its change over the stage, and the last move; the residual, and that
+before this move; the inverse Jacobian times their difference, and the move times the inverse Jacobian."""
 
 
 class Run(NamedTuple):
     """A transient in progress; its outcome are `steps`, their polynomials, `segments` and `chain`.
 
-    Outside the kernels `given` and `now` hold one record, inside they are the record itself. `rows` are the
-    polynomials of a step, `memory` those of each arm. `method` has A, its inverse, the powers of theta from
-    the stages, and nodes, row sums of the inverse and a constant; `arms` are as in `contact`, `state` has
-    their rows at present. `from_modes` gives the stresses of free ground from the rates of the dampers,
-    s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the step: `stages`
-    and `arm_stages` are as `rows` and `memory`, but values at the stages, and what else belongs to a stage;
-    `filters` and `sources` those of the arms; `squares` and `vectors` those of Broyden's method; `here` is as
-    `state`, of one element.
+    Outside the kernels `given` and `now` hold one record, inside they are the record itself. What has entries
+    for arms, stages, coefficients or unknowns is read by its name before the indices: `stages.edges[j, k]`.
+    Compiled, it is a structured array; interpreted, an object with an array for each name, see `named`.
+
+    `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
+    the arms, `state` (arms) is the present one. `from_modes` gives the stresses of free ground from the rates
+    of the dampers, s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the
+    step: `stages` and `arm_stages` (arms, stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and
+    `unknowns` of Broyden's method, and one `element` (arms).
     """
 
     given: Any
     now: Any
     pieces: Any
     steps: Any
-    rows: Any
+    polynomials: Any
     memory: Any
     segments: Any
     chain: Any
@@ -82,14 +123,34 @@ class Run(NamedTuple):
     stages: Any
     arm_stages: Any
     filters: Any
-    sources: Any
-    squares: Any
-    vectors: Any
-    here: Any
+    jacobian: Any
+    inverse_jacobian: Any
+    unknowns: Any
+    element: Any
 
 
-PLACES, VECTORS = 12, 6
-"""Number of other values of a stage, and of vectors."""
+RECORDS = {"given": GIVEN, "now": NOW, "steps": STEP, "segments": SEGMENT}
+"""Types of the records of a run."""
+NAMED = {
+    "polynomials": POLYNOMIAL, "memory": ARM_STATE, "method": METHOD, "arms": ARM, "state": ARM_STATE,
+    "stages": STAGE, "arm_stages": ARM_STAGE, "unknowns": UNKNOWN, "element": ELEMENT,
+}  # fmt: skip
+"""Types of what is read by name before its indices."""
+
+
+def named(array: Any) -> Any:
+    """Return an object with a view of a structured array for each of its fields."""
+    return SimpleNamespace(**{name: array[name] for name in array.dtype.names})
+
+
+def together(views: Any, kind: np.dtype[Any]) -> Any:
+    """Return a structured array with these fields; it may be one already."""
+    if isinstance(views, np.ndarray):
+        return views
+    found = np.zeros(vars(views)[(kind.names or ("",))[0]].shape, kind)
+    for name, values in vars(views).items():
+        found[name] = values
+    return found
 
 
 def begin(
@@ -102,40 +163,43 @@ def begin(
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
-        float(sum(k for k, _ in arms)), max(FARTHEST * math.sqrt(rtol), 100.0), control.first_step,
-        control.longest, control.grow, n, fixed, spring is not None,
+        float(sum(k for k, _ in arms)), 1.0 / math.comb(2 * n, n),
+        max(FARTHEST * math.sqrt(rtol), 100.0), control.first_step, control.longest, control.grow, n,
+        count, fixed, spring is not None,
     )  # fmt: skip
     element = Element.of(1.0, 0.0, arms)
     k, T = np.array(arms, dtype=float).T
-    columns = k, T, element.rates, element.shares
-    method, tableau = np.zeros((4, n, n)), radau(n)
-    method[:3] = tableau.A, tableau.inverse, tableau.powers
-    method[3, :3] = tableau.nodes, method[1].sum(axis=1), np.full(n, 1.0 / math.comb(2 * n, n))
+    tableau, stages = radau(n), np.zeros(n, STAGE)
+    stages["node"], stages["of_start"] = tableau.nodes, np.array(tableau.inverse).sum(axis=1)
+    method, own_arms = np.zeros((n, n), METHOD), np.zeros(count, ARM)
+    method["A"], method["inverse"], method["powers"] = tableau.A, tableau.inverse, tableau.powers
+    own_arms["stiffness"], own_arms["relaxation_time"] = k, T
+    own_arms["mode_rate"], own_arms["mode_share"] = element.rates, element.shares
     run = Run(
         given=[new(GIVEN, *given)],
         now=blanks(1, NOW),
         pieces=drive.rows,
         steps=blanks(1 if arrays else ROOM, STEP),
-        rows=np.zeros((ROOM, ROWS, n + 1)),
-        memory=np.zeros((ROOM, count, OWN, n + 1)),
+        polynomials=np.zeros((ROOM, n + 1), POLYNOMIAL),
+        memory=np.zeros((ROOM, count, n + 1), ARM_STATE),
         segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64),
         method=method,
-        arms=np.stack(columns, axis=1),
+        arms=own_arms,
         to_modes=np.ascontiguousarray(element.to_modes),
         from_modes=-(k * T)[:, None] * element.from_modes * element.rates,
-        state=np.zeros((count, OWN)),
-        stages=np.zeros((ROWS + PLACES, n)),
-        arm_stages=np.zeros((count, OWN, n)),
+        state=np.zeros(count, ARM_STATE),
+        stages=stages,
+        arm_stages=np.zeros((count, n), ARM_STAGE),
         filters=np.zeros((count, n, n)),
-        sources=np.zeros((count, n)),
-        squares=np.zeros((2, unknowns, unknowns)),
-        vectors=np.zeros((VECTORS, unknowns)),
-        here=np.zeros((count, OWN)),
+        jacobian=np.zeros((unknowns, unknowns)),
+        inverse_jacobian=np.zeros((unknowns, unknowns)),
+        unknowns=np.zeros(unknowns, UNKNOWN),
+        element=np.zeros(count, ELEMENT),
     )
     _rest(run._replace(now=run.now[0]))
     if not arrays:
-        return run
+        return run._replace(**{name: named(getattr(run, name)) for name in NAMED})
     run = as_arrays(run)
     return run._replace(steps=_longer(run.steps, ROOM), segments=_longer(run.segments, 2 * ROOM))
 
@@ -147,8 +211,9 @@ def _longer(rows: Any, count: int) -> Any:
 
 def as_arrays(run: Run) -> Run:
     """Return a run, new or in progress, with arrays for compiled kernels."""
-    kinds = {"given": GIVEN, "now": NOW, "steps": STEP, "segments": SEGMENT}
-    return run._replace(**{n: structured(getattr(run, n), kind) for n, kind in kinds.items()})
+    found = {name: structured(getattr(run, name), kind) for name, kind in RECORDS.items()}
+    found |= {name: together(getattr(run, name), kind) for name, kind in NAMED.items()}
+    return run._replace(**found)
 
 
 def _rest(run: Run) -> None:
@@ -179,15 +244,16 @@ def _rest(run: Run) -> None:
 
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
-    more = {"steps": STEP, "segments": SEGMENT}
-    wider: dict[str, Any] = {
-        name: _longer(rows := getattr(run, name), 2 * len(rows))
-        for name in ("rows", "memory", "chain")
-    }
-    for name, kind in more.items():
+    wider: dict[str, Any] = {"chain": _longer(run.chain, 2 * len(run.chain))}
+    for name in ("polynomials", "memory"):
+        rows = getattr(run, name)
+        array = together(rows, NAMED[name])
+        more = _longer(array, 2 * len(array))
+        wider[name] = more if rows is array else named(more)
+    for name in ("steps", "segments"):
         records = getattr(run, name)
         if isinstance(records, list):
-            wider[name] = records + blanks(len(records), kind)
+            wider[name] = records + blanks(len(records), RECORDS[name])
         else:
             wider[name] = _longer(records, 2 * len(records))
     return run._replace(**wider)

@@ -1,16 +1,13 @@
 """The segments of ground that the edges pass: how they begin and end, and in which one an edge moves."""
 
 import math
-from typing import Any
 
-from kvtheory.models.continuum.prony.contact import NEVER, PEELING, TOUCHING
+from kvtheory.models.continuum.prony.records import NEVER, PEELING, TOUCHING, Run
 from kvtheory.scene.base_motion import evaluate
 
 INSTANT, SHORT = 1e-13, 0.1
 """Length of a segment in time, relative to the run, or in space, as a share of the tolerance, below which it
 counts as none."""
-
-Run = Any
 
 
 def here(run: Run, k: int) -> float:

@@ -19,9 +19,15 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTER,
     TIGHTEST,
 )
-from kvtheory.models.continuum.prony import evaluation as e_
-from kvtheory.models.continuum.prony.contact import DEPTHS, FREE, PEELING, STIFFNESS, TOUCHING
 from kvtheory.models.continuum.prony.energy import ledger
+from kvtheory.models.continuum.prony.records import (
+    ARM,
+    ARM_STATE,
+    FREE,
+    PEELING,
+    TOUCHING,
+    together,
+)
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solved_scene import (
@@ -39,12 +45,11 @@ from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
-COLUMNS = {
-    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "depth": e_.DEPTH, "depth_rate": e_.RATE,
-    "normal_force": e_.NORMAL_FORCE, "friction_force": e_.FRICTION_FORCE,
-    "peak_pressure": e_.PEAK_PRESSURE,
-}  # fmt: skip
-"""Column of each quantity in the states that is there as it is."""
+SAME = (
+    "velocity", "sliding_velocity", "depth", "depth_rate", "normal_force", "friction_force",
+    "peak_pressure",
+)  # fmt: skip
+"""Quantities that are in the states as they are."""
 STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 ROUNDING = 4e-16
 """Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
@@ -73,8 +78,8 @@ class SolvedPronyScene(ScaledMotion):
         s, own = np.atleast_1d(self.scaled(time)), scales(self.units)
         states = self.motion.states(s)
         found = self.scaled_series(states, s)
-        left, right = states[[e_.LEFT_STATE, e_.RIGHT_STATE]]
-        leads = found["leading_edge"] == states[e_.LEFT]
+        left, right = states["edge_states"].T
+        leads = found["leading_edge"] == states["edges"][:, 0]
         leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
         return {
             "time": np.asarray(time, dtype=float),
@@ -83,17 +88,21 @@ class SolvedPronyScene(ScaledMotion):
             "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
         }
 
-    def scaled_series(self, states: Array, s: Array) -> dict[str, Array]:
+    def scaled_series(self, states: NDArray[Any], s: Array) -> dict[str, Array]:
         """Return the scaled quantities of states at scaled times."""
         units = self.units
-        found = {name: states[at] for name, at in COLUMNS.items() if name in scales(units)}
+        own = scales(units)
+        found = {
+            name: states["drive_velocity" if name == "velocity" else name]
+            for name in SAME if name in own
+        }  # fmt: skip
         if not units.rigid_drive:
             spring, damping = units.drive_stiffness_number, units.drive_damping_number
-            found["spring_force"] = spring * states[e_.ALONG_X] + damping * states[e_.ALONG_RATE]
-        number = states[e_.NUMBER]
+            found["spring_force"] = spring * states["offset"] + damping * states["offset_rate"]
+        number = states["sliding_velocity"]
         still = [] if number.all() else [self.drive.forward(t) for t in s.tolist()]
         leads = np.where(number == 0.0, still, number > 0.0) if still else number > 0.0
-        left, right = states[[e_.LEFT, e_.RIGHT]]
+        left, right = states["edges"].T
         found["leading_edge"] = np.where(leads, left, right)
         found["trailing_edge"] = np.where(leads, right, left)
         return found
@@ -114,25 +123,25 @@ class SolvedPronyScene(ScaledMotion):
         if not self.drive.highest_speed > 0.0:  # nothing moves
             return ()
         whole = self.motion.states(s, peaks=False)
-        for name, at in (("normal", e_.NORMAL_FORCE), ("friction", e_.FRICTION_FORCE)):
-            k = int(np.argmax(np.abs(whole[at])))
+        for force in ("normal", "friction"):
+            name = f"{force}_force"
+            k = int(np.argmax(np.abs(whole[name])))
             low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
             fine = np.linspace(low, high, 65)
-            k = int(np.argmax(np.abs(self.motion.states(fine, peaks=False)[at])))
-            found.append(Event(float(fine[k]) * self.units.time, f"{name} force maximum"))
+            k = int(np.argmax(np.abs(self.motion.states(fine, peaks=False)[name])))
+            found.append(Event(float(fine[k]) * self.units.time, f"{force} force maximum"))
         return tuple(sorted(found, key=lambda event: event.time))
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m)."""
-        return self._profile(e_.PRESSURE, x, time) * self.units.pressure
+        return self.motion.pressure(self._xi(x), self.scaled(time)) * self.units.pressure
 
     def surface(self, x: ArrayLike, time: float) -> Array:
         """Return the compression u in m of the foundation at the positions `x` (m)."""
-        return self._profile(e_.SURFACE, x, time) * self.units.depth
+        return self.motion.compression(self._xi(x), self.scaled(time)) * self.units.depth
 
-    def _profile(self, task: int, x: ArrayLike, time: float) -> Array:
-        xi = np.asarray(x, dtype=float) / self.units.half_length
-        return self.motion.profile(task, xi, self.scaled(time))
+    def _xi(self, x: ArrayLike) -> Array:
+        return np.asarray(x, dtype=float) / self.units.half_length
 
     def energy(self, time: ArrayLike) -> Ledger:
         """Return the energy ledger in J/m at the times (s)."""
@@ -227,8 +236,9 @@ def certificate(
         return Certificate("estimated", why, {"time": 0.0, **errors}, AT_REST)
     there = fine.scaled_series(other.states(s), s)
     run = other.run
-    deepest = np.abs(run.memory[: other.counts.steps, :, DEPTHS, 0]).max(axis=0)
-    rounding = ROUNDING * float(np.sum(run.arms[:, STIFFNESS] * deepest * (1.0 + deepest)))
+    depths = together(run.memory, ARM_STATE)["accumulated_depth"][: other.counts.steps, :, 0]
+    stiffness, deepest = together(run.arms, ARM)["stiffness"], np.abs(depths).max(axis=0)
+    rounding = ROUNDING * float(np.sum(stiffness * deepest * (1.0 + deepest)))
     own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
     errors, widths = {"time": 0.0}, np.zeros_like(s)
     for each in (here, there):
@@ -269,17 +279,17 @@ def _anywhere(
     s = motion.natural
     here, there = (each.states(s, peaks=False) for each in (motion, other))
 
-    def error(column: int) -> float:
-        apart = np.nanmax(np.abs(here[column] - there[column]), initial=0.0)
-        largest = np.nanmax(np.abs(here[column]), initial=0.0)
+    def error(name: str) -> float:
+        apart = np.nanmax(np.abs(here[name] - there[name]), initial=0.0)
+        largest = np.nanmax(np.abs(here[name]), initial=0.0)
         return float(max(MARGIN * apart, FLOOR * rtol * (1.0 + largest)))
 
-    arm = float(np.nanmax(np.abs(here[[e_.LEFT, e_.RIGHT]]), initial=1.0))
+    arm = float(np.nanmax(np.abs(here["edges"]), initial=1.0))
     way = tolerance * (1.0 + fine.drive.highest_speed) * fine.drive.end
-    way += 0.0 if fine.units.rigid_drive else 2.0 * error(e_.TRAVEL)
-    way += max(error(e_.LEFT), error(e_.RIGHT))
-    surface = (0.0 if fine.units.fixed else error(e_.DEPTH)) + 2.0 * arm * way
-    pressure = (1.0 + 2.0 * float(np.sum(motion.run.arms[:, STIFFNESS]))) * surface
+    way += 0.0 if fine.units.rigid_drive else 2.0 * error("way")
+    way += error("edges")
+    surface = (0.0 if fine.units.fixed else error("depth")) + 2.0 * arm * way
+    pressure = (1.0 + 2.0 * float(np.sum(together(motion.run.arms, ARM)["stiffness"]))) * surface
     hops, others = (_hops(each) for each in (motion, other))
     jump = 0.0
     if len(hops) != len(others):

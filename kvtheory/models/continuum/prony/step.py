@@ -11,32 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.continuum.prony.contact import (
-    ALONG,
-    DEPTHS,
-    EDGES,
-    FORCES,
-    FREE,
-    MOMENTS,
-    PEELING,
-    RATE,
-    ROWS,
-    SLIDES,
-    STRESSES,
-    edge_at,
-    over,
-    total,
-    value,
-)
-from kvtheory.models.continuum.prony.contact import STIFFNESS as STIFF
-from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
+from kvtheory.models.continuum.prony.contact import edge_at, over, total, value
+from kvtheory.models.continuum.prony.records import FREE, PEELING, Run
 from kvtheory.scene.base_motion import evaluate
 
-MOMENT, WAY, SPEED, DEPTH, OFFSET, SIGMA, INDEX, FLUX = 0, 1, 2, 3, 4, 5, 7, 9
-"""What else belongs to a stage: s; Y and lambda of the base under the indenter; d, x; of both edges the
-instant and the step of the element there, and the velocity through the material."""
-CHANGE, MOVE, RESIDUAL, BEFORE, IMAGE, BACK = range(6)
-"""Vectors of Broyden's method."""
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
 may be the last if it does not fall any more."""
@@ -46,14 +24,6 @@ EDGE_SHARE, TINY = 0.03, 1e-12
 for the pressure vanishes at an edge."""
 SHIFT = 4e-14
 """Rounding of the time, relative to the run, where errors are estimated."""
-
-Run = Any
-
-
-A, INVERSE, POWERS, OTHER = range(4)
-LAST = 2
-"""Tables of `Run.method`; the rows of the last are the nodes, the sums of the rows of the inverse, and, in
-`LAST`, the last coefficient of a polynomial in Legendre's over that of its last power."""
 
 
 def moments(l: float, r: float) -> tuple[float, float, float, float]:
@@ -68,29 +38,25 @@ def forces(l: float, r: float, d: float, first: float, second: float) -> tuple[f
     return 0.75 * (d * I_0 - I_2 + first), -1.5 * (d * I_1 - I_3 + second)
 
 
-def at(run: Run, what: int, j: int) -> float:
-    """Return what else belongs to a stage."""
-    return float(run.stages[ROWS + what, j])
-
-
 def prepare(run: Run, span: float) -> None:
     """Begin a step of length `span` from the present state, and make the filters of the arms."""
     now, n, step = run.now, run.given.stages, run.steps[run.now.steps]
     step.start, step.span, step.depth, step.along, step.piece = now.s, span, now.d, now.x, now.piece
-    step.first, step.count, step.since = now.first, now.count, now.since
+    step.first, step.count, step.restart = now.first, now.count, now.restart
     for k in range(2):
         side, kept = now.sides[k], step.sides[k]
         step.kinked[k] = now.kinked[k]
         kept.state, kept.segment, kept.own, kept.xi = side.state, side.segment, side.own, side.xi
-    other = run.stages[ROWS:]
+    stages = run.stages
     for j in range(n):
-        after = run.method[OTHER, 0, j] * span
-        other[MOMENT, j] = now.s + after
+        after = stages.node[j] * span
+        stages.time[j] = now.s + after
         for k in range(2):
             side = now.sides[k]
-            other[INDEX + k, j], other[SIGMA + k, j] = side.index, side.sigma + side.pace * after
-            run.stages[EDGES + k, j] = side.xi
-    for i in over(len(run.arms)):
+            stages.entry_step[j, k] = side.index
+            stages.entry_time[j, k] = side.sigma + side.pace * after
+            stages.edges[j, k] = side.xi
+    for i in over(run.given.arms):
         filter_of(run, i, span)
 
 
@@ -99,8 +65,8 @@ def filter_of(run: Run, i: Any, span: float) -> None:
     n, found = run.given.stages, run.filters
     for j in range(n):
         for k in range(n):
-            found[i, j, k] = run.method[INVERSE, j, k]
-        found[i, j, j] += span / run.arms[i, RELAXATION]
+            found[i, j, k] = run.method.inverse[j, k]
+        found[i, j, j] += span / run.arms.relaxation_time[i]
     for k in range(n):
         pivot = 1.0 / found[i, k, k]
         found[i, k, k] = 1.0
@@ -142,38 +108,37 @@ def invert(square: Any, n: int, inverse: Any) -> bool:
     return True
 
 
-def relax(run: Run, i: Any, row: int) -> None:
-    """Solve y' = q - y/T_i for a row of an arm at the stages, with q in `sources`."""
-    source, n, span = run.sources, run.given.stages, run.steps[run.now.steps].span
+def relax(run: Run, i: Any, values: Any, begin: Any) -> None:
+    """Solve y' = q - y/T_i of an arm at the stages, from `begin`; q is the `source`, y the `values`."""
+    n, span, source = run.given.stages, run.steps[run.now.steps].span, run.arm_stages.source
     for j in range(n):
-        source[i, j] = span * source[i, j] + run.method[OTHER, 1, j] * run.state[i, row]
+        source[i, j] = span * source[i, j] + run.stages.of_start[j] * begin
     for j in range(n):
-        run.arm_stages[i, row, j] = 0.0
+        values[i, j] = 0.0
         for k in range(n):
-            run.arm_stages[i, row, j] += run.filters[i, j, k] * source[i, k]
+            values[i, j] += run.filters[i, j, k] * source[i, k]
 
 
-def interpolate_arm(run: Run, i: Any, row: int) -> Any:
-    """Write the polynomial of an arm through the stages; return its error, as `interpolate` does."""
-    n, found, change = run.given.stages, run.memory[run.now.steps], 0.0
-    found[i, row, 0] = run.state[i, row]
+def interpolate_arm(run: Run, i: Any, found: Any, values: Any, begin: Any) -> Any:
+    """Write the polynomial of an arm through `begin` and the stages; return its error."""
+    n, change = run.given.stages, 0.0
+    found[i, 0] = begin
     for k in range(n):
-        found[i, row, k + 1] = 0.0
+        found[i, k + 1] = 0.0
         for j in range(n):
-            change = run.arm_stages[i, row, j] - run.state[i, row]
-            found[i, row, k + 1] += run.method[POWERS, k, j] * change
-    return np.maximum(uncertain(run, found[i, row, n], change), 0.0)
+            change = values[i, j] - begin
+            found[i, k + 1] += run.method.powers[k, j] * change
+    return np.maximum(uncertain(run, found[i, n], change), 0.0)
 
 
-def interpolate(run: Run, row: int, begin: float) -> float:
-    """Write the polynomial of a row through the stages; return its error."""
-    values, n = run.stages[row], run.given.stages
-    found = run.rows[run.now.steps, row]
+def interpolate(run: Run, found: Any, values: Any, begin: float) -> float:
+    """Write the polynomial through `begin` and the stages; return its error."""
+    n = run.given.stages
     found[0] = begin
     for k in range(n):
         found[k + 1] = 0.0
         for j in range(n):
-            found[k + 1] += run.method[POWERS, k, j] * (values[j] - begin)
+            found[k + 1] += run.method.powers[k, j] * (values[j] - begin)
     return max(uncertain(run, found[n], values[n - 1] - begin), 0.0)
 
 
@@ -183,21 +148,22 @@ def uncertain(run: Run, last: Any, change: Any) -> Any:
     An edge may run through a layer on a fast arm: it is as uncertain as the time, and no shorter step helps.
     """
     shift = SHIFT * run.given.end / run.steps[run.now.steps].span
-    return run.method[OTHER, LAST, 0] * abs(last) - shift * abs(change)
+    return run.given.last_power * abs(last) - shift * abs(change)
 
 
 def solve(run: Run) -> bool:
     """Solve the stages of a step that is prepared; return whether Broyden's method converged."""
     given, now = run.given, run.now
-    free, change, move = 0 if given.fixed else given.stages, run.vectors[CHANGE], run.vectors[MOVE]
-    size, inverse = free + (given.stages if given.sprung else 0), run.squares[1]
+    free, change, move = 0 if given.fixed else given.stages, run.unknowns.change, run.unknowns.move
+    residual, inverse = run.unknowns.residual, run.inverse_jacobian
+    size = free + (given.stages if given.sprung else 0)
     guess(run, free)
     if not evaluate_stages(run, free):
         return False
     if size == 0:
         return True
     linearize(run, free, size)
-    if not invert(run.squares[0], size, inverse):
+    if not invert(run.jacobian, size, inverse):
         return False
     balance(run, free)
     allowed, previous = given.rtol * (1.0 + max(abs(now.v), abs(now.w))), math.inf
@@ -206,7 +172,7 @@ def solve(run: Run) -> bool:
         for i in range(size):
             move[i] = 0.0
             for j in range(size):
-                move[i] -= inverse[i, j] * run.vectors[RESIDUAL, j]
+                move[i] -= inverse[i, j] * residual[j]
             change[i] += move[i]
             largest = max(largest, abs(move[i]))
         if not largest < math.inf or not evaluate_stages(run, free):
@@ -220,8 +186,9 @@ def solve(run: Run) -> bool:
 
 def update(run: Run, free: int, size: int) -> None:
     """Evaluate the residuals after a move, and update the inverse Jacobian by Broyden's formula."""
-    inverse, move, residual = run.squares[1], run.vectors[MOVE], run.vectors[RESIDUAL]
-    before, image, back = run.vectors[BEFORE], run.vectors[IMAGE], run.vectors[BACK]
+    inverse, unknowns = run.inverse_jacobian, run.unknowns
+    move, residual, before = unknowns.move, unknowns.residual, unknowns.before
+    image, back = unknowns.image, unknowns.back
     for i in range(size):
         before[i] = residual[i]
     balance(run, free)
@@ -241,16 +208,22 @@ def update(run: Run, free: int, size: int) -> None:
 
 def guess(run: Run, free: int) -> None:
     """Write initial changes of d' and x' over the stages: those that continue the last step smoothly."""
-    now, given, change, last = run.now, run.given, run.vectors[CHANGE], run.now.steps - 1
-    for first, row, begin, moves in (
-        (0, RATE, now.v, not given.fixed), (free, ALONG, now.w, given.sprung)
-    ):  # fmt: skip
-        if moves:
-            for j in range(given.stages):
-                change[first + j] = 0.0
-                if now.smooth:
-                    theta = (at(run, MOMENT, j) - run.steps[last].start) / run.steps[last].span
-                    change[first + j] = value(run.rows[last, row], theta) - begin
+    now, given = run.now, run.given
+    if not given.fixed:
+        guess_rate(run, 0, run.polynomials.depth_rate[now.steps - 1], now.v)
+    if given.sprung:
+        guess_rate(run, free, run.polynomials.offset_rate[now.steps - 1], now.w)
+
+
+def guess_rate(run: Run, first: int, powers: Any, begin: float) -> None:
+    """Write the changes of one rate, the unknowns from `first` on; `powers` are those of the last step."""
+    now, change = run.now, run.unknowns.change
+    for j in range(run.given.stages):
+        change[first + j] = 0.0
+        if now.smooth:
+            last = run.steps[now.steps - 1]
+            theta = (float(run.stages.time[j]) - last.start) / last.span
+            change[first + j] = value(powers, theta) - begin
 
 
 def evaluate_stages(run: Run, free: int) -> bool:
@@ -267,7 +240,7 @@ def evaluate_stages(run: Run, free: int) -> bool:
     if not find_edge(run, first) or not find_edge(run, 1 - first):
         return False
     for j in range(run.given.stages):
-        if not run.stages[EDGES, j] < run.stages[EDGES + 1, j]:
+        if not run.stages.edges[j, 0] < run.stages.edges[j, 1]:
             return False
     collect(run)
     return True
@@ -275,140 +248,166 @@ def evaluate_stages(run: Run, free: int) -> bool:
 
 def place(run: Run, free: int) -> bool:
     """Evaluate the motion at the stages, and the accumulators; return whether the depth is positive."""
-    now, given, n, change = run.now, run.given, run.given.stages, run.vectors[CHANGE]
-    span, stages, source = run.steps[now.steps].span, run.stages, run.sources
-    other, flies = stages[ROWS:], now.sides[0].state == FREE
+    now, given, n, change = run.now, run.given, run.given.stages, run.unknowns.change
+    span, stages, arm, state = run.steps[now.steps].span, run.stages, run.arm_stages, run.state
+    flies = now.sides[0].state == FREE
     for j in range(n):
-        node = span * run.method[OTHER, 0, j]
+        node = span * stages.node[j]
         d, x = now.d + node * now.v, now.x + node * now.w
         for k in range(n):
             if free:
-                d += span * run.method[A, j, k] * change[k]
+                d += span * run.method.A[j, k] * change[k]
             if given.sprung:
-                x += span * run.method[A, j, k] * change[free + k]
-        stages[RATE, j] = now.v + (change[j] if free else 0.0)
-        stages[ALONG, j] = now.w + (change[free + j] if given.sprung else 0.0)
-        Y, number, _ = evaluate(run.pieces[now.piece], other[MOMENT, j])
-        other[DEPTH, j], other[OFFSET, j] = d, x
-        other[WAY, j], other[SPEED, j] = Y - x, number - stages[ALONG, j]
+                x += span * run.method.A[j, k] * change[free + k]
+        stages.depth_rate[j] = now.v + (change[j] if free else 0.0)
+        stages.offset_rate[j] = now.w + (change[free + j] if given.sprung else 0.0)
+        Y, number, _ = evaluate(run.pieces[now.piece], stages.time[j])
+        stages.depth[j], stages.offset[j] = d, x
+        stages.way[j], stages.sliding_velocity[j] = Y - x, number - stages.offset_rate[j]
         if not (d > 0.0 or flies) or not abs(d) < math.inf:
             return False
-    interpolate(run, RATE, now.v)
-    interpolate(run, ALONG, now.w)
-    for i in over(len(run.arms)):
+    interpolate_rates(run)
+    memory, index = run.memory, now.steps
+    for i in over(given.arms):
+        depth, slide = state.accumulated_depth[i], state.accumulated_slide[i]
         for j in range(n):
-            source[i, j] = 2.0 * other[SPEED, j]
-        relax(run, i, SLIDES)
+            arm.source[i, j] = 2.0 * stages.sliding_velocity[j]
+        relax(run, i, arm.accumulated_slide, slide)
         for j in range(n):
-            source[i, j] = stages[RATE, j] + other[SPEED, j] * run.arm_stages[i, SLIDES, j]
-        relax(run, i, DEPTHS)
-        interpolate_arm(run, i, SLIDES)
-        interpolate_arm(run, i, DEPTHS)
+            moved = stages.sliding_velocity[j] * arm.accumulated_slide[i, j]
+            arm.source[i, j] = stages.depth_rate[j] + moved
+        relax(run, i, arm.accumulated_depth, depth)
+        interpolate_arm(run, i, memory.accumulated_slide[index], arm.accumulated_slide, slide)
+        interpolate_arm(run, i, memory.accumulated_depth[index], arm.accumulated_depth, depth)
     return True
+
+
+def interpolate_rates(run: Run) -> float:
+    """Write the polynomials of d' and x'; return the larger error, relative to the rate."""
+    now, polynomials, stages = run.now, run.polynomials, run.stages
+    rate = interpolate(run, polynomials.depth_rate[now.steps], stages.depth_rate, now.v)
+    along = interpolate(run, polynomials.offset_rate[now.steps], stages.offset_rate, now.w)
+    return max(rate / (1.0 + abs(now.v)), along / (1.0 + abs(now.w)))
+
+
+def interpolate_edge(run: Run, k: int) -> float:
+    """Write the polynomial of an edge; return its error."""
+    found = run.polynomials.edges[run.now.steps, :, k]
+    return interpolate(run, found, run.stages.edges[:, k], run.now.sides[k].xi)
 
 
 def find_edge(run: Run, k: int) -> bool:
     """Find an edge at the stages, its stresses, and its velocity through the material."""
-    n, stages, side = run.given.stages, run.stages, run.now.sides[k]
-    span, other, everything = run.steps[run.now.steps].span, stages[ROWS:], over(len(run.arms))
+    n, stages, arm, element = run.given.stages, run.stages, run.arm_stages, run.element
+    side, index, everything = run.now.sides[k], run.now.steps, over(run.given.arms)
     for j in range(n):
         for i in everything:
-            for row in range(STRESSES):
-                run.here[i, row] = run.arm_stages[i, row, j]
-        xi, index, sigma = edge_at(
-            run, k, other[MOMENT, j], other[DEPTH, j], other[WAY, j], stages[EDGES + k, j],
-            int(other[INDEX + k, j]), other[SIGMA + k, j],
+            element.accumulated_depth[i] = arm.accumulated_depth[i, j]
+            element.accumulated_slide[i] = arm.accumulated_slide[i, j]
+        xi, step, sigma = edge_at(
+            run, k, stages.time[j], stages.depth[j], stages.way[j], stages.edges[j, k],
+            int(stages.entry_step[j, k]), stages.entry_time[j, k],
         )  # fmt: skip
         if not abs(xi) < math.inf:
             return False
-        stages[EDGES + k, j], other[INDEX + k, j], other[SIGMA + k, j] = xi, index, sigma
+        stages.edges[j, k], stages.entry_step[j, k], stages.entry_time[j, k] = xi, step, sigma
         for i in everything:
-            run.arm_stages[i, STRESSES + k, j] = run.here[i, STRESSES]
-    interpolate(run, EDGES + k, side.xi)
+            arm.stress_at_edge[i, j, k] = element.stress[i]
+    interpolate_edge(run, k)
+    found, values = run.memory.stress_at_edge[index, :, :, k], arm.stress_at_edge[:, :, k]
     for i in everything:
-        interpolate_arm(run, i, STRESSES + k)
+        interpolate_arm(run, i, found, values, run.state.stress_at_edge[i, k])
     for j in range(n):
         speed = 0.0
         for m in range(n):
-            speed += run.method[INVERSE, j, m] * (stages[EDGES + k, m] - side.xi)
-        other[FLUX + k, j] = speed / span - other[SPEED, j]
+            speed += run.method.inverse[j, m] * (stages.edges[m, k] - side.xi)
+        stages.edge_velocity[j, k] = speed / run.steps[index].span - stages.sliding_velocity[j]
     return True
 
 
 def collect(run: Run) -> None:
-    """Evaluate the moments at the stages."""
-    n, stages, arm = run.given.stages, run.stages, run.arm_stages
-    other = stages[ROWS:]
-    for row in (FORCES, MOMENTS):
-        for j in range(n):
-            l, r, v, number = (
-                stages[EDGES, j],
-                stages[EDGES + 1, j],
-                stages[RATE, j],
-                other[SPEED, j],
-            )
-            I_0, I_1, I_2, _ = moments(l, r)
-            first, second, change = (
-                -other[FLUX, j],
-                other[FLUX + 1, j],
-                v * I_0 - 2.0 * number * I_1,
-            )
-            if row == MOMENTS:
-                first, second, change = l * first, r * second, v * I_1 - 2.0 * number * I_2
-            for i in over(len(run.arms)):
-                run.sources[i, j] = run.arms[i, STIFF] * change
-                run.sources[i, j] += first * arm[i, STRESSES, j] + second * arm[i, STRESSES + 1, j]
-                if row == MOMENTS:
-                    run.sources[i, j] += number * arm[i, FORCES, j]
-        for i in over(len(run.arms)):
-            relax(run, i, row)
+    """Evaluate the moments at the stages: first F_i, of which M_i has a share."""
+    arm, state = run.arm_stages, run.state
+    collect_sources(run, False)
+    for i in over(run.given.arms):
+        relax(run, i, arm.force, state.force[i])
+    collect_sources(run, True)
+    for i in over(run.given.arms):
+        relax(run, i, arm.moment, state.moment[i])
+
+
+def collect_sources(run: Run, of_moments: bool) -> None:
+    """Write the sources of F_i, or of M_i, at the stages."""
+    stages, arm = run.stages, run.arm_stages
+    for j in range(run.given.stages):
+        l, r, v, number = (
+            stages.edges[j, 0],
+            stages.edges[j, 1],
+            stages.depth_rate[j],
+            stages.sliding_velocity[j],
+        )
+        I_0, I_1, I_2, _ = moments(l, r)
+        first, second = -stages.edge_velocity[j, 0], stages.edge_velocity[j, 1]
+        change = v * I_0 - 2.0 * number * I_1
+        if of_moments:
+            first, second, change = l * first, r * second, v * I_1 - 2.0 * number * I_2
+        for i in over(run.given.arms):
+            at_edges = first * arm.stress_at_edge[i, j, 0] + second * arm.stress_at_edge[i, j, 1]
+            arm.source[i, j] = run.arms.stiffness[i] * change + at_edges
+            if of_moments:
+                arm.source[i, j] += number * arm.force[i, j]
 
 
 def balance(run: Run, free: int) -> None:
     """Write the residuals of the equations of motion at the stages."""
-    given, n, change = run.given, run.given.stages, run.vectors[CHANGE]
-    span, residual = run.steps[run.now.steps].span, run.vectors[RESIDUAL]
+    given, n, change, residual = (
+        run.given,
+        run.given.stages,
+        run.unknowns.change,
+        run.unknowns.residual,
+    )
+    span, stages, arm = run.steps[run.now.steps].span, run.stages, run.arm_stages
     for j in range(n):
         first = second = 0.0
-        for i in over(len(run.arms)):
-            first += total(run.arm_stages[i, FORCES, j])
-            second += total(run.arm_stages[i, MOMENTS, j])
-        d, x = at(run, DEPTH, j), at(run, OFFSET, j)
-        f_z, f_x = forces(run.stages[EDGES, j], run.stages[EDGES + 1, j], d, first, second)
+        for i in over(given.arms):
+            first += total(arm.force[i, j])
+            second += total(arm.moment[i, j])
+        d, x = float(stages.depth[j]), float(stages.offset[j])
+        f_z, f_x = forces(stages.edges[j, 0], stages.edges[j, 1], d, first, second)
         down = along = 0.0
         for k in range(n):
             if free:
-                down += run.method[INVERSE, j, k] * change[k]
+                down += run.method.inverse[j, k] * change[k]
             if given.sprung:
-                along += run.method[INVERSE, j, k] * change[free + k]
+                along += run.method.inverse[j, k] * change[free + k]
         if free:
             residual[j] = given.eps * down - span * (1.0 - f_z - given.kappa * (d - 1.0))
         if given.sprung:
-            held = given.damping * run.stages[ALONG, j] + given.spring * x
+            held = given.damping * stages.offset_rate[j] + given.spring * x
             residual[free + j] = given.eps_x * along - span * (f_x - held)
 
 
 def linearize(run: Run, free: int, size: int) -> None:
     """Write the derivatives of the residuals by the changes, for edges that do not move."""
-    given, n, square = run.given, run.given.stages, run.squares[0]
+    given, n, square, edges = run.given, run.given.stages, run.jacobian, run.stages.edges
     span = run.steps[run.now.steps].span
     for j in range(size):
         for k in range(size):
             square[j, k] = 0.0
     for j in range(n):
-        I_0, I_1, _, _ = moments(run.stages[EDGES, j], run.stages[EDGES + 1, j])
+        I_0, I_1, _, _ = moments(edges[j, 0], edges[j, 1])
         for k in range(n):
             share = 0.0
-            J_0, J_1, J_2, _ = moments(run.stages[EDGES, k], run.stages[EDGES + 1, k])
-            for i in over(len(run.arms)):
-                share += span * total(run.arms[i, STIFF] * run.filters[i, j, k])
+            J_0, J_1, J_2, _ = moments(edges[k, 0], edges[k, 1])
+            for i in over(given.arms):
+                share += span * total(run.arms.stiffness[i] * run.filters[i, j, k])
             of_v, across, of_w = share * J_0, share * J_1, share * J_2
-            step = span * run.method[A, j, k]
+            step = span * run.method.A[j, k]
             if free:
-                square[j, k] = given.eps * run.method[INVERSE, j, k]
+                square[j, k] = given.eps * run.method.inverse[j, k]
                 square[j, k] += span * (given.kappa * step + 0.75 * (I_0 * step + of_v))
             if given.sprung:
-                along = given.eps_x * run.method[INVERSE, j, k]
+                along = given.eps_x * run.method.inverse[j, k]
                 along += span * (given.spring * step + 3.0 * of_w)
                 square[free + j, free + k] = along + (span * given.damping if j == k else 0.0)
             if free and given.sprung:
@@ -422,21 +421,25 @@ def size_of(run: Run) -> float:
     The error is estimated by the last coefficients of the polynomials in Legendre's: of the rates, the edges,
     the compressions that the arms remember, and the moments.
     """
-    now, given, largest, moving, counted = run.now, run.given, 0.0, 0.0, 0.0
-    rate = interpolate(run, RATE, now.v) / (1.0 + abs(now.v))
-    along = interpolate(run, ALONG, now.w) / (1.0 + abs(now.w))
-    width = now.sides[1].xi - now.sides[0].xi
+    now, given, largest, moving, farthest = run.now, run.given, 0.0, 0.0, 0.0
+    rates, memory, state, arm = interpolate_rates(run), run.memory, run.state, run.arm_stages
+    width, index = now.sides[1].xi - now.sides[0].xi, now.steps
     for k in range(2):
-        largest = max(largest, interpolate(run, EDGES + k, now.sides[k].xi))
+        largest = max(largest, interpolate_edge(run, k))
         moving = max(moving, abs(now.sides[k].xi))
     largest *= min(1.0, max(width, given.rtol / (EDGE_SHARE * max(width, TINY))))
     remembered = first = second = 0.0
-    for i in over(len(run.arms)):
-        compressed = interpolate_arm(run, i, DEPTHS) + moving * interpolate_arm(run, i, SLIDES)
-        remembered += total(run.arms[i, STIFF] * compressed)
-        counted += total(abs(run.arm_stages[i, DEPTHS, given.stages - 1]))
-        first += total(interpolate_arm(run, i, FORCES))
-        second += total(interpolate_arm(run, i, MOMENTS))
+    for i in over(given.arms):
+        depth, slide = arm.accumulated_depth, arm.accumulated_slide
+        compressed = interpolate_arm(
+            run, i, memory.accumulated_depth[index], depth, state.accumulated_depth[i]
+        ) + moving * interpolate_arm(
+            run, i, memory.accumulated_slide[index], slide, state.accumulated_slide[i]
+        )
+        remembered += total(run.arms.stiffness[i] * compressed)
+        farthest += total(abs(depth[i, given.stages - 1]))
+        first += total(interpolate_arm(run, i, memory.force[index], arm.force, state.force[i]))
+        second += total(interpolate_arm(run, i, memory.moment[index], arm.moment, state.moment[i]))
     narrow = min(1.0, width)  # what they remember of a narrow contact matters less
-    error = max(rate, along, largest, remembered, narrow * first, narrow * second) / given.rtol
-    return max(error, math.pow(counted / given.counted, 0.5 * given.stages))  # as it is a square
+    error = max(rates, largest, remembered, narrow * first, narrow * second) / given.rtol
+    return max(error, math.pow(farthest / given.farthest, 0.5 * given.stages))  # as it is a square

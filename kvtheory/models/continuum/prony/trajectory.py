@@ -15,14 +15,23 @@ from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.prony import (
     contact,
-    counting,
     evaluation,
     hops,
+    records,
+    restarts,
     segments,
     step,
     walk,
 )
-from kvtheory.models.continuum.prony.records import STEP, Run, as_arrays, begin, with_more_room
+from kvtheory.models.continuum.prony.evaluation import STATE
+from kvtheory.models.continuum.prony.records import (
+    STEP,
+    Run,
+    as_arrays,
+    begin,
+    named,
+    with_more_room,
+)
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.records import readable, structured
 from kvtheory.results.errors import TransientError
@@ -49,7 +58,7 @@ REFUSED = {
 
 KERNEL = Kernel(
     evaluation.perform,
-    (b_, r_, contact, step, segments, counting, hops, walk, evaluation),
+    (b_, r_, records, contact, step, segments, restarts, hops, walk, evaluation),
     SECONDS,
     compiled.INLINED,
 )
@@ -57,7 +66,7 @@ KERNEL = Kernel(
 
 def prepared(run: Run) -> bool:
     """Load or compile the kernels, for a run whose records are arrays; return whether that worked."""
-    return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros((1, 1)))
+    return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros(1, STATE))
 
 
 @dataclass(frozen=True)
@@ -88,27 +97,37 @@ class Trajectory:
         times = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(SUBDIVISIONS) / SUBDIVISIONS)
         return np.append(times.reshape(-1), ends[-1])
 
-    def states(self, s: ArrayLike, *, peaks: bool = True) -> Array:
-        """Return the states at an array of times: a column for each, with the rows of `evaluation`."""
+    def states(self, s: ArrayLike, *, peaks: bool = True) -> NDArray[Any]:
+        """Return the states at an array of times as a structured array, see `evaluation.STATE`."""
         times = np.ascontiguousarray(s, dtype=float)
         task = evaluation.STATES if peaks else evaluation.WITHOUT_PEAKS
-        return self._perform(task, times, np.empty((times.size, evaluation.SIZE))).T
+        return self._perform(task, times, np.zeros(times.size, STATE))
 
-    def profile(self, task: int, xi: Array, s: float) -> Array:
-        """Return the pressure or the compression, a task of `evaluation`, at places and one time."""
-        found = np.empty((1 + xi.size, evaluation.SIZE))
-        found[0] = self.states([s])[:, 0]
-        return self._perform(task, np.append(s, xi), found)[1:, 0].reshape(xi.shape)
+    def pressure(self, xi: Array, s: float) -> Array:
+        """Return the scaled pressure at places and one time."""
+        return self._profile(evaluation.PRESSURE, xi, s)["pressure"].reshape(xi.shape)
+
+    def compression(self, xi: Array, s: float) -> Array:
+        """Return the scaled compression of the foundation at places and one time."""
+        return self._profile(evaluation.COMPRESSION, xi, s)["compression"].reshape(xi.shape)
+
+    def _profile(self, task: int, xi: Array, s: float) -> Any:
+        found = np.zeros(1 + xi.size, STATE)
+        found[0] = self.states([s])[0]
+        return self._perform(task, np.append(s, xi), found)[1:]
 
     @cached_property
     def arrays(self) -> Run:
         """The run with arrays for compiled kernels."""
         return as_arrays(self.run)
 
-    def _perform(self, task: int, times: Array, found: Array) -> Array:
+    def _perform(self, task: int, times: Array, found: NDArray[Any]) -> NDArray[Any]:
         """Perform a task at all times, compiled from where on that pays."""
         if task not in (evaluation.STATES, evaluation.WITHOUT_PEAKS):
-            (KERNEL if self.compiled else evaluation.perform)(task, self.run, 0, times, found)
+            if self.compiled:
+                KERNEL(task, self.run, 0, times, found)
+            else:
+                evaluation.perform(task, self.run, 0, times, named(found))
             return found
         fast, done, took = self.compiled, 0, 0.0
         while done < times.size:
@@ -117,8 +136,10 @@ class Trajectory:
             part = slice(done, None if fast else done + EVALUATED)
             begun = thread_time()
             with nullcontext() if fast else KERNEL.interpreting():
-                perform, run = (KERNEL, self.arrays) if fast else (evaluation.perform, self.run)
-                perform(task, run, 0, times[part], found[part])
+                if fast:
+                    KERNEL(task, self.arrays, 0, times[part], found[part])
+                else:
+                    evaluation.perform(task, self.run, 0, times[part], named(found[part]))
             took += thread_time() - begun
             done = times.size if fast else done + EVALUATED
         return found
@@ -143,14 +164,14 @@ def solve(
         If too many steps are needed.
 
     >>> motion = solve(BaseMotion.constant(1.0, end=2.0), [(5.0, 1.0)], (0.04, 0.0), 2.0, 1e-9)
-    >>> print(f"{motion.states([2.0])[0, 0]:.6f}")
+    >>> print(f"{motion.states([2.0])['depth'][0]:.6f}")
     0.417162
     """
     arrays = KERNEL.worthwhile() if fast is None else fast
     run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
     if arrays and not prepared(run):
         run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=False)
-    left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros((1, 1)))
+    left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros(1, STATE))
     begun = thread_time()
     while status != walk.DONE:
         interpreted = isinstance(run.steps, list)

@@ -1,19 +1,9 @@
 """From step to step on a Prony series: step sizes, and events: edges turn, or pass to other ground."""
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 from kvtheory.models.continuum.prony.contact import (
-    ALONG,
-    EDGES,
-    FREE,
-    NEVER,
-    OWN,
-    PEELING,
-    RATE,
-    SIDES,
-    STRESSES,
-    TOUCHING,
     accumulated,
     at_far_end,
     at_present,
@@ -24,13 +14,12 @@ from kvtheory.models.continuum.prony.contact import (
     motion,
     over,
     past,
+    past_stress,
     pressed,
     step_of,
     total,
     value,
 )
-from kvtheory.models.continuum.prony.contact import TIME as RELAXATION
-from kvtheory.models.continuum.prony.counting import count_anew, in_contact
 from kvtheory.models.continuum.prony.hops import (
     close,
     closed,
@@ -44,26 +33,24 @@ from kvtheory.models.continuum.prony.hops import (
     time_left,
     touches_at,
 )
-from kvtheory.models.continuum.prony.segments import cross, split, turn
-from kvtheory.models.continuum.prony.step import (
-    DEPTH,
-    INDEX,
-    LAST,
-    OFFSET,
-    OTHER,
-    SIGMA,
-    at,
-    prepare,
-    size_of,
-    solve,
+from kvtheory.models.continuum.prony.records import (
+    FREE,
+    NEVER,
+    PEELING,
+    SIDES,
+    TOUCHING,
+    Run,
 )
+from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
+from kvtheory.models.continuum.prony.segments import cross, split, turn
+from kvtheory.models.continuum.prony.step import prepare, size_of, solve
 from kvtheory.scene import base_motion as b_
 
 SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
 """Margin and least factor of a step size, that after a step which did not converge, and the least error."""
 SHORTEST, SHARP = 1e-13, 8.0
 """Least step relative to the run: a shorter one would be lost in rounding. A step of at most
-`SHARP` of these is accepted with any error: behind a layer on a fast arm an edge sets off at once."""
+`SHARP` of these is accepted with any error: past the layer of a fast arm, an edge moves abruptly."""
 SMOOTH = 1e-9
 """Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
 OVERRUN, PASSED, NEAR = 1e-6, 1e-12, 1e-13
@@ -97,11 +84,16 @@ DONE, PAUSED, FULL, STUCK, PARTS = range(5)
 of zero, or no consistent state of the edges; with pressures or gaps of the wrong sign. The last two are
 numerical failures."""
 
-Monitors = tuple[float, float, float, float, float]
-"""Event functions, which stay positive until an event: the width, the state and the ground of the left edge,
-and of the right one."""
-NOTHING = (math.inf, math.inf, math.inf, math.inf, math.inf)
-Run = Any
+
+class Monitors(NamedTuple):
+    """Event functions, which stay positive until an event: the width, and state and ground of both edges."""
+
+    width: float
+    state: tuple[float, float]
+    ground: tuple[float, float]
+
+
+NOTHING = Monitors(math.inf, (math.inf, math.inf), (math.inf, math.inf))
 
 
 def walk(run: Run, attempts: int) -> int:
@@ -121,7 +113,7 @@ def walk(run: Run, attempts: int) -> int:
             if until < end:
                 _next_piece(run)
             continue
-        count_anew(run)
+        restart_accumulators(run)
         status = _next_step(run, until)
         if status != DONE:
             return status
@@ -170,8 +162,8 @@ def _jump(run: Run) -> None:
     _, number, _ = b_.evaluate(run.pieces[now.piece], now.s)
     for k in range(2):
         relaxing = 0.0
-        for i in over(len(run.arms)):
-            relaxing += total(run.state[i, STRESSES + k] / run.arms[i, RELAXATION])
+        for i in over(run.given.arms):
+            relaxing += total(run.state.stress_at_edge[i, k] / run.arms.relaxation_time[i])
         side = now.sides[k]
         if _slack(run, side.state, side.xi, now.v, number - now.w, relaxing) < 0.0:
             turn(run, k)
@@ -197,13 +189,13 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
     or the gap, at this end has none: with `exact` it is the event function.
     """
     now, index = run.now, run.now.steps
-    rows = run.rows[index]
     s = now.s + theta * run.steps[index].span
     d, v, Y, number, _ = motion(run, index, s)
     if flies(run):
-        gap = least_gap(run, s, d, Y)[0] + closed(run) * closed(run)
-        return gap, math.inf, math.inf, math.inf, math.inf
-    l, r = value(rows[EDGES], theta), value(rows[EDGES + 1], theta)
+        gap = least_gap(run, s, d, Y).size + closed(run) * closed(run)
+        return Monitors(gap, NOTHING.state, NOTHING.ground)
+    edges = run.polynomials.edges[index]
+    l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
     l_ground, r_ground = _ahead(run, 0, l, Y), _ahead(run, 1, r, Y)
     if exact:
         accumulated(run, index, theta)
@@ -213,7 +205,7 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
             at_far_end(run, 1, s, d, Y, middle),
         )
     l_state, r_state = _keeps(run, 0, theta, v, number), _keeps(run, 1, theta, v, number)
-    return r - l, l_state, l_ground, r_state, r_ground
+    return Monitors(r - l, (l_state, r_state), (l_ground, r_ground))
 
 
 def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
@@ -222,14 +214,16 @@ def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
     One that peels moves inward over the ground, but for the error of its polynomial: its p' has the right
     sign then, but is lost in the terms of a stiff arm.
     """
-    now, row, n = run.now, run.rows[run.now.steps, EDGES + k], run.given.stages
+    now, n, index = run.now, run.given.stages, run.now.steps
+    powers = run.polynomials.edges[index, :, k]
     if now.sides[k].state == PEELING:
-        outward = SIDES[k] * (derivative(row, theta) - run.steps[now.steps].span * number)
-        return n * (n + 1) * run.method[OTHER, LAST, 0] * abs(row[n]) + _allowed(run) - outward
+        outward = SIDES[k] * (derivative(powers, theta) - run.steps[index].span * number)
+        error = n * (n + 1) * run.given.last_power * abs(powers[n])
+        return error + _allowed(run) - outward
     relaxing = 0.0
-    for i in over(len(run.arms)):
-        relaxing += total(past(run, now.steps, i, STRESSES + k, theta) / run.arms[i, RELAXATION])
-    return _slack(run, TOUCHING, value(row, theta), v, number, relaxing)
+    for i in over(run.given.arms):
+        relaxing += total(past_stress(run, index, i, k, theta) / run.arms.relaxation_time[i])
+    return _slack(run, TOUCHING, value(powers, theta), v, number, relaxing)
 
 
 def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
@@ -246,7 +240,8 @@ def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
 
 
 def _smallest(values: Monitors) -> float:
-    return min(values[0], values[1], values[2], values[3], values[4])
+    state, ground = values.state, values.ground
+    return min(values.width, state[0], ground[0], state[1], ground[1])
 
 
 def _event(run: Run) -> tuple[float, Monitors]:
@@ -297,7 +292,7 @@ def _advance(run: Run, until: float, longest: float) -> int:
     if theta * span <= shortest:
         now.rejected += 1
         return _change(run, violated)
-    overrun = PASSED if min(violated[2], violated[4]) < 0.0 else OVERRUN
+    overrun = PASSED if min(violated.ground[0], violated.ground[1]) < 0.0 else OVERRUN
     if theta < 1.0 - overrun and (1.0 - theta) * span > NEAR * run.given.end:
         now.limit = theta * (1.0 + 0.5 * overrun) * span
         if size > 1.0:  # what lies beyond the event is no better
@@ -400,16 +395,16 @@ def _change(run: Run, violated: Monitors) -> int:
     """Change what the event at the present time violates."""
     now = run.now
     now.toggles += 1
-    if violated[0] < 0.0:
+    if violated.width < 0.0:
         return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
     if now.toggles > TOGGLES:
         return STUCK
     for k in range(2):
-        if violated[2 * k + 2] < 0.0:
+        if violated.ground[k] < 0.0:
             cross(run, k)
             if now.count == 0:
                 return _close(run, 4.0 * SHORTEST * run.given.end, math.inf)
-        elif violated[2 * k + 1] < 0.0:
+        elif violated.state[k] < 0.0:
             turn(run, k)
     return DONE
 
@@ -455,37 +450,56 @@ def _one_interval(run: Run) -> bool:
 
 def _commit(run: Run, span: float, until: float, theta: float) -> None:
     """Accept a step up to the share `theta` of it: the state there becomes the present one."""
-    now, n, begun = run.now, run.given.stages, run.now.s
-    rows, whole = run.rows[now.steps], theta == 1.0
+    now, begun, stages, polynomials = run.now, run.now.s, run.stages, run.polynomials
+    last, index, whole = run.given.stages - 1, now.steps, theta == 1.0
+    rate, along = polynomials.depth_rate[index], polynomials.offset_rate[index]
     end = until if whole and now.s + span >= until else now.s + theta * span
     if whole:
-        now.d, now.x = at(run, DEPTH, n - 1), at(run, OFFSET, n - 1)
+        now.d, now.x = float(stages.depth[last]), float(stages.offset[last])
     else:
-        now.d += span * integral(rows[RATE], theta)
-        now.x += span * integral(rows[ALONG], theta)
-    now.v = run.stages[RATE, n - 1] if whole else value(rows[RATE], theta)
-    now.w = run.stages[ALONG, n - 1] if whole else value(rows[ALONG], theta)
-    for i in over(len(run.arms)):
-        for row in range(OWN):
-            run.state[i, row] = past(run, now.steps, i, row, theta)
-            if whole:
-                run.state[i, row] = run.arm_stages[i, row, n - 1]
+        now.d += span * integral(rate, theta)
+        now.x += span * integral(along, theta)
+    now.v = stages.depth_rate[last] if whole else value(rate, theta)
+    now.w = stages.offset_rate[last] if whole else value(along, theta)
+    _commit_arms(run, theta)
     Y, _, _ = b_.evaluate(run.pieces[now.piece], end)
     for k in range(2):
         side, before = now.sides[k], now.sides[k].sigma
-        index, sigma = int(at(run, INDEX + k, n - 1)), at(run, SIGMA + k, n - 1)
-        side.xi = run.stages[EDGES + k, n - 1] if whole else value(rows[EDGES + k], theta)
+        step, sigma = int(stages.entry_step[last, k]), float(stages.entry_time[last, k])
+        edge = polynomials.edges[index, :, k]
+        side.xi = stages.edges[last, k] if whole else value(edge, theta)
         if not whole and side.segment != NEVER and side.state != FREE:
             at_present(run)
-            xi, index, sigma = edge_at(
-                run, k, end, now.d, Y - now.x, side.xi, index, before + theta * (sigma - before)
+            xi, step, sigma = edge_at(
+                run, k, end, now.d, Y - now.x, side.xi, step, before + theta * (sigma - before)
             )
             if abs(xi) < math.inf:
                 side.xi = xi
-                for i in over(len(run.arms)):
-                    run.state[i, STRESSES + k] = run.here[i, STRESSES]
-        side.index, side.sigma = index, sigma
+                for i in over(run.given.arms):
+                    run.state.stress_at_edge[i, k] = run.element.stress[i]
+        side.index, side.sigma = step, sigma
         if side.segment != NEVER:
             side.pace = (sigma - before) / (end - begun)
     now.s, now.smooth = end, True
     now.kinked[0] = now.kinked[1] = 0
+
+
+def _commit_arms(run: Run, theta: float) -> None:
+    """Let the state of the arms be that at the share `theta` of the step."""
+    state, memory, stages, index = run.state, run.memory, run.arm_stages, run.now.steps
+    last = run.given.stages - 1
+    for i in over(run.given.arms):
+        if theta == 1.0:
+            state.accumulated_depth[i] = stages.accumulated_depth[i, last]
+            state.accumulated_slide[i] = stages.accumulated_slide[i, last]
+            state.force[i], state.moment[i] = stages.force[i, last], stages.moment[i, last]
+        else:
+            state.accumulated_depth[i] = past(memory.accumulated_depth, index, i, theta)
+            state.accumulated_slide[i] = past(memory.accumulated_slide, index, i, theta)
+            state.force[i] = past(memory.force, index, i, theta)
+            state.moment[i] = past(memory.moment, index, i, theta)
+        for k in range(2):
+            at_end = stages.stress_at_edge[i, last, k]
+            state.stress_at_edge[i, k] = (
+                at_end if theta == 1.0 else past_stress(run, index, i, k, theta)
+            )

@@ -1,4 +1,4 @@
-"""Accumulators are counted anew where the ground has slid far, and the moments of slow arms with them.
+"""Accumulators are restarted where the ground has slid far, and the moments of slow arms with them.
 
 On an arm that is slow beside the motion, A_i grows as the square of the distance slid, and stresses are small
 differences of it. F_i and M_i add up the rounding, the latter twice. So where A_i is large, it and B_i begin
@@ -6,31 +6,13 @@ again from zero, and F_i and M_i from their integrals over the contact, by Radau
 steps. An element in contact keeps the stress k_i (A_i - xi B_i) of that instant, see `contact`.
 """
 
-from typing import Any
-
-from kvtheory.models.continuum.prony.contact import (
-    DEPTHS,
-    EDGES,
-    FORCES,
-    MOMENTS,
-    NEVER,
-    PEELING,
-    SLIDES,
-    STRESSES,
-    at_present,
-    derivative,
-    motion,
-    pressed,
-)
+from kvtheory.models.continuum.prony.contact import at_present, derivative, motion, pressed
+from kvtheory.models.continuum.prony.records import NEVER, PEELING, Run
 from kvtheory.models.continuum.prony.segments import here
 from kvtheory.scene.base_motion import evaluate
 
 LARGE = 0.06
-"""Share of the largest A_i that a step may reach, from which on it is counted anew."""
-A, OTHER = 0, 3
-"""Tables of `Run.method`, see `step`."""
-
-Run = Any
+"""Share of the largest A_i that a step may reach, from which on it is restarted."""
 
 
 def in_contact(run: Run, number: int) -> tuple[float, float]:
@@ -47,14 +29,14 @@ def in_contact(run: Run, number: int) -> tuple[float, float]:
     return low, high
 
 
-def count_anew(run: Run) -> None:
-    """Count the accumulators of slow arms anew if they are large."""
-    now, many, large = run.now, range(len(run.arms)), LARGE * run.given.counted
-    most = 0.0
+def restart_accumulators(run: Run) -> None:
+    """Restart the accumulators of slow arms from zero if they are large."""
+    now, state, many = run.now, run.state, range(run.given.arms)
+    most, large = 0.0, LARGE * run.given.farthest
     for i in many:
-        most = max(most, abs(run.state[i, DEPTHS]))
-        if abs(run.state[i, DEPTHS]) > large:
-            run.state[i, FORCES] = run.state[i, MOMENTS] = 0.0
+        most = max(most, abs(state.accumulated_depth[i]))
+        if abs(state.accumulated_depth[i]) > large:
+            state.force[i] = state.moment[i] = 0.0
     if not most > large:
         return
     at_present(run)
@@ -73,9 +55,9 @@ def count_anew(run: Run) -> None:
             integrate(run, index, segment.edge, low, end, large)
             low = end
     for i in many:
-        if abs(run.state[i, DEPTHS]) > large:
-            run.state[i, DEPTHS] = run.state[i, SLIDES] = 0.0
-    now.since = now.steps
+        if abs(state.accumulated_depth[i]) > large:
+            state.accumulated_depth[i] = state.accumulated_slide[i] = 0.0
+    now.restart = now.steps
 
 
 def integrate(run: Run, index: int, edge: int, low: float, high: float, large: float) -> None:
@@ -84,14 +66,14 @@ def integrate(run: Run, index: int, edge: int, low: float, high: float, large: f
     Y, _, _ = evaluate(run.pieces[now.piece], now.s)
     Y -= now.x
     for j in range(n):
-        x, weight = low + (high - low) * run.method[OTHER, 0, j], high - low
+        x, weight = low + (high - low) * run.stages.node[j], high - low
         if index != NEVER:
             _, _, _, number, theta = motion(run, index, x)
-            rate = derivative(run.rows[index, EDGES + edge], theta) / run.steps[index].span
+            rate = derivative(run.polynomials.edges[index, :, edge], theta) / run.steps[index].span
             weight *= abs(rate - number)
         _, xi = pressed(run, now.s, now.d, Y, x + Y, edge, index, x)
-        for i in range(len(run.arms)):
-            if abs(run.state[i, DEPTHS]) > large:
-                force = weight * run.method[A, n - 1, j] * run.here[i, STRESSES]
-                run.state[i, FORCES] += force
-                run.state[i, MOMENTS] += xi * force
+        for i in range(run.given.arms):
+            if abs(run.state.accumulated_depth[i]) > large:
+                force = weight * run.method.A[n - 1, j] * run.element.stress[i]
+                run.state.force[i] += force
+                run.state.moment[i] += xi * force
