@@ -18,9 +18,9 @@ from .model import x
     nu_P     \nu_{\mathrm{P}}  1    Poisson's ratio of the layer  from scene
     E_0      -                Pa   modulus of the layer, relaxed  from scene
     H        -                m    thickness of the layer  from scene
-    k_w      k_{\mathrm{w}}   1/m  wave number of a pressure along the layer
+    k_w      k_{\mathrm{c}}   1/m  wave number of a pressure along the layer
     z_H      -                m    height above the ground  real
-    kappa_H  \kappa_H         1    scaled wave number, $k_{\mathrm{w}} H$
+    kappa_H  \kappa_H         1    scaled wave number, $k_{\mathrm{c}} H$
     b_H      -                m    size of a wave in a layer
     A_H      -                m    amplitude of a wave in a layer  real
     B_H      -                m    another one  real
@@ -37,12 +37,10 @@ SECTION = "A layer"
 nu, k, z, kappa = poisson, wave, height, kappa_h
 A = size * (2 * (1 - nu) * sp.cosh(kappa) + kappa * sp.sinh(kappa))
 B = size * ((1 - 2 * nu) * sp.sinh(kappa) - kappa * sp.cosh(kappa))
-_FREE = sp.Rational(3, 2) - 2 * nu
 _C, _S = sp.cosh(k * z), sp.sinh(k * z)
-ALONG = (_FREE * out_of_phase * _S + k * z / 2 * (in_phase * _S + out_of_phase * _C)) * sp.sin(
-    k * x
-)
-UP = (_FREE * in_phase * _S - k * z / 2 * (in_phase * _C + out_of_phase * _S)) * sp.cos(k * x)
+_FREE, _HALF = (3 - 4 * nu) * _S, sp.Rational(1, 2)
+ALONG = _HALF * (_FREE * out_of_phase + k * z * (in_phase * _S + out_of_phase * _C)) * sp.sin(k * x)
+UP = _HALF * (_FREE * in_phase - k * z * (in_phase * _C + out_of_phase * _S)) * sp.cos(k * x)
 MEAN = k * (in_phase * _C + out_of_phase * _S) * sp.cos(k * x)
 UPPER = (3 - 4 * nu) * sp.sinh(2 * kappa) - 2 * kappa
 LOWER = (3 - 4 * nu) * sp.cosh(2 * kappa) + 2 * kappa**2 + 5 - 12 * nu + 8 * nu**2
@@ -59,13 +57,14 @@ def _balance(proof: Proof) -> None:
     an incompressible layer, $\nu_{\mathrm{P}} = 1/2$, is one of these.
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
-    d, half, shear = sp.Derivative, sp.Rational(1, 2), modulus / (1 + nu)
+    d, half = sp.Derivative, sp.Rational(1, 2)
     change = (1 - 2 * nu) * d(s, x) - d(u, x, 2)
     proof.define(d(w, x, z), change, r"the change of volume is $(1 - 2 \nu_{\mathrm{P}}) s_H$")
-    across = shear * half * (d(u, z) + d(w, x))
-    balance = d(shear * (d(u, x) + nu * s), x) + d(across, z)
-    form = shear * half * (d(u, x, 2) + d(u, z, 2) + d(s, x))
-    proof.equal(balance, form, "no force along the layer")
+    balance = d(d(u, x) + nu * s, x) + half * d(d(u, z) + d(w, x), z)
+    form = half * (d(u, x, 2) + d(u, z, 2) + d(s, x))
+    proof.equal(
+        balance, form, r"force along the layer over $E_0/(1 + \nu_{\mathrm{P}})$, which is zero"
+    )
     proof.done(balance, form)
 
 
@@ -98,7 +97,7 @@ def _compliance(proof: Proof) -> None:
     r"""Layer: its compliance.
 
     For $0 < \nu_{\mathrm{P}} \le 1/2$. The depression of the surface is $\frac{2 (1 -
-    \nu_{\mathrm{P}}^2)}{E_0 k_{\mathrm{w}}} T_H$ times the pressure.
+    \nu_{\mathrm{P}}^2)}{E_0 k_{\mathrm{c}}} T_H$ times the pressure.
     """
     w, s = up(x, z), mean(x, z)
     proof.recall("F30-field", w, s, k, in_phase, out_of_phase)

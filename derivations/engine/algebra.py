@@ -184,6 +184,7 @@ def _by_primes(number: sp.Rational) -> sp.Expr:
 def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
     """Write constants before an integral; split it where each part exists: continuous, between finite ends.
 
+    >>> from kvtheory.derivations.engine.conditions import NONE
     >>> x, f = sp.Symbol("x", real=True), sp.Function("f", real=True)
     >>> parted(sp.Integral(2 + 3 * f(x), (x, 0, 1)), NONE)
     3*Integral(f(x), (x, 0, 1)) + 2

@@ -146,6 +146,7 @@ class Printer(LatexPrinter):
             return str(super()._print_Pow(sp.Pow(base, exponent, evaluate=False)))
         shown = str(self._print(base))
         called = isinstance(base, AppliedUndef | sp.Derivative) and shown.endswith(")")
+        called = called and not _is_operator(shown)
         closed = (
             called
             or (isinstance(base, _CLOSED) and "^" not in shown and "'" not in shown)

@@ -186,7 +186,8 @@ class Steps:
         return after
 
     def _named(self, expr: Expr) -> Expr:
-        """Substitute definitions once; functions exactly as they are written."""
+        """Substitute definitions once; known integrals as wholes, functions exactly as they are written."""
+        expr = expr.xreplace({k: v for k, v in self.rules.items() if isinstance(k, sp.Integral)})
         expr = expr.replace(
             lambda node: isinstance(node, sp.Subs) and not self.rules.keys() & set(node.variables),
             lambda node: self._put(node.expr).subs(
