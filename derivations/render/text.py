@@ -29,7 +29,7 @@ _TOKEN = re.compile(
 _GLYPH = re.compile(
     r"\\(?:left|right|frac|sqrt|mathrm|text|[,;:! ])(?![A-Za-z])|(?P<seen>\\[A-Za-z]+|[^\s{}_^\\])"
 )
-_FEW_GLYPHS, _MOST_GLYPHS = 16, 60
+_FEW_GLYPHS, _MOST_GLYPHS = 16, 50
 """A formula of few glyphs is repeated rather than cited; one of more would fill a line of text."""
 
 _GROUPS = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"
