@@ -261,7 +261,10 @@ def test_a_sum_begins_with_a_positive_term(by_label):
     assert {right for right in shown if opening.match(right) and "{" not in right} == set()
     steps = {step.right for step in by_label["F21-steady"].steps}
     assert r"\frac{l_{\mathrm{r}} \left(W - C V \delta\right)}{R}" in steps
-    assert by_label["critical-dead-weight"].latex == r"V^{*} = \frac{\alpha^{2/3} \sqrt[3]{K^{2} R W}}{C}"
+    assert (
+        by_label["critical-dead-weight"].latex
+        == r"V^{*} = \frac{\alpha^{2/3} \sqrt[3]{K^{2} R W}}{C}"
+    )
 
 
 def test_what_is_printed_is_what_was_claimed(by_label):

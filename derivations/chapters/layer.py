@@ -19,11 +19,11 @@ from .model import x
     E_0      -                Pa   modulus of the layer, relaxed  from scene
     H        -                m    thickness of the layer  from scene
     k_w      k_{\mathrm{c}}   1/m  wave number of a pressure along the layer
-    z_H      -                m    height above the ground  real
+    z_H      z_{\mathrm{l}}   m    height above the ground  real
     kappa_H  \kappa_H         1    scaled wave number, $k_{\mathrm{c}} H$
     b_H      -                m    size of a wave in a layer
-    A_H      -                m    amplitude of a wave in a layer  real
-    B_H      -                m    another one  real
+    A_H      A_{\mathrm{l}}   m    amplitude of a wave in a layer  real
+    B_H      B_{\mathrm{l}}   m    another one  real
     T_H      -                1    depression of a layer over that of a half-space  real
     w_c      -                m    amplitude of the displacement of the surface of a layer  real
     p_c      -                Pa   amplitude of the stress there  real
@@ -79,8 +79,8 @@ def _field(proof: Proof) -> None:
     """
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, zero = sp.Derivative, sp.S.Zero
-    for field, value, unit in ((u, ALONG, "along"), (w, UP, "up"), (s, MEAN, "mean stress")):
-        proof.define(field, value, unit)
+    for field, value in ((u, ALONG), (w, UP), (s, MEAN)):
+        proof.define(field, value)
     proof.equal(d(u, x) + d(w, z), (1 - 2 * nu) * s, "change of volume")
     proof.equal(d(u, x, 2) + d(u, z, 2) + d(s, x), zero, "balance along the layer, F30-balance")
     proof.equal(d(w, x, 2) + d(w, z, 2) + d(s, z), zero, "balance across it, likewise")

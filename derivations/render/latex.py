@@ -44,7 +44,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \relpenalty=2000
 \binoppenalty=5000
 \raggedbottom
-\emergencystretch=3em
+\emergencystretch=6em
 \clubpenalty=10000
 \widowpenalty=10000
 \makeatletter
