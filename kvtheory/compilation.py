@@ -51,9 +51,7 @@ def available() -> bool:
 def _imported() -> bool:
     try:
         import numba
-    except (
-        Exception
-    ) as error:  # whatever a numba raises that does not fit NumPy, Python or its libraries
+    except Exception as error:  # of a numba that does not fit NumPy, Python or its libraries
         warn_unusable(f"numba cannot be imported ({_in_a_line(error)})", FITTING)
         return False
     config: Any = numba.config

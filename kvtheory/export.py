@@ -73,12 +73,8 @@ def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
 
 def replace_files(writers: Mapping[Path, Callable[[Path], Any]]) -> None:
     """Write several files as `replace_file` does: all of them or, if one cannot be written, none."""
-    parts = {
-        path: path.with_name(
-            f".{path.stem}.{uuid4().hex[:12]}.part{path.suffix}"
-        )  # one for each call
-        for path in writers
-    }
+    call = uuid4().hex[:12]  # threads of a process may write the same file
+    parts = {path: path.with_name(f".{path.stem}.{call}.part{path.suffix}") for path in writers}
     path = Path()
     try:
         for path, write in writers.items():

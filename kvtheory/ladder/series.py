@@ -314,7 +314,7 @@ def _series(
 ) -> Answer:
     """Return the requested quantities from constants or from values at the requested times."""
     times = _times(scene, request)
-    held = {name: np.broadcast_to(value, times.shape) for name, value in values.items()}
+    held = {name: np.full(times.shape, value) for name, value in values.items()}
     return _answer({**held, "time": times}, own, request, result)
 
 
