@@ -4,12 +4,14 @@ import csv
 import io
 import json
 import math
+import threading
+import time
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.progress import COMPILING, ProgressLine
+from kvtheory import progress
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
@@ -261,43 +263,41 @@ def test_remaining_blocks_fill_the_gaps_once():
 
 
 @pytest.mark.parametrize("terminal", [False, True])
-def test_progress_is_lines_in_a_log_and_one_line_on_a_terminal(terminal):
-    """Compiling is shown at once on a terminal, which also shows that work goes on that reports nothing."""
+def test_progress_is_lines_in_a_log_and_a_bar_on_a_terminal(monkeypatch, terminal):
+    """The bar goes on while nothing is reported; short work shows nothing, a closed stream ends nothing."""
+    stream, shown = io.StringIO(), threading.Event()
+    stream.isatty = lambda: terminal
+    with progress.progress_bar("sweep", stream=stream) as report:
+        report(0.5, "1000 of 2000 points")
+    assert not stream.getvalue()
 
-    def line_of(label):
-        stream, now = io.StringIO(), [0.0]
-        stream.isatty = lambda: terminal
-        return ProgressLine(label, stream, clock=lambda: now[0]), stream, now
+    class Watched(io.StringIO):
+        isatty, texts = (lambda _: terminal), ()
 
-    progress, stream, now = line_of("sweep")
-    for second in range(1, 101):
-        now[0] = float(second)
-        progress(second / 200, f"{10 * second} of 2000 points")
-    progress.finish()
-    assert "sweep: 50 %, 100 s left, 1000 of 2000 points" in stream.getvalue()
-    assert stream.getvalue().count("\n") == (1 if terminal else 10)
-    assert stream.getvalue().count("\r") == (100 if terminal else 0)
+        def write(self, text):
+            self.texts = *self.texts, text
+            found = [each for each in self.texts if "1000 of 2000 points" in each]
+            if len(found) > 2:
+                shown.set()
+            return len(text)
 
-    progress, stream, now = line_of("sweep")
-    for second, share, words in (
-        (0.5, 0.0, ""), (0.6, 0.0, COMPILING), (30.6, 0.0, COMPILING), (60.6, 0.0, ""), (70.6, 0.5, "half"),
-    ):  # fmt: skip
-        now[0] = second
-        progress(share, words)
-        assert second != 0.6 or (COMPILING in stream.getvalue()) == terminal
-    assert "sweep: 50 %, 10 s left, half" in stream.getvalue()  # in which compiling takes no part
+    for name in ("PATIENCE", "ON_TERMINAL", "IN_LOG"):
+        monkeypatch.setattr(progress, name, 1e-3)
+    watched = Watched()
+    with progress.progress_bar("sweep", time.monotonic() - 100.0, watched) as report:
+        report(0.5, "1000 of 2000 points")
+        assert shown.wait(60.0)
+        report(1.0, "2000 of 2000 points")
+    text = "".join(watched.texts)
+    assert "sweep:  50 %|" in text
+    assert "| 01:40<" in text
+    assert "sweep: 100 %|" in text.splitlines()[-1].split("\r")[-1]
+    assert ("\r" in text) == terminal
+    assert text.count("\n") == 1 if terminal else text.count("\n") > 2
 
-    progress, stream, now = line_of("steady")
-    for second in range(7):
-        now[0] = 0.5 * second
-        progress.beat()
-    progress(0.4, "step 4")
-    now[0] = 9.0
-    progress.beat()
-    progress.finish()
-    shown = [text.strip() for text in stream.getvalue().split("\r")[1:]]
-    beats = ["1 s so far", "2 s so far", "3 s so far", "40 %, step 4, 9 s so far", "40 %, step 4"]
-    assert shown == [f"steady: {each}" for each in beats] * terminal
+    stream.close()
+    with progress.progress_bar("sweep", stream=stream) as report:
+        report(0.5, "")
 
 
 def test_one_signature_of_progress():

@@ -52,7 +52,7 @@ def transient(
         series 30,000.
     progress
         Called repeatedly with the share of the work done, from 0 to 1, and a text, as by every public
-        function: `kvtheory.progress.ProgressLine` shows both on standard error.
+        function: `kvtheory.progress.progress_bar` provides one that shows both.
 
     Returns
     -------

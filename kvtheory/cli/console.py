@@ -3,7 +3,6 @@
 import json
 import math
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -108,27 +107,14 @@ def finish(
 
 
 @contextmanager
-def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Provide a function that shows the fraction done, and a text, if the work takes long."""
-    from kvtheory.progress import BEAT, PATIENCE, ProgressLine
+def progress_bar(label: str) -> Iterator[Callable[..., Any]]:
+    """Provide a function that shows the fraction done, and a text, if the command takes long."""
+    from kvtheory import progress
 
     context = click.get_current_context(silent=True)
-    begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else time.monotonic()
-    patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # over all parts of a command
-    line, over = ProgressLine(label, patience=patience), threading.Event()
-
-    def beat() -> None:
-        while not over.wait(BEAT / 2.0):
-            line.beat()
-
-    beating = threading.Thread(target=beat, daemon=True)
-    beating.start()
-    try:
-        yield line
-    finally:
-        over.set()
-        beating.join()
-        line.finish()
+    begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else None
+    with progress.progress_bar(label, begun) as report:
+        yield report
 
 
 def split(text: str) -> list[str]:
