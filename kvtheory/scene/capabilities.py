@@ -7,16 +7,18 @@ these; messages, tests and a page of the documentation are made from the table `
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from kvtheory.scene.indenters import SHAPES as CLASSES
+from kvtheory.scene.indenters import Profile, Revolved
+from kvtheory.scene.model import SUPPORTS as KINDS
 from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import quantities
 
-SHAPES = {
-    "parabola": "the parabola", "circle": "the circle", "power-law": "the power law", "wedge": "the wedge",
-    "callable": "a profile of functions", "sphere": "the ball", "revolved": "a revolved profile",
-    "revolved-callable": "a revolved profile of functions",
-}  # fmt: skip
+SHAPES = {cls.shape: cls.words for cls in (*CLASSES.values(), Profile, Revolved)}
+SHAPES["revolved-callable"] = "a revolved profile of functions"
 """The shapes of the table, in words; a revolved profile of functions is not known to be convex."""
 LAWS = "kelvin-voigt", "generalized-maxwell", "fractional-kelvin-voigt"
-SUPPORTS = "fixed", "dead-weight", "suspended"
+SUPPORTS = tuple(KINDS)
+MOVING = tuple(name for name, cls in KINDS.items() if "depth" not in quantities(cls))
 DRIVES = "rigid", "spring"
 
 KELVIN_VOIGT, ARMS = LAWS[:1], LAWS[:2]
@@ -94,7 +96,7 @@ lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
 lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
-lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("rigid",)))
+lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, MOVING, ("rigid",)))
 lacks_continuum = Needs(Scenes(("parabola",), ARMS))
 lacks_rigid_continuum = Needs(Scenes(("parabola",), ARMS, drives=("rigid",)))
 lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ARMS))

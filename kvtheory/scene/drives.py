@@ -23,7 +23,7 @@ from kvtheory.scene.quantities import (
     quantity,
     validate,
 )
-from kvtheory.scene.waveforms import AT_LAST, Sine, SmoothRamp, Triangle
+from kvtheory.scene.waveforms import WAVEFORMS, Waveform
 
 VELOCITY = Quantity(
     "m/s", "V, drive velocity of the foundation, from rest to this at t = 0", -math.inf, True
@@ -62,6 +62,7 @@ class Drive(Part):
     0.1
     >>> Drive(function=lambda t: 0.1 * math.sin(50.0 * t)).called(0.01)
     0.0479425538604203
+    >>> from kvtheory.scene.waveforms import SmoothRamp
     >>> Drive(waveform=SmoothRamp(velocity="0.1 m/s", rise_time="10 ms")).final_velocity
     0.1
     >>> Drive(velocity="0.1 m/s", stiffness="1 MN/m^2").stiffness
@@ -71,7 +72,7 @@ class Drive(Part):
     velocity: float | None = field(default=None, metadata={"quantity": VELOCITY})
     history: Sequence[tuple[float, float]] | None = None
     function: Callable[[float], float] | None = None
-    waveform: Sine | Triangle | SmoothRamp | None = None
+    waveform: Waveform | None = None
     breaks: Sequence[float] = ()
     tolerance: float = 1e-12
     stiffness: Value = quantity(
@@ -95,8 +96,10 @@ class Drive(Part):
         if sum(given is not None for given in ways) != 1:
             told = "drive: expected one of velocity, history and waveform, such as "
             problems.append(told + 'velocity = "100 mm/s"; or, in Python, a function')
-        if not isinstance(self.waveform, Sine | Triangle | SmoothRamp | None):
-            problems.add("drive.waveform", self.waveform, "expected a Sine, Triangle or SmoothRamp")
+        if not isinstance(self.waveform, Waveform | None):
+            *names, last = (cls.__name__ for cls in WAVEFORMS.values())
+            told = f"expected a {', '.join(names)} or {last}"
+            problems.add("drive.waveform", self.waveform, told)
         elif self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
             self.mark([self.waveform])
@@ -213,8 +216,8 @@ class Drive(Part):
     @property
     def last_change(self) -> float:
         """The time in s after which the velocity stays the same; a function has none, and raises."""
-        if isinstance(self.waveform, SmoothRamp):
-            return AT_LAST * self.waveform.rise_time
+        if self.waveform is not None and self.waveform.settled < math.inf:
+            return self.waveform.settled
         return self.points[-1][0]
 
     def faster(self, times: float) -> "Drive":
@@ -251,23 +254,19 @@ class Drive(Part):
 
         The error of a function is relative to max(|V|, `least`); one with more breaks raises ValueError.
         """
-        wave = self.waveform
         if self.function is None:
             return BaseMotion.from_points(self.points, end)
-        if isinstance(wave, Sine | Triangle) and wave.frequency * end > MOST_CYCLES:
+        wave = self.waveform or Waveform()
+        if end > MOST_CYCLES * wave.period:
             told = f"more than {MOST_CYCLES:,} cycles until {end:.6g} s; expected a shorter run"
-            raise mistake("drive.frequency", f"{wave.frequency:g} Hz", told)
-        if isinstance(wave, Triangle):
-            return BaseMotion.from_points(wave.points(end), end)
-        first = end
-        if isinstance(wave, Sine):
-            first = min(end, 1.0 / wave.frequency)
-        elif isinstance(wave, SmoothRamp):
-            first = min(end, self.last_change)
+            raise mistake("drive.frequency", f"{1.0 / wave.period:g} Hz", told)
+        if (points := getattr(wave, "points", None)) is not None:
+            return BaseMotion.from_points(points(end), end)
+        first = min(end, wave.period, wave.settled)
         motion = BaseMotion.from_function(
             self.called, first, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
         )
-        return motion.repeated(end) if isinstance(wave, Sine) else motion.kept(end)
+        return motion.repeated(end) if wave.period < math.inf else motion.kept(end)
 
     def called(self, time: float) -> float:
         """Return the value of `function` at `time` (s), in m/s; it must be one finite number."""

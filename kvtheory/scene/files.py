@@ -148,7 +148,7 @@ def template(support: str = "dead-weight") -> str:
         )
         lines += [f"# or, {told}:", '# load = "9.80665 N/mm"']
     text = files("kvtheory.scene").joinpath("template.toml").read_text(encoding="utf-8")
-    return text.replace("# SUPPORT", "\n".join(lines))
+    return text.replace("# SUPPORT", "\n".join(lines)).replace("# SHAPES", ", ".join(SHAPES))
 
 
 def _tables(scene: Scene) -> dict[str, dict[str, Any]]:

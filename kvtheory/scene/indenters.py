@@ -3,7 +3,8 @@
 Every shape has `height` (h, in m) and `slope` (h', dimensionless), for floats and arrays; `reach` (m): the
 surface is defined for |x| < reach; `kinks` (m), where h' jumps or a derivative is singular; and `convex`,
 whether h is known to be convex: then also `bend`, x h''/h'. Line contacts have forces `per_width`; balls and
-other bodies of revolution have total forces, and their shape is that of the middle plane, y = 0.
+other bodies of revolution have total forces, and their shape is that of the middle plane, y = 0. A new shape
+is a class with these, its name `shape` and its `words`, and an entry of `SHAPES`.
 """
 
 import math
@@ -19,31 +20,33 @@ from kvtheory.scene.quantities import Part, Value, quantity, validate
 from kvtheory.theory.powers import power
 
 
-class _Shape(Part):
-    """What the shapes that a scene file can name have in common."""
+class Shape(Part):
+    """What shapes have in common: h(x), h'(x), and what is usual of a line contact."""
 
+    shape: ClassVar[str]
+    words: ClassVar[str]
     convex: ClassVar[bool] = True
     per_width: ClassVar[bool] = True
-    reach: ClassVar[float] = math.inf
-    kinks: ClassVar[tuple[float, ...]] = ()
+    reach: float = math.inf
+    kinks: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         validate(self, "indenter")
 
 
-class _Power(_Shape):
-    """A line contact with h = x h'/n, n being constant."""
+class _Power(Shape):
+    """A line contact with h = s |x|^n/(n L^(n-1)) = x h'/n; `power` are s, L and n."""
 
-    exponent: Any
+    power: Any
     slope: Any
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
-        return x * self.slope(x) / self.exponent
+        return x * self.slope(x) / self.power[2]
 
     def bend(self, x: Value) -> Value:
         """Return x h''/h'."""
-        return self.exponent - 1.0
+        return self.power[2] - 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +58,9 @@ class Parabola(_Power):
     """
 
     shape: ClassVar[str] = "parabola"
-    exponent = 2.0
+    words: ClassVar[str] = "the parabola"
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
+    power = property(lambda self: (1.0, self.radius, 2.0))
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -68,7 +72,7 @@ class Parabola(_Power):
 
 
 @dataclass(frozen=True, eq=False)
-class Circle(_Shape):
+class Circle(Shape):
     """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R, where its surface is vertical.
 
     >>> print(f"{Circle(radius=0.01).height(0.006):.12g}")
@@ -76,6 +80,7 @@ class Circle(_Shape):
     """
 
     shape: ClassVar[str] = "circle"
+    words: ClassVar[str] = "the circle"
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
     @property
@@ -113,9 +118,11 @@ class PowerLaw(_Power):
     """
 
     shape: ClassVar[str] = "power-law"
-    kinks: ClassVar[tuple[float, ...]] = (0.0,)
+    words: ClassVar[str] = "the power law"
+    kinks = (0.0,)
     length: Value = quantity("m", "L, where |h'| = 1")
     exponent: Value = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
+    power = property(lambda self: (1.0, self.length, self.exponent))
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
@@ -131,9 +138,10 @@ class Wedge(_Power):
     """
 
     shape: ClassVar[str] = "wedge"
-    exponent = 1.0
-    kinks: ClassVar[tuple[float, ...]] = (0.0,)
+    words: ClassVar[str] = "the wedge"
+    kinks = (0.0,)
     inclination: Value = quantity("1", "slope |h'| of the flanks")
+    power = property(lambda self: (self.inclination, 1.0, 1.0))
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
@@ -141,7 +149,7 @@ class Wedge(_Power):
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(Part):
+class Profile(Shape):
     """Any shape, from Python functions of one float: h(x), lowest at h(0) = 0, and h'(x).
 
     At a kink, h' is taken from both sides; the value of its function there does not matter.
@@ -153,8 +161,8 @@ class Profile(Part):
     """
 
     shape: ClassVar[str] = "callable"
+    words: ClassVar[str] = "a profile of functions"
     convex: ClassVar[bool] = False
-    per_width: ClassVar[bool] = True
     height_function: Callable[[float], float]
     slope_function: Callable[[float], float]
     reach: float = math.inf
@@ -198,7 +206,7 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
 
 
 @dataclass(frozen=True, eq=False)
-class Sphere(_Shape):
+class Sphere(Shape):
     """A ball, the paraboloid h = x^2/(2R) + y^2/(2R'), with R' = R unless `radius_across` is given.
 
     It approximates a sphere as the parabola does a cylinder, to a relative error of the order of (a/R)^2. Its
@@ -209,6 +217,7 @@ class Sphere(_Shape):
     """
 
     shape: ClassVar[str] = "sphere"
+    words: ClassVar[str] = "the ball"
     per_width: ClassVar[bool] = False
     radius: Value = quantity("m", "R, radius of the ball, in the sliding direction")
     radius_across: Value = quantity(
@@ -236,7 +245,7 @@ class Sphere(_Shape):
 
 
 @dataclass(frozen=True, eq=False)
-class Revolved(Part):
+class Revolved(Shape):
     """Any profile h(rho) revolved about the vertical axis: a true sphere, a cone, a blunt punch.
 
     In Python only; the profile is one of the shapes of this module.
@@ -247,12 +256,13 @@ class Revolved(Part):
     """
 
     shape: ClassVar[str] = "revolved"
+    words: ClassVar[str] = "a revolved profile"
     per_width: ClassVar[bool] = False
     stretch: ClassVar[float] = 1.0
-    profile: Parabola | Circle | PowerLaw | Wedge | Profile
+    profile: "Line"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.profile, Line):
+        if not (isinstance(self.profile, Shape) and self.profile.per_width):
             told = "expected a shape h(x) of a line contact"
             raise mistake("indenter.profile", self.profile, told)
         self.mark([self.profile])
@@ -280,18 +290,3 @@ Indenter = Line | Spot
 
 SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge, Sphere)}
 """The shapes that a scene file can name."""
-
-
-def power_of(indenter: Any) -> tuple[Any, ...]:
-    """Return slope, L and n of h = slope |x|^n/(n L^(n-1)).
-
-    >>> [float(each) for each in power_of(Wedge(inclination=0.1))]
-    [0.1, 1.0, 1.0]
-    """
-    if isinstance(indenter, Wedge):
-        shape = indenter.inclination, 1.0, 1.0
-    elif isinstance(indenter, Parabola):
-        shape = 1.0, indenter.radius, 2.0
-    else:
-        shape = 1.0, indenter.length, indenter.exponent
-    return tuple(map(np.asarray, shape))

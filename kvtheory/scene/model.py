@@ -8,13 +8,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar
 
 import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
-from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Revolved
+from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Profile, Revolved
 from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
     Part,
@@ -51,6 +51,7 @@ class Fixed(_Support):
     """
 
     kind: ClassVar[str] = "fixed"
+    table1: ClassVar[dict[str, float]] = {"depth": 3e-4}
     mass: ClassVar[Value] = math.inf
     weight: ClassVar[Value] = 0.0
     spring: ClassVar[Value] = math.inf
@@ -88,6 +89,7 @@ class DeadWeight(_Loaded):
     """
 
     kind: ClassVar[str] = "dead-weight"
+    table1: ClassVar[dict[str, float]] = {"mass": 1000.0}
     spring: ClassVar[Value] = 0.0
     mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
     gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
@@ -105,6 +107,7 @@ class Suspended(_Loaded):
     """
 
     kind: ClassVar[str] = "suspended"
+    table1: ClassVar[dict[str, float]] = {"mass": 1000.0, "stiffness": 3e7}
     mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
     stiffness: Value = quantity(
         "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
@@ -121,7 +124,7 @@ class Suspended(_Loaded):
 Support = Fixed | DeadWeight | Suspended
 """Each has the `mass` (kg/m), `weight` (N/m) and `spring` (N/m^2) of its equation of motion, and the
 `depth` (m) at which it is held: mass and spring of a fixed one are infinite, a moving one has no depth.
-For a ball these are in kg, N and N/m."""
+For a ball these are in kg, N and N/m. `table1` are its values in the scene of Table 1."""
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
 
 
@@ -340,7 +343,8 @@ def _replaced(part: Any, values: Mapping[str, Any]) -> Any:
 
 
 PARTS: dict[str, tuple[Any, ...]] = {
-    "indenter": get_args(Indenter), "foundation": get_args(AnyFoundation), "support": get_args(Support),
+    "indenter": (*SHAPES.values(), Profile, Revolved), "foundation": (*FOUNDATIONS.values(),),
+    "support": (*SUPPORTS.values(),),
     "drive": (Drive,), "run": (Run,),
 }  # fmt: skip
 """The parts of a scene, and what each can be."""
@@ -373,8 +377,4 @@ SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
 }  # fmt: skip
 """By section of a file: the key that selects a class, empty if there is only one, and the classes."""
 
-TABLE1_SUPPORTS: dict[str, Support] = {
-    "fixed": Fixed(depth=3e-4),
-    "dead-weight": DeadWeight(mass=1000.0),
-    "suspended": Suspended(mass=1000.0, stiffness=3e7),
-}
+TABLE1_SUPPORTS: dict[str, Support] = {kind: cls(**cls.table1) for kind, cls in SUPPORTS.items()}

@@ -1,4 +1,7 @@
-"""Waveforms: velocities V(t) that a scene file can name, each a function of the time in s."""
+"""Waveforms: velocities V(t) that a scene file can name, each a function of the time in s.
+
+A new one is a class with its name `waveform` and V(t), and an entry of `WAVEFORMS`.
+"""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +15,12 @@ MOST_CORNERS = 100_000
 """Most corners of a list; a drive has fewer, see `drives.MOST_CYCLES`."""
 
 
-class _Waveform(Part):
+class Waveform(Part):
+    """A velocity V(t): its period, the time in s at which it has settled, and its final velocity."""
+
+    waveform: ClassVar[str]
+    period: float = math.inf
+    settled: float = math.inf
     final_velocity: ClassVar[float | None] = None
 
     def __post_init__(self) -> None:
@@ -20,10 +28,15 @@ class _Waveform(Part):
 
 
 @dataclass(frozen=True, eq=False)
-class _Swing(_Waveform):
+class _Swing(Waveform):
     amplitude: Value = quantity("m/s", "largest velocity minus the mean")
     frequency: Value = quantity("1/s", "cycles per unit time")
     mean: Value = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
+
+    @property
+    def period(self) -> float:  # type: ignore[override]
+        """The duration of a cycle."""
+        return 1.0 / self.frequency
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +85,7 @@ class Triangle(_Swing):
 
 
 @dataclass(frozen=True, eq=False)
-class SmoothRamp(_Waveform):
+class SmoothRamp(Waveform):
     """V = velocity tanh(t/rise_time): a smooth rise from rest, with a kink only at the start.
 
     >>> round(SmoothRamp(velocity=0.1, rise_time="10 ms")(0.01), 6)
@@ -82,6 +95,11 @@ class SmoothRamp(_Waveform):
     waveform: ClassVar[str] = "smooth-ramp"
     velocity: Value = quantity("m/s", "final velocity", minimum=-math.inf)
     rise_time: Value = quantity("s", "time to reach tanh 1 = 76 % of it")
+
+    @property
+    def settled(self) -> float:  # type: ignore[override]
+        """The time after which tanh is 1 to the last digit."""
+        return AT_LAST * self.rise_time
 
     @property
     def final_velocity(self) -> float:  # type: ignore[override]

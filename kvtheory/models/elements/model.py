@@ -15,7 +15,7 @@ from kvtheory.models.elements import kernels
 from kvtheory.models.elements.kernels import Constants, Surface
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
-from kvtheory.scene.indenters import Circle, Indenter, PowerLaw, Profile, Revolved, Sphere, Wedge
+from kvtheory.scene.indenters import Circle, Indenter, Revolved, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Element
@@ -195,15 +195,11 @@ def surface_of(indenter: Indenter) -> Surface:
     (1.0, 1.0, 0.5)
     """
     line: Any = getattr(indenter, "profile", indenter)
-    size, exponent, steep, across, stretch = 1.0, 2.0, 1.0, 0.0, 1.0
-    if isinstance(line, Profile):
-        exponent = -1.0
-    elif isinstance(line, Wedge):
-        exponent, steep = 1.0, line.inclination
-    elif isinstance(line, PowerLaw):
-        size, exponent = line.length, line.exponent
-    else:
-        size, exponent = line.radius, 0.0 if isinstance(line, Circle) else 2.0
+    across, stretch = 0.0, 1.0
+    if isinstance(line, Circle):
+        steep, size, exponent = 1.0, line.radius, 0.0
+    else:  # a shape without a power is called, and not compiled
+        steep, size, exponent = getattr(line, "power", (1.0, 1.0, -1.0))
     if isinstance(indenter, Sphere):
         across, stretch = 0.5 / (indenter.radius_across or indenter.radius), indenter.stretch
     elif isinstance(indenter, Revolved) and exponent == 2.0:

@@ -23,7 +23,6 @@ from typing import NamedTuple
 
 from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady.ball import angle_and_tail
-from kvtheory.scene.indenters import power_of
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms as cf
@@ -147,7 +146,7 @@ PARABOLA, BALL = _of_parabola(), _of_ball()
 def shape_of(scene: Scene) -> Shape:
     """Return the shape of a parabola, a ball, a power law or a wedge."""
     known = {"parabola": PARABOLA, "sphere": BALL}.get(scene.indenter.shape)
-    return known or line(float(power_of(scene.indenter)[2]))
+    return known or line(float(scene.indenter.power[2]))
 
 
 class Enclosure(NamedTuple):

@@ -22,7 +22,7 @@ import numpy as np
 
 from kvtheory.models.steady.roots import root
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
-from kvtheory.scene.indenters import Parabola, Sphere, power_of
+from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -82,7 +82,8 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
     if isinstance(scene.indenter, Parabola | Sphere):
         return 1.0, scene.indenter.radius, 2.0
-    return power_of(scene.indenter)
+    slope, L, n = scene.indenter.power
+    return np.asarray(slope), np.asarray(L), np.asarray(n)
 
 
 def _carrying(scene: Scene, limit: Limit, load: Value) -> tuple[Value, Value]:

@@ -20,7 +20,6 @@ from kvtheory.models.steady.methods import CLOSED, METHODS, plain
 from kvtheory.models.steady.power_law import trailing_edge
 from kvtheory.results import Certificate
 from kvtheory.scene.capabilities import lacks_kelvin_voigt
-from kvtheory.scene.indenters import power_of
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -93,7 +92,7 @@ PEAK_BRACKET = 0.5, 4.0
 def _peak_of_dead_weight(scene: Scene) -> tuple[Array, Array]:
     """Return velocity and friction coefficient at the one maximum of a dead weight on Kelvin-Voigt."""
     line = scene.indenter.per_width
-    slope = power_of(scene.indenter)[2] if line else np.asarray(2.0)
+    slope = np.asarray(scene.indenter.power[2]) if line else np.asarray(2.0)
     n = np.broadcast_to(slope, scene.shape).astype(float)
 
     def contact(l: Array, n: Array) -> tuple[Array, ...]:

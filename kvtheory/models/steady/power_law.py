@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.roots import root
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.indenters import power_of
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -57,7 +56,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     K, support = scene.foundation.stiffness, scene.support
     l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     # Full arrays: NumPy rounds a power differently where one exponent stands for all.
-    slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in power_of(scene.indenter))
+    slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in scene.indenter.power)
     if scene.held:
         delta = support.depth
         a = L * root(n * delta / (slope * L), n)
