@@ -21,8 +21,8 @@ LAWS = "kelvin-voigt", "generalized-maxwell", DAMPED, "fractional-kelvin-voigt"
 SUPPORTS = "fixed", "dead-weight", "suspended"
 DRIVES = "rigid", "spring"
 
-KELVIN_VOIGT, ONE_OF_BOTH, UNMIXED = LAWS[:1], LAWS[:2], (*LAWS[:2], LAWS[3])
-"""The laws with a damper alone, with a damper or arms, and all but arms beside a damper."""
+KELVIN_VOIGT, ONE_OF_BOTH, FINITE = LAWS[:1], LAWS[:2], LAWS[:3]
+"""The laws with a damper alone, with a damper or arms, and with both: those with a finite state."""
 CLOSED = "parabola", "power-law", "wedge", "sphere"
 """Shapes whose steady sliding on a Kelvin-Voigt foundation is in closed form, with one root at most."""
 QUADRATIC = "parabola", "sphere"
@@ -102,13 +102,14 @@ lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("
 lacks_continuum = Needs(Scenes(("parabola",), ONE_OF_BOTH))
 lacks_rigid_continuum = Needs(Scenes(("parabola",), ONE_OF_BOTH, drives=("rigid",)))
 lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ONE_OF_BOTH))
-lacks_stability = lacks_quadratic_on_arms
+lacks_stability = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
-lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
-lacks_limits = Needs(Scenes(QUADRATIC, UNMIXED), *lacks_asymptotes.sets)
+lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes(tuple(SHAPES)[:-1]), Scenes(laws=KELVIN_VOIGT))
 lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], ONE_OF_BOTH))
-lacks_scripts = Needs(Scenes(QUADRATIC, UNMIXED), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
+lacks_scripts = Needs(
+    Scenes(QUADRATIC, (*ONE_OF_BOTH, LAWS[-1])), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
+)
 
 
 @dataclass(frozen=True)
