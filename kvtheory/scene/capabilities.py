@@ -93,7 +93,7 @@ class Needs:
 lacks_parabola = Needs(Scenes(("parabola",)))
 lacks_quadratic = Needs(Scenes(QUADRATIC))
 lacks_kelvin_voigt = Needs(Scenes(laws=KELVIN_VOIGT))
-lacks_arms = Needs(Scenes(laws=ONE_OF_BOTH))
+lacks_arms = Needs(Scenes(laws=FINITE))
 lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
 lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
