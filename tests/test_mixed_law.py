@@ -9,7 +9,7 @@ import kvtheory as kv
 from kvtheory.explorer import explorer_page
 from kvtheory.models.steady import general_stability, stability
 from kvtheory.scene.capabilities import DAMPED
-from tests import SUPPORTS
+from tests import SUPPORTS, reference_motions
 
 ARMS = [(2e10, 5e-3), (1e10, 0.2)]
 MIXED = kv.GeneralizedMaxwell(1e10, arms=ARMS, damping=5e8)
@@ -168,6 +168,33 @@ def test_one_determinant_returns_the_closed_form_of_kelvin_voigt(shape):
         np.testing.assert_allclose(found, known, rtol=1e-9)
     if shape.per_width:
         assert upper[1:] == pytest.approx([0.1722e6, 6.879e6, 101.95e6], rel=1e-3)
+
+
+@pytest.mark.parametrize("support", ["dead-weight", "suspended"])
+@pytest.mark.parametrize("V", [0.214, 0.3])
+def test_at_the_onset_of_instability_the_histories_of_all_elements_give_a_real_stiffness(
+    support, V
+):
+    """Both edges carry pressure where the indenter moves; a rate without growth belongs to this stiffness."""
+    here = scene(support, drive=kv.Drive(V, stiffness=1e6))
+    found = kv.stability(here, quantity=["critical_stiffness", "frequency"])
+    omega = 2.0 * np.pi * found.frequency
+    k_x = reference_motions.stiffness(here, kv.steady(here).depth, omega)
+    assert k_x == pytest.approx(found.critical_stiffness, rel=1e-6)
+
+
+@pytest.mark.parametrize("number", [0.3, 3.0, 20.0])
+def test_the_response_is_that_of_the_histories_of_all_elements(number):
+    V, d, R = 0.1, 3e-4, 0.01
+    given = general_stability.Contact.of(scene("fixed").at(np.array([V])))
+    omega = number * V / np.sqrt(2 * R * d)
+    sigma, slope = 1j * omega * given.c / V, given.c / R
+    A, B, C, D = (each[0, 0] for each in given.law.response(given.c, given.eta, sigma))
+    slope, c = slope[0, 0], given.c[0, 0]
+    found = np.array([[A, slope * C], [slope * B, slope * slope * D]]) * c
+    assert found == pytest.approx(
+        np.array(reference_motions.response(MIXED, R, V, d, omega)), rel=1e-7
+    )
 
 
 # Other questions
