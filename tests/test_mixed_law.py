@@ -7,7 +7,14 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.explorer import explorer_page
-from kvtheory.models.steady import general_stability, stability
+from kvtheory.models.steady import (
+    ball,
+    ball_viscoelastic,
+    contact,
+    convolution,
+    general_stability,
+    stability,
+)
 from kvtheory.scene.capabilities import DAMPED
 from tests import SUPPORTS, reference_motions
 
@@ -86,6 +93,24 @@ def test_any_shape_with_slow_arms_is_that_on_kelvin_voigt(shape):
         within(found, truth, ["load", "friction_force", "peak_pressure", "dissipated_in_contact"])
 
 
+@pytest.mark.parametrize(
+    "shape", [kv.Parabola(0.01), kv.Circle(0.01), kv.PowerLaw(0.01, 1.4), kv.Wedge(0.05)]
+)
+def test_the_convolution_of_any_law_confirms_the_contact_on_kelvin_voigt(shape):
+    """A damper without arms; two methods that share the shape alone."""
+    plain = kv.Foundation(1e10, 0.05)
+    for V in (1e-4, 1e-2, 1.0):
+        here = kv.Scene(shape, plain, kv.Fixed(1e-4), kv.Drive(V))
+        memory, l_r = convolution.memory_of(here), V * plain.retardation_time
+        general = convolution.ViscoelasticLine(shape, memory, l_r).at(1e-4)
+        known = contact.ConvexLine(shape, l_r).at(1e-4)
+        values, errors, _ = general.quantities()
+        truth, own, _ = known.quantities()
+        for name, value in values.items():
+            claimed = errors[name] + own.get(name, 0.0) + convolution.FLOOR
+            assert value == pytest.approx(truth[name], rel=claimed, abs=0), name
+
+
 @pytest.mark.parametrize("foundation", [MIXED, replace(MIXED, damping=0.0)])
 def test_convolution_knows_the_error_of_work_where_arms_relax_close_to_the_edge(foundation):
     """The layer in which arms are loaded is a millionth of the contact: both rules have the work wrong."""
@@ -103,6 +128,20 @@ def test_a_ball_is_the_sum_of_its_strips():
     each, across = kv.steady(strips), np.sqrt(2 * 0.01 * 1e-4) * np.cos(angle) * weight
     assert found.load == pytest.approx(across @ each.load, rel=1e-10)
     assert found.friction_force == pytest.approx(across @ each.friction_force, rel=1e-10)
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_the_moments_of_any_law_confirm_the_closed_form_of_a_ball(support):
+    load = {"mass": 1.0} if support != "fixed" else {"depth": 1e-4}
+    kind = {"fixed": kv.Fixed, "dead-weight": kv.DeadWeight, "suspended": kv.Suspended}[support]
+    held = kind(**load, stiffness=1e4) if support == "suspended" else kind(**load)
+    here = kv.Scene(
+        kv.Sphere(0.01), support=held, drive=kv.Drive(np.geomspace(1e-6, 1e3, 30))
+    ).flat()
+    for general, known in zip(
+        ball_viscoelastic.quantities(here), ball.quantities(here), strict=False
+    ):
+        assert general == pytest.approx(known, rel=ball_viscoelastic.RELATIVE_ERROR)
 
 
 # Limits

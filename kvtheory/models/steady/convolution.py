@@ -148,7 +148,8 @@ def memory_of(scene: Scene) -> Memory:
         return None
     if isinstance(foundation, FractionalKelvinVoigt):
         return Springpot(speed * foundation.retardation_time, foundation.order)
-    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
+    pairs = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
+    arms = np.reshape(pairs, (-1, 2))
     K, damper = foundation.stiffness, speed * foundation.damping
     return Arms(arms[:, 0] / K, speed * arms[:, 1], damper / K)
 
