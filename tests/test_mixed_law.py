@@ -239,6 +239,16 @@ def test_the_response_is_that_of_the_histories_of_all_elements(number):
 # Other questions
 
 
+@pytest.mark.parametrize("key", ["C", "viscosity"])
+def test_the_symbol_of_the_damper_is_understood(key):
+    told = rf'foundation\.{key}.*did you mean "damping"'
+    arms = 'foundation.arms=[["20 GN/m^3", "5 ms"]]'
+    with pytest.raises(kv.SceneError, match=told):
+        kv.load_scene(
+            overrides=["foundation.kind=generalized-maxwell", arms, f"foundation.{key}=1 N*s/m^3"]
+        )
+
+
 def test_what_follows_motion_by_the_continuum_refuses_it_in_one_sentence():
     told = (
         r"holds for foundation\.kind = .* only, not for arms beside foundation\.damping; `elements`"

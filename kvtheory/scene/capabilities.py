@@ -80,7 +80,9 @@ class Needs:
         """Return what the scene lacks."""
         kind = scene.kind
         if kind not in self.told:
-            nearest = min((each.lacking(*kind) for each in reversed(self.sets)), key=len)
+            shape = kind[0]
+            sets = sorted(self.sets, key=lambda s: (shape not in s.shapes, -len(s.laws)))
+            nearest = min((each.lacking(*kind) for each in sets), key=len)
             self.told[kind] = nearest[0] if nearest else ""
         return self.told[kind]
 
