@@ -152,13 +152,12 @@ def lines(scene: Scene) -> list[Line]:
             there = "" if np.all(scene.foundation.damping) else f"; where C_0 = 0, {fast}"
             fast = formulas[1].replace("C V", "C_0 V") + there
             name, total = "L2", "C = C_0 + sum K_i tau_i, C_0 of the damper"
-            numbers, bounds = (42, LISTED[support][0][2]), (*bounds[:2], None)
+            numbers, bounds = LISTED[support][0][1:], (*bounds[:2], None)
+        first, last = numbers if line else (None, None)
         return [
-            Line(
-                "L1", MU, "low", numbers[0] if line else None, f"C V/(R K), {total}", low, bounds[0]
-            ),
+            Line("L1", MU, "low", first, f"C V/(R K), {total}", low, bounds[0]),
             Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
-            Line(name, MU, "high", numbers[1] if line else None, fast, high, bounds[2]),
+            Line(name, MU, "high", last, fast, high, bounds[2]),
         ]
     found: list[Line] = []
     for quantity, *numbers in LISTED[support]:
