@@ -8,6 +8,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.explorer import explorer_page
 from kvtheory.models.steady import (
+    asperities,
     ball,
     ball_viscoelastic,
     contact,
@@ -15,6 +16,8 @@ from kvtheory.models.steady import (
     general_stability,
     stability,
 )
+from kvtheory.models.steady.cells import ConvexProfile, Surface
+from kvtheory.models.steady.revolved import Strip
 from kvtheory.scene.capabilities import DAMPED
 from tests import SUPPORTS, reference_motions
 
@@ -142,6 +145,46 @@ def test_the_moments_of_any_law_confirm_the_closed_form_of_a_ball(support):
         ball_viscoelastic.quantities(here), ball.quantities(here), strict=False
     ):
         assert general == pytest.approx(known, rel=ball_viscoelastic.RELATIVE_ERROR)
+
+
+def test_a_profile_of_functions_is_revolved_beyond_kelvin_voigt():
+    profile = kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x)
+    springpot = kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)
+    here = kv.Scene(kv.Revolved(profile), springpot, kv.Fixed(1e-4), kv.Drive(0.1))
+    truth = kv.steady(replace(here, indenter=kv.Sphere(0.01)))
+    within(kv.steady(here), truth, ["load", "friction_force", "trailing_edge", "peak_pressure"])
+
+
+def test_strips_of_functions_with_a_kink_are_those_on_kelvin_voigt():
+    """A strip has the kink of the profile where the circle of its radius crosses it."""
+    profile = kv.Profile(
+        lambda x: 50.0 * x * x + 0.02 * max(abs(x) - 8e-4, 0.0),
+        lambda x: 100.0 * x + (np.copysign(0.02, x) if abs(x) > 8e-4 else 0.0), kinks=(-8e-4, 8e-4),
+    )  # fmt: skip
+    plain = kv.Foundation(1e10, 0.05)
+    here = kv.Scene(kv.Revolved(profile), plain, kv.Fixed(1e-4), kv.Drive(0.03))
+    middle = convolution.ViscoelasticLine(
+        ConvexProfile(profile, 1.0), convolution.memory_of(here), 1.5e-3
+    )
+    known = asperities.AnyLine(Surface(profile, 1.0), 1.5e-3)
+    middle.at(1e-4)
+    for y in (2e-4, 9e-4):
+        depth = 1e-4 - profile.height(y)
+        found, truth = (
+            line.strips(Strip(profile, y, np.inf, 1e-12)).at(depth) for line in (middle, known)
+        )
+        assert found.load == pytest.approx(truth.load, rel=1e-12)
+        assert found.friction()[0] == pytest.approx(truth.friction()[0], rel=1e-12)
+
+
+def test_functions_that_are_not_convex_are_refused_beyond_kelvin_voigt_when_revolved():
+    hollow = kv.Profile(
+        lambda x: 50.0 * x * x + 1e-5 * np.sin(4e3 * x) ** 2,
+        lambda x: 100.0 * x + 4e-2 * np.sin(8e3 * x), reach=0.01,
+    )  # fmt: skip
+    here = kv.Scene(kv.Revolved(hollow), MIXED, kv.Fixed(1e-4))
+    with pytest.raises(ArithmeticError, match="not convex down to"):
+        kv.steady(here)
 
 
 # Limits

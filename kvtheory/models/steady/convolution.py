@@ -336,8 +336,14 @@ class ViscoelasticLine:
         self.shape, self.memory, self.l_r, self.reach = shape, memory, l_r, shape.reach
 
     def strips(self, strip: Any) -> "ViscoelasticLine":
-        """Return the line contact of one strip."""
-        strip.kinks = self.shape.kinks  # next to a tip, the strip has one nearly as sharp
+        """Return the line contact of one strip, which has the kinks of the profile at their radii."""
+        y, shape = strip.y, self.shape
+        cuts = {math.sqrt((x - y) * (x + y)) for x in map(abs, shape.kinks) if x > y}
+        # Next to a tip, the strip has one nearly as sharp.
+        strip.kinks = *({0.0} & set(shape.kinks)), *(side * x for x in cuts for side in (-1.0, 1.0))
+        if isinstance(shape, ConvexProfile):
+            strip.kinks = *strip.kinks, *((-y, y) if 0.0 in shape.kinks else ())
+            strip.bent, strip.noise = shape.bent, shape.noise
         return ViscoelasticLine(strip, self.memory, self.l_r)
 
     @property
