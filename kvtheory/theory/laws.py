@@ -314,12 +314,12 @@ class ElementStep(NamedTuple):
 
 
 class Element(NamedTuple):
-    """One element of the foundation: a spring K (N/m^3) with a damper C (N s/m^3) or arms K_i, tau_i (s).
+    """One element of the foundation: a spring K (N/m^3) with a damper C (N s/m^3) and arms K_i, tau_i (s).
 
     At a compression u its pressure is p = K u + C u' + sum s_i, s_i' = K_i u' - s_i/tau_i. Detached, p
     vanishes and u is a sum of modes that decay at the `rates` with the `shares`; `to_modes` and `from_modes`
-    convert between them and the compressions of the dampers of the arms, y_i = u - s_i/K_i. Without arms, u
-    itself is the one mode.
+    convert between them and the compressions of all dampers: those of the arms, y_i = u - s_i/K_i, then u
+    itself if C > 0.
 
     >>> element = Element.of(2.0, 0.2)
     >>> element.retardation_time, element.longest_time, element.pressure(1.0, 5.0)
@@ -337,22 +337,26 @@ class Element(NamedTuple):
 
     @classmethod
     def of(cls, stiffness: float, damping: float, arms: Any = ()) -> "Element":
-        """Return an element with a damper or, without it, with arms (K_i, tau_i).
+        """Return an element with a damper, arms (K_i, tau_i), or both.
 
-        y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i); its inverse has the
-        retardation times for eigenvalues, each longer than that of an arm.
+        The inverse of y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i), and has the
+        retardation times for eigenvalues. The damper is one more arm, with tau_i = 0 and K_i tau_i = C. Each
+        retardation time is longer than that of an arm; the shortest, of a damper, is at least that of all
+        rates in sum.
         """
         K, C, one = float(stiffness), float(damping), np.ones(1)
         K_i, tau_i = np.array(arms, dtype=float).reshape(-1, 2).T.copy()
         if not K_i.size:
             return cls(K, C, K_i, tau_i, one * (K / C), one, np.eye(1), np.eye(1))
-        weight = np.sqrt(K_i * tau_i)
-        times, vectors = np.linalg.eigh(np.diag(tau_i) + np.outer(weight, weight) / K)
+        glassy, damped, own = K + K_i.sum(), C > 0.0, np.append(tau_i, np.zeros(int(C > 0.0)))
+        weight = np.sqrt(np.append(K_i * tau_i, [C] if damped else []))
+        times, vectors = np.linalg.eigh(np.diag(own) + np.outer(weight, weight) / K)
         back, to_modes = (
             np.ascontiguousarray(m) for m in (vectors / weight[:, None], vectors.T * weight)
         )
-        shares, rates = K_i / (K + K_i.sum()) @ back, 1.0 / np.maximum(times, tau_i.min())
-        return cls(K, 0.0, K_i, tau_i, rates, shares, to_modes, back)
+        shortest = 1.0 / (glassy / C + (1.0 / tau_i).sum()) if damped else tau_i.min()
+        shares = back[-1].copy() if damped else K_i / glassy @ back
+        return cls(K, C, K_i, tau_i, 1.0 / np.maximum(times, shortest), shares, to_modes, back)
 
     @property
     def retardation_time(self) -> float:
