@@ -294,6 +294,9 @@ def edge_at(
     if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
         untouched(run)
         return SIDES[k] * math.sqrt(max(at.d, 0.0)), index, sigma
+    if state == TOUCHING and run.clock.paused[run.now.piece]:  # both surfaces stand still
+        free(run, at, run.segments[side.segment].edge, side.index, side.sigma)
+        return float(side.xi), int(side.index), float(side.sigma)
     segment, span, Y = run.segments[side.segment], at.s - run.now.s, at.Y
     edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
     inward, low, high = (
