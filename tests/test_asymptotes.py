@@ -196,7 +196,7 @@ def test_one_law_is_the_limit_of_another(kind, ball):
     assert np.all(np.abs(off) < 2e-3)
     assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
     slow = kv.steady(scene, over={V: [1e-6, 1e-7]}).friction_coefficient
-    off = slow / (ZENER.damping * np.array([1e-6, 1e-7]) / (1e10 * 0.01)) - 1.0
+    off = slow / (ZENER.slow_damping * np.array([1e-6, 1e-7]) / (1e10 * 0.01)) - 1.0
     assert np.all(np.abs(off) < 1e-2)
     assert off[0] / off[1] == pytest.approx(10.0, rel=0.1)
 

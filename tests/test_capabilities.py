@@ -10,6 +10,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.explorer import explorer_page
 from kvtheory.scene.capabilities import CLOSED, DRIVES, LAWS, QUESTIONS, SHAPES, SUPPORTS
+from kvtheory.scene.foundations import DAMPED
 from tests import SCENES
 
 FUNCTIONS = kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x)
@@ -21,6 +22,7 @@ BODIES = {
 FOUNDATIONS = {
     "kelvin-voigt": kv.Foundation(1e10, 0.01),
     "generalized-maxwell": kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]),
+    DAMPED: kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)], damping=1e8),
     "fractional-kelvin-voigt": kv.FractionalKelvinVoigt(1e10, 0.01, 0.5),
 }
 SCALE = {True: 1.0, False: 1e-3}

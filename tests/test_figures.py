@@ -348,5 +348,5 @@ def test_on_rubber_sliding_starts_without_the_first_peak_of_kelvin_voigt(made):
             friction = data.ends[support][name].friction_force
             assert run.friction_force[-1] == pytest.approx(float(friction), rel=2e-3)
     kinds = importlib.import_module("figures.rubber_start").foundations().values()
-    assert [each.damping for each in kinds] == pytest.approx([1e9, 1e9, 1e9])
+    assert [each.slow_damping for each in kinds] == pytest.approx([1e9, 1e9, 1e9])
     assert len(drawn.axes) == 6

@@ -274,3 +274,71 @@ def test_devices_and_files_that_are_too_large_are_not_read(tmp_path, monkeypatch
             (OSError, ValueError), match=rf"{path.name}.*{told}|{told}.*{path.name}"
         ):
             read()
+
+
+MIXED = '[foundation]\nkind = "generalized-maxwell"\n' + (
+    'stiffness = "10 GN/m^3"\narms = [["20 GN/m^3", "5 ms"], ["10 GN/m^3", "0.2 s"]]\n'
+)
+
+
+def test_arms_beside_a_damper(tmp_path):
+    foundation = kv.GeneralizedMaxwell(
+        "10 GN/m^3", arms=[["20 GN/m^3", "5 ms"], ["10 GN/m^3", "0.2 s"]], damping="0.5 MPa*s/mm"
+    )
+    scene = kv.Scene(foundation=foundation)
+    assert foundation.damping == 5e8
+    assert foundation.slow_damping == pytest.approx(2.6e9, rel=1e-15)
+    assert foundation.retardation_time == pytest.approx(0.26, rel=1e-15)
+    assert scene.values()["foundation.damping"] == 5e8
+    path = tmp_path / "mixed.toml"
+    path.write_text(files.to_toml(scene))
+    assert kv.load_scene(path) == scene
+    many = kv.load_scene(path, ['foundation.damping=["0 N*s/m^3", "1 GN*s/m^3"]'])
+    assert many.shape == (2,)
+    assert many.foundation.slow_damping == pytest.approx([2.1e9, 3.1e9])
+    assert foundation.plain(2.0).slow_damping == pytest.approx(5.2e9)
+
+
+def test_without_a_damper_arms_are_written_as_before():
+    plain = kv.GeneralizedMaxwell(1e10, arms=[(2e10, 5e-3)])
+    assert plain.damping == 0.0
+    assert "damping" not in files.to_toml(kv.Scene(foundation=plain))
+    assert plain == replace(plain, damping=0.0) == replace(plain)
+
+
+def test_temperature_shifts_the_damper_with_the_times():
+    """All times of G shift by a_T, so that int (G - K) dt does (F25)."""
+    warm = kv.GeneralizedMaxwell(
+        1e10, arms=[(2e10, 5e-3)], damping=5e8, temperature="60 degC",
+        reference_temperature="23 degC", wlf=["17.44", "51.6 K"],
+    )  # fmt: skip
+    assert warm.damping == 5e8 * warm.shift_factor
+    assert warm.slow_damping == pytest.approx(6e8 * warm.shift_factor, rel=1e-15)
+    assert replace(warm) == warm
+    assert kv.Scene(foundation=warm).values()["foundation.damping"] == 5e8
+    kept = replace(warm, wlf=None, temperature=None, reference_temperature=None)
+    assert kept.damping == warm.damping
+
+
+@pytest.mark.parametrize(("damping", "told"), [
+    ('"0.5 MPa"', 'foundation.damping = "0.5 MPa": the unit "MPa" has the wrong dimension; expected a '
+     'quantity in N*s/m^3, such as "0.5 GN*s/m^3"'),
+    ('"-1 N*s/m^3"', "of at least 0"),
+    ("3", "foundation.damping = 3: has no unit; expected a quantity in N*s/m^3"),
+])  # fmt: skip
+def test_a_wrong_damping_beside_arms(tmp_path, damping, told):
+    path = write(tmp_path, f"{MIXED}damping = {damping}\n")
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(path)
+    assert told in str(caught.value)
+
+
+def test_a_layer_takes_no_damper_and_a_kelvin_voigt_foundation_none_beside_its_own():
+    layer = {"modulus": "5 MPa", "thickness": "2 mm", "poisson_ratio": 0.45}
+    with pytest.raises(
+        kv.SceneError, match=r"foundation\.damping = 1000\.0: a layer has arms alone"
+    ):
+        kv.GeneralizedMaxwell(**layer, arms=[["30 MPa", "10 ms"]], damping=1e3)
+    assert kv.GeneralizedMaxwell(**layer, arms=[["30 MPa", "10 ms"]], damping=0.0).damping == 0.0
+    with pytest.raises(kv.SceneError, match=r"foundation\.damping.*unknown key"):
+        kv.load_scene(overrides=["foundation.damping=1 GN*s/m^3"])

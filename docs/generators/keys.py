@@ -67,7 +67,8 @@ is Table 1 of the paper, with `{Scene().support.kind}` support."""
 _ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of stiffness and relaxation time,
 `[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`. In a layer, given by `modulus`, `thickness` and
 `poisson_ratio`, they are pairs of modulus and relaxation time, `[["30 MPa", "10 ms"]]`, and their stiffness
-follows from the layer as that of the foundation does.
+follows from the layer as that of the foundation does. `damping` is that of a damper beside the arms; a layer
+takes none, as a damping per unit area would not follow its thickness.
 
 `temperature` multiplies every time of a foundation by a_T. The times in the file are those at the
 `reference_temperature`; the law is `wlf = ["17.44", "51.6 K"]`, the constants C_1 and C_2 of

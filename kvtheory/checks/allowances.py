@@ -183,7 +183,7 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     The error of Euler's method in exp(-t/T) is (h/2T)(t/T) exp(-t/T), an eighth of the band's width times
     t/T, with T = M/(C L) of the current contact; and (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
-    damping, mass = theory.scene.foundation.damping, theory.scene.support.mass
+    damping, mass = theory.scene.foundation.slow_damping, theory.scene.support.mass
     rate = 0.5 * damping * contact_extent(theory, curves) / mass
     ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
     with np.errstate(divide="ignore"):
@@ -300,7 +300,7 @@ def _response(
     length = _contact_length(curves)
     l_r = np.abs(curves["sliding_velocity"]) * foundation.retardation_time
     stiffness = theory.stiffness(curves["depth"], a, l_r)
-    damping = foundation.damping * theory.width(curves["depth"]) * np.maximum(length, a)
+    damping = foundation.slow_damping * theory.width(curves["depth"]) * np.maximum(length, a)
     still = force / stiffness
     larger = np.maximum(still, np.append(still[0], still[:-1]))
     ages = np.maximum(np.diff(time, prepend=0.0), 0.0)

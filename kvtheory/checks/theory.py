@@ -118,12 +118,10 @@ class Theory:
         return K * self.width(depth) * (np.hypot(a, l_r) + a) + k_s
 
     def damping(self, duration: Any) -> Any:
-        """Return C; for arms, their stress after a duration (s) over the rate of compression."""
-        arms = self.scene.foundation.arms
-        if not arms:
-            return self.scene.foundation.damping
-        parts = ((arm.stiffness * arm.relaxation_time, arm.relaxation_time) for arm in arms)
-        return sum(-C * np.expm1(-duration / tau) for C, tau in parts)
+        """Return C, and of arms their stress after a duration (s) over the rate of compression."""
+        foundation = self.scene.foundation
+        times = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
+        return sum((-K * tau * np.expm1(-duration / tau) for K, tau in times), foundation.damping)
 
     @cached_property
     def motion(self) -> Any:
@@ -158,7 +156,7 @@ class Theory:
         a, l_r = state.half_length, state.retardation_length
         stiffness = float(self.stiffness(state.depth, a, l_r))
         extent = float(self.width(state.depth)) * a * (trailing_edge_ratio(l_r / a) + 1.0)
-        damping = self.scene.foundation.damping * extent
+        damping = self.scene.foundation.slow_damping * extent
         root = complex(damping * damping - 4.0 * M * stiffness) ** 0.5
         return Rates.of([2.0 * M / (damping + root), (damping + root) / (2.0 * stiffness)])
 
@@ -190,8 +188,7 @@ class Theory:
             raise ArithmeticError(f"that is {end / run:.3g} times run.duration")
         slow = foundation.retardation_time
         if foundation.arms:  # no retardation takes longer than this
-            glassy = 1.0 + sum(arm.stiffness for arm in foundation.arms) / foundation.stiffness
-            slow = glassy * max(arm.relaxation_time for arm in foundation.arms)
+            slow += max(arm.relaxation_time for arm in foundation.arms)
         if end > LONGEST * slow:
             raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
         if end <= self.last_change + DECAYED * slow or not self.scene.drive.rigid:

@@ -278,7 +278,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
     depth = np.array([rule.start for rule in rules]) * static.depth
     rate, along, along_rate = np.zeros((3, len(rules)))
-    damper = np.array([rule.damper for rule in rules]) * scene.foundation.damping
+    damper = np.array([rule.damper for rule in rules]) * scene.foundation.slow_damping
     damper *= static.load / (scene.foundation.stiffness * static.depth)
     drops = np.array([1.0 - rule.drops for rule in rules])
     M_x, lifted, pulled = scene.drive_mass, np.zeros(len(rules)), np.zeros(len(rules))

@@ -77,8 +77,9 @@ def scene(
         key.replace(".", "_") if key in AMBIGUOUS else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
     }
-    if np.isfinite(foundation.damping).all():
-        quantities["damping"] = foundation.damping
+    if np.isfinite(foundation.slow_damping).all():
+        name = "slow_damping" if foundation.arms else "damping"
+        quantities[name] = foundation.slow_damping
     if foundation.temperature is not None:
         quantities["shift_factor"] = foundation.shift_factor
         quantities |= {

@@ -123,8 +123,10 @@ class AsymptoteReport(Recorded):
     `critical_velocity` is V* of the paper (Eqs. 47, 48), where both asymptotes cross, not the one at which
     sliding on a spring becomes unstable (`kvtheory.stability`). `regime` is ``"low"`` or ``"high"``: V is
     below or above V*, or, on a Prony series, elements pass the contact in a time longer or shorter than all
-    relaxation times; else ``"between"``. `use` names the asymptote that is within the tolerance, ``"L1"`` or
-    ``"L2"``, or else ``"exact"``. `maxima` are all local maxima of the friction coefficient over V > 0 that
+    relaxation times; else ``"between"``. Of arms beside a damper C, the time is also longer than C/K in the
+    former; in the latter it is shorter than C/G, G the sum of all stiffnesses. `use` names the asymptote that
+    is within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``. `maxima` are all local maxima of the
+    friction coefficient over V > 0 that
     stand out by more than the error of friction, as pairs of velocity and friction coefficient in the order
     of velocity;
     `peak_velocity` and `peak_friction_coefficient` are the highest, NaN if there is none. For arrays of

@@ -7,6 +7,7 @@ these; messages, tests and a page of the documentation are made from the table `
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from kvtheory.scene.foundations import DAMPED
 from kvtheory.scene.model import Scene
 
 SHAPES = {
@@ -15,11 +16,13 @@ SHAPES = {
     "revolved-callable": "a revolved profile of functions",
 }  # fmt: skip
 """The shapes of the table, in words; a revolved profile of functions is not known to be convex."""
-LAWS = "kelvin-voigt", "generalized-maxwell", "fractional-kelvin-voigt"
+LAWS = "kelvin-voigt", "generalized-maxwell", DAMPED, "fractional-kelvin-voigt"
+"""The laws of the table: the kinds of foundation, and arms beside a damper."""
 SUPPORTS = "fixed", "dead-weight", "suspended"
 DRIVES = "rigid", "spring"
 
-KELVIN_VOIGT, ARMS = LAWS[:1], LAWS[:2]
+KELVIN_VOIGT, ONE_OF_BOTH, FINITE = LAWS[:1], LAWS[:2], LAWS[:3]
+"""The laws with a damper alone, with a damper or arms, and with both: those with a finite state."""
 CLOSED = "parabola", "power-law", "wedge", "sphere"
 """Shapes whose steady sliding on a Kelvin-Voigt foundation is in closed form, with one root at most."""
 QUADRATIC = "parabola", "sphere"
@@ -47,9 +50,10 @@ class Scenes:
             ("foundation.kind", self.laws, law), ("support.kind", self.supports, support)
         ):  # fmt: skip
             if name not in valid:
-                named = _listed([f'"{each}"' for each in valid], "or")
+                named = _listed([f'"{each}"' for each in valid if each != DAMPED], "or")
                 why = f": {self.why}" if self.why and key == "support.kind" else ""
-                found.append(f'holds for {key} = {named} only, not for "{name}"{why}')
+                own = f'"{name}"' if name != DAMPED else "arms beside foundation.damping"
+                found.append(f"holds for {key} = {named} only, not for {own}{why}")
         if drive not in self.drives:
             found.append("holds for a rigid drive only, not with drive.stiffness")
         return found
@@ -89,21 +93,23 @@ class Needs:
 lacks_parabola = Needs(Scenes(("parabola",)))
 lacks_quadratic = Needs(Scenes(QUADRATIC))
 lacks_kelvin_voigt = Needs(Scenes(laws=KELVIN_VOIGT))
-lacks_arms = Needs(Scenes(laws=ARMS))
+lacks_arms = Needs(Scenes(laws=ONE_OF_BOTH))
 lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
 lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
 lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("rigid",)))
-lacks_continuum = Needs(Scenes(("parabola",), ARMS))
-lacks_rigid_continuum = Needs(Scenes(("parabola",), ARMS, drives=("rigid",)))
-lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ARMS))
-lacks_stability = lacks_quadratic_on_arms
+lacks_continuum = Needs(Scenes(("parabola",), ONE_OF_BOTH))
+lacks_rigid_continuum = Needs(Scenes(("parabola",), ONE_OF_BOTH, drives=("rigid",)))
+lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ONE_OF_BOTH))
+lacks_stability = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes(tuple(SHAPES)[:-1]), Scenes(laws=KELVIN_VOIGT))
-lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], ARMS))
-lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
+lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], ONE_OF_BOTH))
+lacks_scripts = Needs(
+    Scenes(QUADRATIC, (*ONE_OF_BOTH, LAWS[-1])), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
+)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
 """Foundations: rows of independent viscoelastic elements, each defined by its relaxation function G(t).
 
 An element compressed by u exerts the pressure p(t) = int G(t - t') du/dt' dt'. Every
-foundation has its `kind`; the relaxed `stiffness` K; the `arms` of a Prony series, in addition to
-it; and the `damping` C = int (G - K) dt, which governs slow sliding, with `retardation_time` C/K.
+foundation has its `kind`; the relaxed `stiffness` K; in addition to it the `damping` C of a damper and the
+`arms` of a Prony series; and the `slow_damping` int (G - K) dt, which governs slow sliding, with
+`retardation_time` int (G - K) dt/K.
 """
 
 import copy
@@ -16,6 +17,7 @@ import numpy as np
 
 from kvtheory.scene.mistakes import Problems, SceneError, mistake
 from kvtheory.scene.quantities import (
+    Derived,
     Part,
     Value,
     as_given,
@@ -40,8 +42,8 @@ LOWEST_ORDER = 1e-8
 """Lowest order of a springpot: its loss, which is proportional to it, would drown in rounding."""
 DISTINCT = 1e-6
 """Relative difference of relaxation times below which two arms count as the same."""
-TIMES = "retardation_time", "relaxation_time"
-"""The quantities that temperature shifts."""
+TIMES = "retardation_time", "relaxation_time", "damping"
+"""The quantities that temperature shifts; a damper is a stiffness times a time."""
 THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf"
 GAS_CONSTANT = 8.31446261815324
 """R, in J/(mol K), exact."""
@@ -59,6 +61,12 @@ MEASURED_RANGES = (
     ("lowest_temperature", "highest_temperature"),
 )
 MEASURED = sum(MEASURED_RANGES, ())
+DAMPED = "generalized-maxwell with damping"
+"""The law of arms beside a damper, in the table of capabilities."""
+NO_DAMPER = (
+    "a layer has arms alone, as its damping would not follow its thickness; expected foundation.stiffness "
+    "instead of modulus, thickness and poisson_ratio, or an arm with a short relaxation time"
+)
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
 
@@ -200,6 +208,7 @@ class _Relaxed(Part):
     )  # fmt: skip
     wlf: WLF | None = None
     arms: ClassVar[Any] = ()
+    damping: ClassVar[Any] = 0.0
 
     def __post_init__(self) -> None:
         problems = Problems()
@@ -210,10 +219,28 @@ class _Relaxed(Part):
         times = [(part, name) for part in held for name in TIMES if name in vars(part)]
         for part, name in times:  # without a law, a time that was shifted stays as it is
             time = getattr(part, name)
-            if is_derived(time):
+            if is_derived(time) and time.given is not None:
                 object.__setattr__(part, name, +time if lawless else as_given(time))
         with problems.catching("foundation", self):
             validate(self, "foundation")
+            if self.modulus is not None and np.any(damping := vars(self).get("damping")):
+                raise mistake("foundation.damping", damping, NO_DAMPER)
+        self._read_law(problems)
+        problems.report()
+        self._order_ranges()
+        for i, part in enumerate(held if self.modulus is not None else ()):
+            stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
+            section = f"foundation.arms[{i - 1}]" if i else "foundation"
+            derive(part, section, "stiffness", stiffness, "the layer")
+        if not lawless:
+            self._shift((part, name) for part, name in times if getattr(part, name) is not None)
+        if vars(self).get("damping", 0.0) is None:
+            object.__setattr__(self, "damping", Derived(0.0))
+        if not lawless or len(held) > 1:
+            self.mark(part for _, part in self.nested())
+
+    def _read_law(self, problems: Problems) -> None:
+        """Convert the law that shifts times, and report what it lacks."""
         if self.wlf is not None:
             with problems.catching("foundation.wlf", self.wlf):
                 if not isinstance(self.wlf, WLF) and not _is_pair(self.wlf):
@@ -225,19 +252,9 @@ class _Relaxed(Part):
             problems.append("foundation.wlf: cannot be given beside foundation.activation_energy")
         elif self.wlf is not None and not given:
             problems.append(missing("foundation", "reference_temperature", REFERENCE))
-        elif lawless and given:
+        elif self.wlf is None and self.activation_energy is None and given:
             told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
-        problems.report()
-        self._order_ranges()
-        for i, part in enumerate(held if self.modulus is not None else ()):
-            stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
-            section = f"foundation.arms[{i - 1}]" if i else "foundation"
-            derive(part, section, "stiffness", stiffness, "the layer")
-        if not lawless:
-            self._shift(times)
-        if not lawless or len(held) > 1:
-            self.mark(part for _, part in self.nested())
 
     def _order_ranges(self) -> None:
         """Raise `SceneError` if a measured range is empty."""
@@ -288,6 +305,7 @@ class _Relaxed(Part):
         own: dict[str, Any] = {name: +getattr(self, name) for name in names}
         if self.arms:
             own["arms"] = [(factor * arm.stiffness, +arm.relaxation_time) for arm in self.arms]
+            own["damping"] = factor * self.damping
         return type(self)(factor * self.stiffness, **own)
 
     def mapped(self, function: Any) -> Any:
@@ -327,9 +345,11 @@ class Foundation(_Relaxed):
     )
 
     @property
-    def damping(self) -> Value:
+    def damping(self) -> Value:  # type: ignore[override]
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
+
+    slow_damping = damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -361,18 +381,24 @@ class Arm(Part):
 
 @dataclass(frozen=True, eq=False)
 class GeneralizedMaxwell(_Relaxed):
-    """A spring in parallel with Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
+    """A spring in parallel with Maxwell arms and a damper: G = K + C delta(t) + sum K_i e^(-t/tau_i).
 
     `arms` are pairs of stiffness and relaxation time, one to a hundred, with different times; those of a
-    layer are pairs of modulus and relaxation time. One arm is the standard linear solid (Zener).
+    layer are pairs of modulus and relaxation time. One arm is the standard linear solid (Zener). The
+    `damping` C of the damper is zero if it is not given. A layer takes none: its modulus and arms follow the
+    thickness, which a damping per unit area would not.
 
     >>> zener = GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
-    >>> zener.arms[0].relaxation_time, zener.damping, zener.retardation_time
-    (0.01, 300000000.0, 0.03)
+    >>> zener.arms[0].relaxation_time, zener.damping, zener.slow_damping, zener.retardation_time
+    (0.01, 0.0, 300000000.0, 0.03)
     """
 
     kind: ClassVar[str] = "generalized-maxwell"
     arms: tuple[Arm, ...] = ()  # type: ignore[misc]
+    damping: Value = quantity(  # type: ignore[misc]
+        "N*s/m^3", "C, damping per unit area of a damper beside the arms; 0 if not given",
+        default=None, exclusive=False,
+    )  # fmt: skip
 
     def _read_arms(self, problems: Problems) -> Sequence[Arm]:
         with problems.catching("foundation.arms", self.arms):
@@ -381,14 +407,14 @@ class GeneralizedMaxwell(_Relaxed):
         return ()
 
     @property
-    def damping(self) -> Value:
-        """C = sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
-        return sum(arm.stiffness * arm.relaxation_time for arm in self.arms)
+    def slow_damping(self) -> Value:
+        """C + sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
+        return sum((arm.stiffness * arm.relaxation_time for arm in self.arms), +self.damping)
 
     @property
     def retardation_time(self) -> Value:
-        """C/K, in s."""
-        return self.damping / self.stiffness
+        """(C + sum K_i tau_i)/K, in s."""
+        return self.slow_damping / self.stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -396,10 +422,10 @@ class FractionalKelvinVoigt(_Relaxed):
     """A spring in parallel with a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)].
 
     The order alpha is from `LOWEST_ORDER`, below which the springpot is a spring to eight digits, to 1.
-    With `order` alpha = 1 it is the Kelvin-Voigt foundation. Below 1 its damping is infinite: the
-    springpot relaxes too slowly for C = int (G - K) dt to converge.
+    With `order` alpha = 1 it is the Kelvin-Voigt foundation. Below 1 its damping in slow sliding is
+    infinite: the springpot relaxes too slowly for int (G - K) dt to converge.
 
-    >>> FractionalKelvinVoigt("10 GN/m^3", "100 ms", 0.5).damping
+    >>> FractionalKelvinVoigt("10 GN/m^3", "100 ms", 0.5).slow_damping
     inf
     """
 
@@ -413,8 +439,8 @@ class FractionalKelvinVoigt(_Relaxed):
     )  # fmt: skip
 
     @property
-    def damping(self) -> Value:
-        """C = int (G - K) dt, in N s/m^3."""
+    def slow_damping(self) -> Value:
+        """Int (G - K) dt, in N s/m^3."""
         finite = self.stiffness * self.retardation_time
         if np.ndim(self.order) == 0:
             return finite if self.order == 1.0 else math.inf

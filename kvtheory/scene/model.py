@@ -13,7 +13,7 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
-from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
+from kvtheory.scene.foundations import DAMPED, FOUNDATIONS, AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Revolved
 from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
@@ -220,7 +220,9 @@ class Scene(Part):
         body, drive = self.indenter, "rigid" if self.drive.rigid else "spring"
         functions = isinstance(body, Revolved) and not body.convex
         shape = "revolved-callable" if functions else body.shape
-        return shape, self.foundation.kind, self.support.kind, drive
+        foundation = self.foundation
+        law = DAMPED if foundation.arms and np.any(foundation.damping) else foundation.kind
+        return shape, law, self.support.kind, drive
 
     @property
     def held(self) -> bool:

@@ -30,6 +30,7 @@ EXAMPLES = {
     "1/s": ("5 Hz", "300 /min", "5 s^-1"),
     "1/m": ("200 /mm", "200 mm^-1", "2e5 /m"),
     "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
+    "N*s/m^3": ("0.5 GN*s/m^3", "0.5 N*s/mm^3", "0.5 MPa*s/mm"),
     "K": ("23 degC", "296.15 K", "73.4 degF"),
     "delta K": ("51.6 K", "51.6 delta_degC"),
     "J/mol": ("80 kJ/mol", "8e4 J/mol"),

@@ -7,10 +7,10 @@ delta that belongs to it and l = V tau/a,
 
 `of_line` has these numbers for h = slope |x|^n/(n L^(n-1)) on Kelvin-Voigt (derivations "F19-low" and
 "F19-high"; with n = 2 the paper's Eqs. 38-49) and for a parabola on the other laws: at low velocity a
-Kelvin-Voigt foundation with C = int (G - K) dt (F18), or a power of its own for a springpot
-(F18-springpot); at high velocity a spring of the glassy stiffness G(0), whose friction follows from -G'(0)
-(F18), or a springpot. A ball is the sum of its strips: a power p of their half length becomes
-S(p) = int cos(t)^(p+1) dt over the half circle, for every law.
+Kelvin-Voigt foundation with C = int (G - K) dt (F18), or a power of its own for a springpot (F18-springpot);
+at high velocity a damper, whatever is beside it, else a spring of the glassy stiffness G(0), whose friction
+follows from -G'(0) (F18), or a springpot. A ball is the sum of its strips: a power p of their half length
+becomes S(p) = int cos(t)^(p+1) dt over the half circle, for every law.
 
 The balance of forces gives depth and load. For V -> 0 both are as at rest. For V -> oo a spring lifts the
 indenter by its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
@@ -76,7 +76,12 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
     falls = sum(arm.stiffness / arm.relaxation_time for arm in foundation.arms)  # -G'(0)
     friction = 0.8 * falls / glassy * foundation.retardation_time
-    return low, Limit(static * glassy / foundation.stiffness, 0.0, friction, -1.0, slow=False)
+    spring = static * glassy / foundation.stiffness, 0.0, friction, -1.0
+    if not np.any(damped := foundation.damping > 0.0):
+        return low, Limit(*spring, slow=False)
+    damper = foundation.damping / foundation.slow_damping, 1.0, cf.power_law_high(n), 0.0
+    each = (np.where(damped, *pair)[()] for pair in zip(damper, spring, strict=True))
+    return low, Limit(*each, slow=False)
 
 
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
@@ -118,8 +123,9 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     if limit.slow:
         return *static, support.weight
     lift = support.weight + support.spring * depth
+    viscous = *_carrying(scene, limit, lift), lift
     if np.all(limit.rise > 0.0):
-        return *_carrying(scene, limit, lift), lift
+        return viscous
 
     from scipy.optimize import elementwise  # slow to import
 
@@ -130,7 +136,9 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     power = 3 if scene.indenter.per_width else 4
     given = limit.load / limits(scene)[0].load, support.spring * depth / support.weight
     s = elementwise.find_root(excess, (0.0, 1.0), args=given).x
-    return s * s * depth, s * a, lift - support.spring * s * s * depth
+    glassy = s * s * depth, s * a, lift - support.spring * s * s * depth
+    pairs = zip(viscous, glassy, strict=True)
+    return tuple(np.where(limit.rise > 0.0, *pair)[()] for pair in pairs)  # type: ignore[return-value]
 
 
 def quantity(scene: Scene, limit: Limit, name: str = "friction_coefficient") -> Value:

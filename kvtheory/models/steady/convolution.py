@@ -62,30 +62,40 @@ JUMP = 1e-6
 
 
 class Arms:
-    """Maxwell arms: K_i e^(-X/l_i), over K, with m the impulse of each arm up to X."""
+    """Maxwell arms K_i e^(-X/l_i), and a damper of the impulse l_C if there is one, over K.
+
+    Of an arm m is the impulse up to X; a damper, the last branch, has all of it at once, and no memory.
+    """
 
     noise = 0.0
 
-    def __init__(self, stiffness: Array, length: Array) -> None:
+    def __init__(self, stiffness: Array, length: Array, damper: float = 0.0) -> None:
         self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
+        self.damper = np.full((1, 1), damper)[: damper > 0.0]
+        self.impulse = np.concatenate([self.stiffness * self.length, self.damper])
 
     def amount(self, X: Array) -> Array:
-        """Return m = K_i l_i (1 - e^(-X/l_i))."""
-        return -self.stiffness * self.length * np.expm1(-X / self.length)
+        """Return m = K_i l_i (1 - e^(-X/l_i)), l_C of a damper."""
+        return self.impulse * self._and_damper(-np.expm1(-X / self.length), 1.0)
 
     def delay(self, v: Array, X: Array) -> Array:
         """Return s at which the share v of m is reached: -l_i ln(1 - v (1 - e^(-X/l_i)))."""
-        l = self.length[..., None]
-        return -l * np.log1p(v * np.expm1(-X[..., None] / l))
+        l, arms = self.length[..., None], len(self.length)
+        return self._and_damper(-l * np.log1p(v[:arms] * np.expm1(-X[..., None] / l)), 0.0)
 
     def share(self, s: Array, X: Array) -> Array:
         """Return the share of m that is reached at s."""
-        return np.expm1(-s / self.length) / np.expm1(-X / self.length)
+        return self._and_damper(np.expm1(-s / self.length) / np.expm1(-X / self.length), 1.0)
 
     def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
-        """Return the work of the arms, and the part lost; `left` is their pressure at the trailing edge."""
-        lost, _ = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
-        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
+        """Return the work of the branches, and the part lost; `left` is their last pressure."""
+        lost, _ = sliding.total((sliding.rows**2 / self.impulse).sum(axis=0))
+        stored = left[: len(self.length)] ** 2 / (2.0 * self.stiffness)
+        return float(stored.sum()) + lost, lost
+
+    def _and_damper(self, rows: Array, value: float) -> Array:
+        """Return the rows of the arms, and one of a damper."""
+        return np.concatenate([rows, np.full((len(self.damper), *rows.shape[1:]), value)])
 
 
 class Springpot:
@@ -131,7 +141,8 @@ def memory_of(scene: Scene) -> Memory:
     if isinstance(foundation, FractionalKelvinVoigt):
         return Springpot(speed * foundation.retardation_time, foundation.order)
     arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
-    return Arms(arms[:, 0] / foundation.stiffness, speed * arms[:, 1])
+    K, damper = foundation.stiffness, speed * foundation.damping
+    return Arms(arms[:, 0] / K, speed * arms[:, 1], damper / K)
 
 
 class Contact:

@@ -126,12 +126,22 @@ class Contact(NamedTuple):
         """Relative error of the response."""
         return ROUNDING if len(self.c) == 1 else IN_STRIPS
 
+    @property
+    def relaxing(self) -> Array:
+        """The rates of the law in 1/s, along the first axis: of arms, and of a damper beside the springs."""
+        V, law = self.scene.drive.final_velocity, self.law
+        found = [*(V / law.time)]
+        if law.damping is not None:
+            damped, passing = law.damping > 0.0, (V / self.c).min(axis=0)
+            C = np.where(damped, law.damping, 1.0)
+            springs = law.K, law.K + law.stiffness.sum(axis=0)
+            found += [np.where(damped, V * K / C, passing) for K in springs]
+        return np.stack(found)
+
     def scales(self) -> Array:
         """Return the characteristic rates of each scene in 1/s, along the first axis."""
         V, law, support = self.scene.drive.final_velocity, self.law, self.scene.support
-        found = [*(V / law.time), (V / self.c).min(axis=0), (V / self.c).max(axis=0)]
-        if law.damping is not None:
-            found.append(V * law.K / law.damping)
+        found = [*self.relaxing, (V / self.c).min(axis=0), (V / self.c).max(axis=0)]
         if not self.scene.held:
             soft = (self.c * self.width).sum(axis=0) * law.K
             stiff = soft * (1.0 + law.stiffness.sum(axis=0) / law.K)
@@ -388,7 +398,7 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
 
     spring = np.broadcast_to(scene.drive.stiffness, (1,))
     given = Contact.of(scene.at(np.ones(1)), STRIPS)
-    length = np.log10(given.c.max() * given.scene.drive.final_velocity / given.law.time)
+    length = np.log10(given.c.max() * given.relaxing)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
 
     def there(log: Array) -> Scene:

@@ -158,6 +158,12 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
     relaxing = [arm.relaxation_time for arm in foundation.arms] or [foundation.retardation_time]
     slow = np.maximum.reduce(np.broadcast_arrays(*relaxing, foundation.retardation_time))
     fast = np.minimum.reduce(np.broadcast_arrays(*relaxing))
+    if (
+        np.any(foundation.damping) and foundation.arms
+    ):  # a damper beside a spring of the glassy stiffness
+        glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
+        beside = np.where(foundation.damping > 0.0, foundation.damping / glassy, np.inf)
+        fast = np.minimum(fast, beside)
     order = getattr(foundation, "order", 1.0)
     kappa = 0.0 if base.held else base.support.spring * (rest.depth / rest.load)
     beyond = np.minimum((decades + np.log10(1.0 + kappa)) / order, MOST_DECADES)

@@ -7,8 +7,9 @@ velocities from the limit on, and the range ends where it first passes the toler
 
 For a parabola on a Prony series a shorter range is also proved: with C = sum K_i tau_i and the length c of
 the contact, mu is within 7 V t/c of Kelvin-Voigt, t = sum K_i tau_i^2/C, where V t/c <= 1/20 (theorem
-F18-voigt), and within 2 c/(V s) of the glassy limit, s = (sum K_i/tau_i)/(sum K_i/tau_i^2), where
-c/(V s) <= 1/5 (theorem F18-glassy). On every support V/c grows with V (theorem F17-growth).
+F18-voigt; a damper, the limit of an arm, adds to C but not to t). Without a damper it is within 2 c/(V s) of
+the glassy limit, s = (sum K_i/tau_i)/(sum K_i/tau_i^2), where c/(V s) <= 1/5 (theorem F18-glassy). On every
+support V/c grows with V (theorem F17-growth).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -138,20 +139,27 @@ def lines(scene: Scene) -> list[Line]:
     if isinstance(scene.foundation, FractionalKelvinVoigt):
         slow, fast = ON_SPRINGPOT if line else ON_SPRINGPOT_BALL
         return [Line("L1", MU, "low", None, slow, low), Line("L2", MU, "high", None, fast, high)]
-    if lacks_kelvin_voigt(scene):
-        bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
-        glassy = f"{'2/5' if line else '1/3'} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
-        number = 42 if line else None
-        return [
-            Line("L1", MU, "low", number, "C V/(R K), C = sum K_i tau_i", low, bounds[0]),
-            Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
-            Line("glassy", MU, "high", None, glassy, high, bounds[2]),
-        ]
     kind = shape if shape in FIXED else "power-law"
     formulas = list(FIXED[kind] if support == "fixed" else LOADED[kind])
     if support == "suspended":
         formulas = [text.replace("W", SUSPENDED[i % 2]) for i, text in enumerate(formulas)]
         formulas += [text.strip("()") for text in SUSPENDED]
+    if lacks_kelvin_voigt(scene):
+        bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
+        fast = f"{'2/5' if line else '1/3'} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
+        name, total, numbers = "glassy", "C = sum K_i tau_i", (42, None)
+        if np.any(scene.foundation.damping):
+            there = "" if np.all(scene.foundation.damping) else f"; where C_0 = 0, {fast}"
+            fast = formulas[1].replace("C V", "C_0 V") + there
+            name, total = "L2", "C = C_0 + sum K_i tau_i, C_0 of the damper"
+            numbers, bounds = (42, LISTED[support][0][2]), (*bounds[:2], None)
+        return [
+            Line(
+                "L1", MU, "low", numbers[0] if line else None, f"C V/(R K), {total}", low, bounds[0]
+            ),
+            Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
+            Line(name, MU, "high", numbers[1] if line else None, fast, high, bounds[2]),
+        ]
     found: list[Line] = []
     for quantity, *numbers in LISTED[support]:
         for regime, number in zip(("low", "high"), numbers, strict=True):
@@ -174,7 +182,7 @@ def _voigt(scene: Scene) -> Array:
 
 
 def _sum(scene: Scene, power: int) -> Any:
-    """Return sum K_i tau_i^power."""
+    """Return sum K_i tau_i^power over the arms."""
     return sum(arm.stiffness * arm.relaxation_time**power for arm in scene.foundation.arms)
 
 
@@ -190,7 +198,7 @@ def _within(off: Array, most: float, factor: float) -> Array:
 
 
 def _voigt_bound(scene: Scene, exact: Mapping[str, Array]) -> Array:
-    delay = _passing(scene, exact) * (_sum(scene, 2) / _sum(scene, 1))
+    delay = _passing(scene, exact) * (_sum(scene, 2) / scene.foundation.slow_damping)
     return _within(delay, MOST_DELAY, VOIGT)
 
 
@@ -238,13 +246,14 @@ def report(
 
 def _regime(scene: Scene, truth: SteadyState, critical: Array) -> Array:
     """Return "low" or "high", by V* or by the arms, see `AsymptoteReport`."""
-    slow = critical >= np.abs(scene.drive.final_velocity)
+    slow, foundation = critical >= np.abs(scene.drive.final_velocity), scene.foundation
     fast = ~slow
-    if times := [arm.relaxation_time for arm in scene.foundation.arms]:
+    if times := [arm.relaxation_time for arm in foundation.arms]:
         rate = _passing(scene, {name: np.abs(getattr(truth, name)) for name in EXACT})
-        slow, fast = (
-            rate * reduce(np.maximum, times) <= 1.0,
-            rate * reduce(np.minimum, times) >= 1.0,
+        K, C = foundation.stiffness, foundation.damping
+        slow = rate * reduce(np.maximum, [*times, C / K]) <= 1.0
+        fast = np.where(
+            C > 0.0, rate * C >= K + _sum(scene, 0), rate * reduce(np.minimum, times) >= 1.0
         )
     return np.select([slow, fast], ["low", "high"], "between")
 

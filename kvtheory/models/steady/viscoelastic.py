@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.roots import converge, cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
+from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
 from kvtheory.theory.laws import RELATIVE_ERROR, Fractional, Law, Moments, Prony
 
@@ -51,7 +51,7 @@ def law(scene: Scene) -> Law:
     K = full(foundation.stiffness)
     if isinstance(foundation, FractionalKelvinVoigt):
         return Fractional(K, foundation.retardation_time, foundation.order).over(V)
-    damping = full(foundation.damping) if isinstance(foundation, Foundation) else None
+    damping = full(foundation.damping) if np.any(foundation.damping) else None
     arms = [(full(arm.stiffness), full(arm.relaxation_time)) for arm in foundation.arms]
     stiffness, time = np.reshape(arms, (-1, 2, *scene.shape)).swapaxes(0, 1)
     return Prony(K, stiffness, time, damping).over(V)
