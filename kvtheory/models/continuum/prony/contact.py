@@ -315,8 +315,9 @@ def edge_at(
     stiff = 1.0
     if state == PEELING:
         stiff += run.given.glass + run.given.damper * (abs(at.v) + 2.0 * abs(at.number * middle))
-    # Where X stands still, a larger p is not that of a root.
-    flat = STALLED * stiff * (1.0 + abs(Y))
+    # Where X stands still, a larger p is not that of a root; behind a damper the gap grows as the square of X.
+    still = EDGE_ERROR if run.given.damper > 0.0 and state == TOUCHING else STALLED * stiff
+    flat = still * (1.0 + abs(Y))
     for _ in range(ITERATIONS):
         x = max(min(x, high), low)
         if index != NEVER:
@@ -339,7 +340,7 @@ def edge_at(
         else:
             move *= toward
         before, previous, last = f, x, xi
-        stands = move == 0.0 and abs(f) > STALLED * stiff  # X does, where sliding began
+        stands = move == 0.0 and abs(f) > still  # X does, where sliding began
         if not bracketed and (stands or toward * move < 0.0 or abs(move) >= reach):
             move, reach, secant = toward * reach, FASTER * reach, False
         elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):

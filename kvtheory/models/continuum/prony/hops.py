@@ -98,7 +98,7 @@ def close(run: Run, span: float) -> bool:
         stages.stress_at_edge[i, j, 0] = stages.stress_at_edge[i, j, 1] = mean
         stages.force[i, j] = stages.moment[i, j] = 0.0 * mean
     Y = motion(run, now.steps, now.s + span).Y
-    _end_with(run, l, r, X + Y, X + Y)
+    end_with(run, l, r, X + Y, X + Y)
     return True
 
 
@@ -131,7 +131,7 @@ def _without_forces(run: Run, xi: float) -> bool:
     return solve(run)
 
 
-def _end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
+def end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
     """Let edges, stresses and moments change uniformly over a step, to those at the last stage."""
     now, n, state, last = run.now, run.given.stages, run.state, run.arm_stages
     edges = run.polynomials.edges[now.steps]
@@ -328,5 +328,5 @@ def open_contact(run: Run, span: float) -> bool:
         first, second = arm_stages.stress_at_edge[i, j, 0], arm_stages.stress_at_edge[i, j, 1]
         arm_stages.force[i, j] = 0.5 * (r - l) * (first + second)
         arm_stages.moment[i, j] = 0.5 * (r - l) * (l * first + r * second)
-    _end_with(run, xi, xi, l, r)
+    end_with(run, xi, xi, l, r)
     return bool(l < r)

@@ -195,7 +195,7 @@ def transient(
         return solve(
             drive, arms, (units.inertia_number, units.support_number), drive.end, tolerance,
             spring=spring, control=control, progress=report, max_steps=limit,
-            damper=getattr(foundation, "damper", 0.0) / (foundation.stiffness * units.time),
+            damper=foundation.damping / (foundation.stiffness * units.time),
         )  # fmt: skip
 
     rtol = min(rtol, LOOSEST)

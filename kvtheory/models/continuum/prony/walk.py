@@ -26,6 +26,7 @@ from kvtheory.models.continuum.prony.hops import (
     closed,
     closes,
     distance,
+    end_with,
     flies,
     fly,
     land,
@@ -300,6 +301,9 @@ def _advance(run: Run, until: float, longest: float) -> int:
         return DONE
     longer = max(_longer(run, span, size), SHARP * shortest)
     now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
+    if size > 1.0 and not flies(run):  # no polynomial follows what is that abrupt
+        l, r, edges = now.sides[0].xi, now.sides[1].xi, run.stages.edges
+        end_with(run, l, r, edges[run.given.stages - 1, 0], edges[run.given.stages - 1, 1])
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
 
