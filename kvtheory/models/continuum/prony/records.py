@@ -176,7 +176,7 @@ def begin(
     """Return a new run at rest; `arms` are pairs k_i, T_i, `damper` is C/K, `numbers` are eps and kappa."""
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
-    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0 and spring is None)
+    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
@@ -228,8 +228,8 @@ def with_pauses(drive: BaseMotion, end: float, *, needed: bool) -> tuple[Any, An
     """Return the pieces of a drive on the clock of a run, what time it is in them, and the clock at the end.
 
     Where the velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
-    runs on for a while in which time stands still and the velocity changes uniformly. Without a damper, and
-    on a spring, there is no such pause, and the clock shows the time.
+    runs on for a while in which time stands still and the velocity changes uniformly. Without a damper
+    there is no such pause, and the clock shows the time.
     """
     if not needed:
         clock = np.zeros(len(drive.rows), PIECE)
