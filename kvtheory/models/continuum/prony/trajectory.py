@@ -70,6 +70,13 @@ def prepared(run: Run) -> bool:
     return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros(1, STATE))
 
 
+def time_of(run: Run) -> float:
+    """Return the present time of a run."""
+    now, clock = readable(run.now[0]), run.clock
+    clock = named(clock) if isinstance(clock, np.ndarray) else clock
+    return time_at(run._replace(clock=clock), now.piece, now.s)
+
+
 @dataclass(frozen=True)
 class Trajectory:
     """A solved transient: evaluate it anywhere in [0, end] with `states`."""
@@ -101,7 +108,7 @@ class Trajectory:
     @property
     def end(self) -> float:
         """The time at which it ends."""
-        return time_at(self.run, self.counts.piece, self.counts.s)
+        return time_of(self.run)
 
     def clock(self, s: ArrayLike) -> Array:
         """Return the clock at times: where the drive jumps, just after the pause, see `records`."""
@@ -197,7 +204,7 @@ def solve(
         ):
             status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
-        time = time_at(run, now.piece, now.s)
+        time = time_of(run)
         left = max_steps - now.steps - now.rejected
         if status in REFUSED:
             raise ValueError(REFUSED[status], time)
