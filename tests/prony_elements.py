@@ -53,3 +53,51 @@ def run(scene, times, *, per_half_length=150, step=2e-3):
             rows.append((*state[:2], dx * p.sum(), -2.0 * dx * (x @ p), p.max()))
     names = ("depth", "depth_rate", "normal_force", "friction_force", "peak_pressure")
     return dict(zip(names, np.array(rows).T, strict=True))
+
+
+def run_damped(scene, times, *, per_half_length=600, step=4e-3):
+    """Return the same beside a damper C: two runs by Euler's implicit method, extrapolated in the step.
+
+    At the end of a step u is that of the indenter or that without pressure, whichever is larger.
+    """
+    coarse, fine = (_damped(scene, times, per_half_length, h) for h in (step, 0.5 * step))
+    return {name: 2.0 * fine[name] - coarse[name] for name in fine}
+
+
+def _damped(scene, times, per_half_length, step):
+    foundation, M, held = scene.foundation, scene.support.mass, scene.held
+    K_i, tau = (np.array([getattr(arm, name) for arm in foundation.arms])[:, None]
+                for name in ("stiffness", "relaxation_time"))  # fmt: skip
+    C, W = foundation.damping, scene.support.weight
+    k_s, motion = 0.0 if held else scene.support.spring, scene.drive.motion(times[-1] or 1.0, 1.0)
+    low, high = motion.extremes(0.0, times[-1])
+    dx = 1.0 / per_half_length
+    X = dx * np.arange(np.floor((-REACH - high) / dx), np.ceil((REACH - low) / dx) + 1)
+    u = np.maximum(1.0 - X * X, 0.0)
+    y, d, v, t, rows = u * np.ones_like(K_i), 1.0, 0.0, 0.0, []
+    for stop in sorted({*times, *(c for c in motion.changes if c < times[-1])}):
+        count = int(np.ceil((stop - t) / step))
+        h = (stop - t) / max(count, 1)
+        stiff = K_i * tau / (h + tau)  # s_i = stiff_i (u - y_i before) at the end of a step
+        K = foundation.stiffness + stiff.sum() + C / h if count else 0.0
+        for k in range(count):
+            x, before = X + motion.displacement(t + (k + 1) * h), v
+            rest = (stiff * y).sum(axis=0) + C / h * u
+            while not held:
+                p = np.maximum(K * (d + h * v - x * x) - rest, 0.0)
+                off = M * (v - before) / h - W + k_s * (d + h * v - 1.0) + dx * p.sum()
+                move = off / (M / h + k_s * h + h * K * dx * np.count_nonzero(p))
+                v -= move
+                if abs(move) < 1e-11:
+                    break
+            d += h * v
+            u = np.maximum(d - x * x, rest / K)
+            y = (tau * y + h * u) / (h + tau)
+        t = stop
+        if stop in times:
+            x = X + motion.displacement(t)
+            p = K * (d - x * x) - rest if count else np.maximum(1.0 - x * x, 0.0)
+            p = np.maximum(p, 0.0)
+            rows.append((d, v, dx * p.sum(), -2.0 * dx * (x @ p)))
+    names = ("depth", "depth_rate", "normal_force", "friction_force")
+    return dict(zip(names, np.array(rows).T, strict=True))

@@ -19,6 +19,7 @@ from tests.spring_random import of_unit_scales
 
 ARMS = [(3e10, 0.01), (1e10, 0.1)]
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
+MIXED = kv.GeneralizedMaxwell(1e10, arms=[(2e10, 5e-3), (1e10, 0.2)], damping=5e8)
 WAYS = {
     "start": [(0.0, 3.0)],
     "stop": [(0.0, 3.0), (0.4, 3.0), (0.4, 0.0)],
@@ -28,16 +29,17 @@ WAYS = {
 }
 
 
-def random_law(rng):
-    return Element.of(1.0, 0.0, 10.0 ** rng.uniform(-2, 2, (int(rng.integers(1, 6)), 2)))
+def random_law(rng, damping=0.0):
+    return Element.of(1.0, damping, 10.0 ** rng.uniform(-2, 2, (int(rng.integers(1, 6)), 2)))
 
 
 def left_alone(law, state, h):
     """Return (u, s_i) of a free element after a time, by its modes."""
     y = state[0] - state[1:] / law.arm_stiffness
+    y = np.append(y, state[:1]) if law.damping else y
     modes = law.to_modes @ y * law.step(h).fall
     u = law.shares @ modes
-    return np.append(u, law.arm_stiffness * (u - law.from_modes @ modes))
+    return np.append(u, law.arm_stiffness * (u - (law.from_modes @ modes)[: law.arm_time.size]))
 
 
 def scaled(history, support="dead-weight", arms=((3.0, 0.2), (0.5, 2.0)), end=1.0):
@@ -71,11 +73,25 @@ def test_an_element_left_alone_is_that_of_its_equations():
         assert abs(law.stiffness * found[0] + found[1:].sum()) < 1e-11 * law.stiffness_within(0.0)
 
 
+def test_an_element_left_alone_beside_a_damper_is_that_of_its_equations():
+    """C u' = -K u - sum s_i, s_i' = K_i u' - s_i/tau_i, by its exponential; u need not be in balance."""
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        law, h = random_law(rng, 10.0 ** rng.uniform(-3, 2)), 10.0 ** rng.uniform(-2, 2)
+        K_i, tau = law.arm_stiffness, law.arm_time
+        state = np.concatenate([[1.0], K_i * rng.uniform(-1.0, 1.0, K_i.size)])
+        sinks = -np.append(law.stiffness, np.ones(K_i.size)) / law.damping
+        matrix = np.vstack([sinks, np.outer(K_i, sinks)]) - np.diag(np.append(0.0, 1.0 / tau))
+        size = np.append(1.0, K_i)
+        off = (left_alone(law, state, h) - expm(h * matrix) @ state) / size
+        assert np.abs(off).max() < 1e-9
+
+
 def test_an_element_on_a_ramp_is_that_of_its_equations():
-    """s_i' = K_i u' - s_i/tau_i, integrated; the mean pressure too."""
+    """s_i' = K_i u' - s_i/tau_i, integrated; the mean pressure too, of a damper as well."""
     rng = np.random.default_rng(2)
-    for _ in range(10):
-        law, h, rise = random_law(rng), 10.0 ** rng.uniform(-2, 0.5), rng.uniform(-1, 1)
+    for damping in [0.0] * 5 + [3.0] * 5:
+        law, h, rise = random_law(rng, damping), 10.0 ** rng.uniform(-2, 0.5), rng.uniform(-1, 1)
         K_i, tau = law.arm_stiffness, law.arm_time
         s_0 = K_i * rng.uniform(-1.0, 1.0, K_i.size)
         truth = solve_ivp(
@@ -87,7 +103,7 @@ def test_an_element_on_a_ramp_is_that_of_its_equations():
             truth.y[:, -1], rel=1e-6, abs=1e-8 * law.stiffness_within(0.0)
         )
         whole = quad(lambda t, s=truth.sol: s(t).sum(), 0.0, h, epsrel=1e-9)[0]
-        mean = law.stiffness * (0.7 + 0.5 * rise) + whole / h
+        mean = law.stiffness * (0.7 + 0.5 * rise) + (whole + damping * rise) / h
         found = law.stiffness * 0.7 + step.weights @ s_0 + step.stiffness * rise
         assert found == pytest.approx(mean, rel=1e-6, abs=1e-8 * law.stiffness_within(0.0))
 
@@ -168,6 +184,49 @@ def test_the_transient_is_that_of_brute_force(way, support):
     scale = scales(Model.of(scene).at_rest)
     for name in truth:
         assert np.abs(getattr(found, name) - truth[name]).max() < 3e-3 * scale[name], name
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_the_transient_beside_a_damper_is_that_of_brute_force(way, support):
+    scene, times = scaled(WAYS[way], support), [0.05, 0.35, 0.45, 0.65, 1.0]
+    scene = replace(scene, foundation=replace(scene.foundation, damping=0.1))
+    truth = prony_elements.run_damped(scene, times)
+    found = kv.elements(scene, per_length=100.0, at=times, certify=False)
+    scale = scales(Model.of(scene).at_rest)
+    for name in truth:
+        assert np.abs(getattr(found, name) - truth[name]).max() < 4e-3 * scale[name], name
+
+
+def test_arms_beside_a_damper_from_rest():
+    """Fact F33: from a quadrature of the history, by elements marched in time."""
+    found = kv.elements(kv.Scene(foundation=MIXED), at=[2e-3, 20e-3, 150e-3], per_length="80 /mm")
+    error = found.certificate.relative_error
+    depth, friction = [0.289390e-3, 0.172051e-3, 0.117546e-3], [1763.0, 1091.0, 800.0]
+    assert found.depth == pytest.approx(depth, abs=1e-9 + 3e-4 * error["depth"])
+    assert found.friction_force == pytest.approx(friction, rel=4e-3)
+
+
+def test_each_scheme_takes_arms_beside_a_damper():
+    scene = kv.Scene(foundation=MIXED, drive=kv.Drive(0.03), run=kv.Run(0.02))
+    best = kv.elements(scene, at=[0.02], per_length="80 /mm", certify=False)
+    for name in SCHEMES:
+        found = kv.elements(scene, at=[0.02], per_length="40 /mm", scheme=name)
+        error = found.certificate.relative_error
+        assert found.depth == pytest.approx(best.depth, abs=3e-4 * error["depth"]), name
+        assert found.friction_force == pytest.approx(best.friction_force, rel=6e-3), name
+
+
+@pytest.mark.parametrize("shape", [kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)])
+def test_the_order_is_two_beside_a_damper(shape):
+    """Of both forces under a fixed indenter in steady sliding, where its tip is passed, too."""
+    scene = kv.Scene(shape, MIXED, kv.Fixed(1e-4), kv.Drive(0.03), kv.Run(0.8))
+    exact, errors = kv.steady(scene, method="quadrature"), []
+    for density in (2e4, 8e4):
+        end = kv.elements(scene, per_length=density, at=[0.8], certify=False)
+        errors.append(abs(end.friction_force[0] / exact.friction_force - 1.0))
+        assert abs(end.normal_force[0] / exact.load - 1.0) < 2e-4
+    assert errors[1] < 0.2 * errors[0] < 2e-4
 
 
 # Extremes

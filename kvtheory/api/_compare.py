@@ -18,7 +18,7 @@ from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
-from kvtheory.scene.capabilities import lacks_quadratic_on_arms, require
+from kvtheory.scene.capabilities import lacks_continuum, lacks_quadratic_on_arms, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -48,7 +48,7 @@ def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, A
     ball = not scene.indenter.per_width
     if ball and not never_steady(scene):
         return throughout(steady, scene, np.asarray(times, dtype=float))[0]
-    if scene.foundation.arms and not ball and rtol < TRIAL_RTOL:
+    if scene.foundation.arms and not lacks_continuum(scene) and rtol < TRIAL_RTOL:
         with suppress(ValueError, ArithmeticError), double_precision(scene):
             return vars(prony.solved_scene.transient(scene, times, rtol, certify=False))
     if ball or scene.foundation.arms:

@@ -38,6 +38,7 @@ class Parameter(NamedTuple):
 PARAMETERS = (
     Parameter("tau", {"foundation.retardation_time": 1.0}),
     Parameter("K", {"foundation.stiffness": 1.0}),
+    Parameter("C", {"foundation.damping": 1.0}, " (the damper beside the arms)"),
     Parameter("R", {"indenter.radius": 1.0}),
     Parameter("M", {"support.mass": 1.0}),
     Parameter("g", {"support.gravity": 1.0}),
@@ -57,6 +58,7 @@ PARAMETERS = (
 )  # fmt: skip
 """The parameters that may be wrong, if the scene has them."""
 USUAL = {"s": ("ms", 1e3), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "N/m^3": ("GN/m^3", 1e-9),
+         "N*s/m^3": ("GN s/m^3", 1e-9),
          "kg/m": ("kg/mm", 1e-3), "N/m^2": ("MN/m^2", 1e-6), "N/m": ("MN/m", 1e-6)}  # fmt: skip
 """The units in which parameters are shown, by their SI unit."""
 
@@ -155,23 +157,24 @@ def parameters(bench: Bench) -> Iterator[Hypothesis]:
 def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
     """Replace arms by a damper or leave one out, the spring in the drive by a rigid one, or add a damper."""
     scene = bench.theory.scene
-    K, arms = (
-        scene.foundation.stiffness,
-        [(a.stiffness, a.relaxation_time) for a in scene.foundation.arms],
-    )
-
-    maxwell: Any = GeneralizedMaxwell  # takes pairs
+    K, C = scene.foundation.stiffness, scene.foundation.damping
+    arms = [(a.stiffness, a.relaxation_time) for a in scene.foundation.arms]
+    maxwell: Any = partial(GeneralizedMaxwell, damping=C)  # takes pairs
 
     def other(name: str, text: str, **parts: Any) -> Hypothesis:
         return fixed(name, text, bench.against(replace(scene, **parts)))
 
     if arms:
         text = (
-            "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have "
-            "no stiffness and no relaxation times, which count unless the motion is slow (F18)"
+            f"the foundation of the data is Kelvin-Voigt, with the damping C {'+' if C else '='} sum K_i "
+            "tau_i: its arms have no stiffness and no relaxation times, which count unless the motion is "
+            "slow (F18)"
         )
         damper = Foundation(K, scene.foundation.retardation_time)
         yield other("Kelvin-Voigt instead of arms", text, foundation=damper)
+        if C:
+            text = f"the damper beside the arms is missing: {C:.4g} N s/m^3"
+            yield other("damper missing", text, foundation=maxwell(K, arms, damping=0.0))
         relaxed = K - sum(K_i for K_i, _ in arms)
         if relaxed > 0.0:
             text = "the stiffness of the scene is taken for the glassy one: it is the relaxed one"

@@ -180,24 +180,29 @@ class Elements:
         surface = np.where(on, np.maximum(g, 0.0), free)
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
-    def _arms(self, h: float, near: slice, g: Any, rise: Any, _touching: Any) -> Any:
-        """Return the same on arms, strained at a constant rate during the step."""
+    def _arms(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
+        """Return the same on arms, strained at a constant rate during the step, and a damper beside them."""
         foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
         sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
         moduli, times = _moduli_and_times(self.scene)
-        kept = np.exp(-h / times)
+        kept, C = np.exp(-h / times), foundation.damping
         gain = moduli * ((1.0 - kept) * times / h if h else 1.0)
         glassy = foundation.stiffness + gain.sum()
         stress = kept * self.stress[:, :, :, near]
-        free = (gain * old - stress).sum(axis=0) / glassy
+        slow = C / h if h else 0.0
+        free = (gain * old - stress).sum(axis=0) + slow * old
+        free = free / (glassy + slow)
         free = np.where(forgets | sticks, 0.0, np.where(rule.decay > 0.0, free, old)) if h else old
         on = (g > 0.0) & (sticks | (g >= free))
-        surface = np.where(on, g, free)
+        if C:  # with it, pressure jumps at an edge on undisturbed ground
+            on = np.where(~sticks & (old == 0.0), touching, on)
+        surface = np.where(on, np.maximum(g, 0.0), free)
         right = (rule.depth_rate == 1.0) & (rule.slide_rate == 1.0)
         stress = stress + gain * np.where(right | ~on, surface - old, h * rise)
         stress = np.where((forgets | sticks) & ~on & (h > 0.0), 0.0, stress)
         stress = np.where((rule.freezes > 0.0) & ~on, self.stress[:, :, :, near], stress)
-        return on, foundation.stiffness * surface + stress.sum(axis=0), 0.0, glassy, surface, stress
+        p = foundation.stiffness * surface + stress.sum(axis=0) + C * rise
+        return on, p, C, glassy, surface, stress
 
     def near(self, moved: Array, reach: float) -> slice:
         """Return the columns near the indenter, by any rule."""
@@ -223,19 +228,15 @@ class Elements:
     def relax(self, time: float, near: slice) -> None:
         """Relax the columns near the indenter from the time they were last in use to this one."""
         late = np.flatnonzero(self.seen[near] < time) + near.start
-        K, decay = self.scene.foundation.stiffness, np.minimum(self.rule.decay, 1e9)
+        decay = np.minimum(self.rule.decay, 1e9)
         for k in late[self.surface[:, :, late].any(axis=(0, 1))]:
             gap = time - self.seen[k]
             if self.scene.foundation.arms:
-                moduli, times = (part[:, 0, 0, 0] for part in _moduli_and_times(self.scene))
-                coupled = np.eye(moduli.size) + moduli[:, None] / K
-                rates = np.linalg.solve(coupled, np.diag(-1.0 / times))
-                left = np.einsum("ab,brj->arj", expm(rates * gap), self.stress[..., k])
+                state = np.concatenate([self.surface[None, ..., k], self.stress[..., k]])
+                left = np.einsum("ab,brj->arj", expm(_free_rates(self.scene) * gap), state)
                 left = np.where(np.isinf(self.rule.decay[..., 0]), 0.0, left)
-                relaxes = self.rule.decay[..., 0] > 0.0
-                self.stress[..., k] = np.where(relaxes, left, self.stress[..., k])
-                free = -left.sum(axis=0) / K
-                self.surface[..., k] = np.where(relaxes, free, self.surface[..., k])
+                state = np.where(self.rule.decay[..., 0] > 0.0, left, state)
+                self.surface[..., k], self.stress[..., k] = state[0], state[1:]
             else:
                 tau = self.scene.foundation.retardation_time
                 self.surface[..., k] *= np.exp(-decay[..., 0] * gap / tau)
@@ -245,6 +246,18 @@ class Elements:
 def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
     arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms])
     return arms[:, 0, None, None, None], arms[:, 1, None, None, None]
+
+
+def _free_rates(scene: Scene) -> Array:
+    """Return the matrix of the rates of u and s_i of a free element: K u + C u' + sum s_i = 0."""
+    K, C = scene.foundation.stiffness, scene.foundation.damping
+    moduli, times = (part[:, 0, 0, 0] for part in _moduli_and_times(scene))
+    fades = np.diag(np.append(0.0, 1.0 / times))
+    sinks = np.append(0.0, 1.0 / times) / (
+        K + moduli.sum()
+    )  # u', as K u' = -sum s_i' without damper
+    sinks = -np.append(K, np.ones(moduli.size)) / C if C else sinks
+    return np.outer(np.append(1.0, moduli), sinks) - fades
 
 
 def instants(scene: Scene, motion: Any, end: float) -> Array:

@@ -14,7 +14,8 @@ eta = (P - Q)/(2 (P + Q)) that gives
 
     1/r <= eta_H/eta_G <= r,   1/r <= W_H/W_G <= r,   1/r^2 <= F_H/F_G <= r^2,
 
-as W = (c^3/R)(D + eta P), F = (c^4/R^2)(E + eta^2 P), eta P = (P - Q)(1/2 + eta)/2 and (1 + r)/2 = 1/(1 -
+(a damper beside the arms adds the same to P, P - Q and E of both), as W = (c^3/R)(D + eta P), F = (c^4/R^2)(E
++ eta^2 P), eta P = (P - Q)(1/2 + eta)/2 and (1 + r)/2 = 1/(1 -
 eps). Load and friction grow with c: p vanishes at the trailing edge, so that only the growth of a
 contributes, and
 
@@ -163,7 +164,8 @@ def reduced(
         if proved and limit > rtol:
             break
         pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
-        own = type(foundation)(+foundation.stiffness, arms=tuple(Arm(*pair) for pair in pairs))
+        arms = tuple(Arm(*pair) for pair in pairs)
+        own = type(foundation)(+foundation.stiffness, arms=arms, damping=+foundation.damping)
         other = replace(scene, foundation=own)
         mu = solve(other.at(V)).friction_coefficient
         off = float(np.max(np.abs(mu / moving.friction_coefficient - 1.0)))

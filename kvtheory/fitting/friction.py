@@ -68,7 +68,7 @@ PRECISION = {0.0: 0.0, FINE: 1e-6, COARSE: 1e-3}
 """Step of ln of an unknown at which a descent ends, likewise."""
 MOST_ARMS = 3
 """Most arms of the models that are weighed: friction over velocity tells hardly more."""
-SHAPED = "retardation_time", "order"
+SHAPED = "retardation_time", "order", "damping"
 """Quantities that belong to one law of the foundation."""
 FAILED = 1e3
 """Residual where theory has no answer."""
@@ -193,6 +193,8 @@ class Problem:
                 row = stiff * np.array(WIDE["arm"])
             elif name in {"retardation_time", "relaxation_time"}:
                 row = time * np.array(WIDE["time"])
+            elif key == "foundation.damping":
+                row = stiff * time * np.array(WIDE["time"])
             elif name == "order":
                 row = np.array(ORDER)
             else:

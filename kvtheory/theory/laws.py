@@ -314,12 +314,12 @@ class ElementStep(NamedTuple):
 
 
 class Element(NamedTuple):
-    """One element of the foundation: a spring K (N/m^3) with a damper C (N s/m^3) and arms K_i, tau_i (s).
+    """One element of the foundation: a spring K (N/m^3), a damper C (N s/m^3), and arms K_i, tau_i (s).
 
     At a compression u its pressure is p = K u + C u' + sum s_i, s_i' = K_i u' - s_i/tau_i. Detached, p
     vanishes and u is a sum of modes that decay at the `rates` with the `shares`; `to_modes` and `from_modes`
-    convert between them and the compressions of all dampers: those of the arms, y_i = u - s_i/K_i, then u
-    itself if C > 0.
+    convert between them and the compressions of all dampers: of those of the arms, y_i = u - s_i/K_i, and,
+    last, u of the damper C, if there is one. Without arms, u itself is the one mode.
 
     >>> element = Element.of(2.0, 0.2)
     >>> element.retardation_time, element.longest_time, element.pressure(1.0, 5.0)
@@ -337,26 +337,26 @@ class Element(NamedTuple):
 
     @classmethod
     def of(cls, stiffness: float, damping: float, arms: Any = ()) -> "Element":
-        """Return an element with a damper, arms (K_i, tau_i), or both.
+        """Return an element with a damper, with arms (K_i, tau_i), or with both.
 
-        The inverse of y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i), and has the
-        retardation times for eigenvalues. The damper is one more arm, with tau_i = 0 and K_i tau_i = C. Each
-        retardation time is longer than that of an arm; the shortest, of a damper, is at least that of all
-        rates in sum.
+        y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i); its inverse has the
+        retardation times for eigenvalues, each longer than that of an arm. The damper is an arm of no
+        relaxation time with the weight sqrt(C), and the sum of all rates is (K + sum K_i)/C + sum 1/tau_i.
         """
         K, C, one = float(stiffness), float(damping), np.ones(1)
         K_i, tau_i = np.array(arms, dtype=float).reshape(-1, 2).T.copy()
         if not K_i.size:
             return cls(K, C, K_i, tau_i, one * (K / C), one, np.eye(1), np.eye(1))
-        glassy, damped, own = K + K_i.sum(), C > 0.0, np.append(tau_i, np.zeros(int(C > 0.0)))
-        weight = np.sqrt(np.append(K_i * tau_i, [C] if damped else []))
-        times, vectors = np.linalg.eigh(np.diag(own) + np.outer(weight, weight) / K)
+        glassy, damped = K + K_i.sum(), [C] if C else []
+        weight = np.sqrt([*(K_i * tau_i), *damped])
+        each = np.append(tau_i, np.zeros(len(damped)))
+        times, vectors = np.linalg.eigh(np.diag(each) + np.outer(weight, weight) / K)
         back, to_modes = (
             np.ascontiguousarray(m) for m in (vectors / weight[:, None], vectors.T * weight)
         )
-        shortest = 1.0 / (glassy / C + (1.0 / tau_i).sum()) if damped else tau_i.min()
-        shares = back[-1].copy() if damped else K_i / glassy @ back
-        return cls(K, C, K_i, tau_i, 1.0 / np.maximum(times, shortest), shares, to_modes, back)
+        least = 1.0 / (glassy / C + (1.0 / tau_i).sum()) if C else tau_i.min()
+        shares = back[-1].copy() if C else K_i / glassy @ back
+        return cls(K, C, K_i, tau_i, 1.0 / np.maximum(times, least), shares, to_modes, back)
 
     @property
     def retardation_time(self) -> float:
@@ -382,14 +382,17 @@ class Element(NamedTuple):
         The mean pressure of a damper is that with the weight e^(t/tau): k (g - u e^(-h/tau)), k =
         K/(1 - e^(-h/tau)), whatever the history of u between. That of arms is the plain mean: with
         z_i = h/tau_i, phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, an arm has over a ramp the mean
-        phi_1 s_i + phi_2 K_i (u_1 - u_0) and ends at e^(-z) s_i + phi_1 K_i (u_1 - u_0).
+        phi_1 s_i + phi_2 K_i (u_1 - u_0) and ends at e^(-z) s_i + phi_1 K_i (u_1 - u_0); a damper beside
+        arms has the mean C (u_1 - u_0)/h.
         """
         h = np.asarray(h, dtype=float)
         z, K_i = h[..., None] / self.arm_time, self.arm_stiffness
         phi_1, phi_2 = (each.real.copy() for each in phi(z.astype(complex))[:2])
         ramp, stiffness = phi_1 * K_i, np.full(h.shape, 0.5 * self.stiffness)
-        if self.damping:
-            with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore"):
+            if self.damping and K_i.size:
+                stiffness = stiffness + self.damping / h
+            elif self.damping:
                 stiffness = -self.stiffness / np.expm1(-h * self.stiffness / self.damping)
         return ElementStep(
             h, np.exp(-h[..., None] * self.rates), np.exp(-z), phi_1, ramp,

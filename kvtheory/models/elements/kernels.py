@@ -471,8 +471,8 @@ def gap(row: Row, j: int, i: int, place: float, depth: float) -> float:
 def change_contact(row: Row, law: ElementStep, j: int, i: int, g: float, rise: float) -> None:
     """Complete a step for an element that leaves the indenter in it, or that it meets: u = g, up by `rise`.
 
-    y_k = u - s_k/K_k, the compressions of the dampers of the arms, are a product of a matrix and the modes.
-    An element that is met is loaded during the whole step.
+    y_k = u - s_k/K_k, the compressions of the dampers of the arms, and u of a damper beside them, are a
+    product of a matrix and the modes. An element that is met is loaded during the whole step.
     """
     arm, y, of, leaves = (
         row.modes[:, j, i],
@@ -480,15 +480,18 @@ def change_contact(row: Row, law: ElementStep, j: int, i: int, g: float, rise: f
         row.constants.law,
         row.elements.touched[j, i],
     )
+    arms = of.arm_stiffness.size
     for k in range(arm.size):
-        mode = arm[k] * row.faded[k] * law.fall[k]
-        y[k] = row.elements.u[j, i] - arm[k] / of.arm_stiffness[k] if leaves else mode
-    for k in range(arm.size):
+        y[k] = row.elements.u[j, i] if leaves else arm[k] * row.faded[k] * law.fall[k]
+        y[k] -= arm[k] / of.arm_stiffness[k] if leaves and k < arms else 0.0
+    for k in range(arm.size if leaves else arms):
         new = 0.0
         for m in range(arm.size):
             new += (of.to_modes[k, m] if leaves else of.from_modes[k, m]) * y[m]
-        met = of.arm_stiffness[k] * (g - rise - new) + law.ramp[k] * rise
-        arm[k] = new / row.faded[k] if leaves else met
+        if leaves:
+            arm[k] = new / row.faded[k]
+        else:
+            arm[k] = of.arm_stiffness[k] * (g - rise - new) + law.ramp[k] * rise
 
 
 def finish(row: Row, law: ElementStep, depth: float, sunk: float) -> None:
@@ -642,9 +645,10 @@ def pass_kink(row: Row, kink: float, place: float, travel: float, depth: float, 
     """Change what is known of the elements that pass a kink of the shape in a step.
 
     What a damper has of the compression by a tip is left at the end of the step, and so is its mean
-    pressure; without this, a wedge stands on its tip at the first order in the spacing.
+    pressure; without this, a wedge stands on its tip at the first order in the spacing. Arms are at the tip
+    as they were at the start of the step.
     """
-    c, of = row.constants, row.elements
+    c, of, law = row.constants, row.elements, row.constants.law
     height, slope, threshold = of.height[0], of.slope[0], of.threshold[0]
     passed = (kink - place) / c.spacing - row.numbers[0]
     start, end = min(passed, passed + travel / c.spacing), max(passed, passed + travel / c.spacing)
@@ -654,7 +658,13 @@ def pass_kink(row: Row, kink: float, place: float, travel: float, depth: float, 
     g = depth - h_kink
     for i in over(low, high):
         x = c.spacing * row.numbers[i] + place
-        left = g * np.exp((kink - x) / travel * h * c.law.rates[0])
+        left = 0.0
+        for k in range(law.rates.size):
+            mode = law.to_modes[k, law.rates.size - 1] * g
+            for m in range(law.arm_stiffness.size):
+                y = of.u[0, i] - row.modes[m, 0, i] / law.arm_stiffness[m]
+                mode = mode + law.to_modes[k, m] * choose(of.touched[0, i], y, 0.0)
+            left = left + law.shares[k] * mode * np.exp((kink - x) / travel * h * law.rates[k])
         lowest = np.minimum(height[i], depth - left)
         threshold[i], height[i] = threshold[i] + lowest - height[i], lowest
         # It is pressed by the flank that it comes from.
@@ -831,6 +841,8 @@ def press(
 ) -> None:
     """Write p = K g + C g' + Σ s_k of the elements under the indenter, and find those in contact (Eqs. 6-12).
 
+    On arms, a free element would have the pressure of what it is compressed by beyond its free motion.
+
     `sinking` is the depth and its rate, `velocity` that of sliding. In contact are those that were at the
     start of the step and, if they may be `met`, those whose free surface is above the indenter, `threshold`
     < 0; but only where p >= 0, since none pulls (Eqs. 20-25).
@@ -851,8 +863,14 @@ def press(
             for i in over(low, high):
                 loaded = law.held[k] * arm[i] + law.ramp[k] * (depth - height[i] - u[i])
                 p[i] += choose(touched[i], loaded, 0.0)
+        for k in range(row.faded.size if arms and c.law.damping else 0):
+            mode = row.modes[k, j]
+            yields = c.law.damping * c.law.rates[k] * c.law.shares[k] * row.faded[k] * law.fall[k]
+            for i in over(low, high):
+                p[i] += choose(touched[i], 0.0, yields * mode[i])
         for i in over(low, high if arms else low):
-            p[i] = choose(touched[i], p[i], -glassy * threshold[i])
+            free = p[i] - c.law.stiffness * (depth - height[i]) - glassy * threshold[i]
+            p[i] = choose(touched[i], p[i], free)
         for i in over(low, high):
             pressed[i] = (touched[i] | (met & (threshold[i] < 0.0))) & (p[i] >= 0.0)
     find_runs(row)

@@ -76,7 +76,7 @@ class Model:
         arms = [(arm.stiffness, arm.relaxation_time) for arm in given.arms]
         c = Constants(
             surface=surface_of(scene.indenter), kinks=np.array(scene.indenter.kinks, dtype=float),
-            law=Element.of(given.stiffness, 0.0 if arms else given.damping, arms), parts=False,
+            law=Element.of(given.stiffness, given.damping, arms), parts=False,
             shift=0.0, spacing=0.0, across=0.0, mass=float(support.mass), weight=float(support.weight),
             spring=0.0, mass_along=math.inf if drive.rigid else float(scene.drive_mass),
             spring_along=float(drive.stiffness or 0.0), damping_along=float(drive.damping),

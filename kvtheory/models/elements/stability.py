@@ -131,7 +131,8 @@ def limits(model: Model, path: BaseMotion) -> Limits:
     """Return the rates and the imbalance that no stable run reaches."""
     c, fastest = model.constants, model.fastest(path)
     arms = model.contact.extent * float(c.law.arm_stiffness.sum())
-    rates = 1.0 / c.law.retardation_time + math.sqrt(c.spring / c.mass) + math.sqrt(arms / c.mass)
+    yields = c.law.stiffness / c.law.damping if c.law.damping else 1.0 / c.law.retardation_time
+    rates = yields + math.sqrt(c.spring / c.mass) + math.sqrt(arms / c.mass)
     thrown = c.depth * rates + fastest * model.steepest
     return Limits(
         rate=-RISE * thrown if math.isfinite(c.mass) else -math.inf,
