@@ -296,7 +296,8 @@ def _anywhere(
     number = tolerance * (1.0 + fine.drive.highest_speed)
     number += 0.0 if fine.units.rigid_drive else error("sliding_velocity")
     fastest = np.nanmax(np.abs(here["sliding_velocity"]), initial=0.0)
-    pressure += readable(motion.run.given[0]).damper * (rate + 2.0 * (arm * number + fastest * way))
+    damper = readable(motion.run.given[0]).damper
+    pressure += damper * (rate + 2.0 * (arm * number + float(fastest) * way))
     hops, others = (_hops(each) for each in (motion, other))
     jump = 0.0
     if len(hops) != len(others):
