@@ -213,7 +213,9 @@ def pressed(
             element.stress[i] += left * np.exp(np.minimum(fades / T, 1.0))
         p += total(element.stress[i])
     if run.now.restart > 0:
-        p += carried_over(run, at.time, xi - at.Y, 0 if index == NEVER else run.steps[index].restart)
+        p += carried_over(
+            run, at.time, xi - at.Y, 0 if index == NEVER else run.steps[index].restart
+        )
     return p, xi
 
 
@@ -312,11 +314,7 @@ def edge_at(
         index, start, x, reach = NEVER, side.xi, xi, FARTHEST
     before = previous = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
-    stiff = 1.0
-    if state == PEELING:
-        stiff += run.given.glass + run.given.damper * (abs(at.v) + 2.0 * abs(at.number * middle))
-    # Where X stands still, a larger p is not that of a root; behind a damper the gap grows as the square of X.
-    still = EDGE_ERROR if run.given.damper > 0.0 and state == TOUCHING else STALLED * stiff
+    stiff, still = _rounding(run, at, state, middle)
     flat = still * (1.0 + abs(Y))
     for _ in range(ITERATIONS):
         x = max(min(x, high), low)
@@ -347,6 +345,18 @@ def edge_at(
             move = 0.5 * (inner + outer) - x
         x += move
     return (xi if abs(xi - last) <= STALLED else math.nan), index, x
+
+
+def _rounding(run: Run, at: Motion, state: int, middle: float) -> tuple[float, float]:
+    """Return the size of the terms of p, or of the gap, and the largest value of it where X stands still.
+
+    A larger one is not that of a root. With a damper, a gap grows as the square of X.
+    """
+    given = run.given
+    if state == PEELING:
+        terms = 1.0 + given.glass + given.damper * (abs(at.v) + 2.0 * abs(at.number * middle))
+        return terms, STALLED * terms
+    return 1.0, EDGE_ERROR if given.damper > 0.0 else STALLED
 
 
 def _beyond_end(run: Run, k: int, at: Motion, xi: float, f: float) -> float:

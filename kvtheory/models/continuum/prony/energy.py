@@ -1,8 +1,9 @@
 r"""The energy ledger of a transient on a Prony series (facts F14, F23 and F33).
 
 In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_i T_i), and a damper
-dissipates c u'^2, in the contact and where the surface relaxes behind it. The ledger takes the stresses of each element from the memory, not the
-moments from which the solver computes the forces, so that its balance checks them. It is integrated by
+dissipates c u'^2, in the contact and where the surface relaxes behind it. The ledger takes the stresses of
+each element from the memory, not the moments from which the solver computes the forces, so that its balance
+checks them. It is integrated by
 Gauss's rule over the ground that the edges passed: between the ends of steps, on panels that double from the
 present backwards, since the stresses of fast arms change there: from the shortest relaxation time on in the
 contact, from the shortest time in which the free surface relaxes behind it.
@@ -78,7 +79,10 @@ class Ground:
         self.memory = named(together(run.memory, ARM_STATE)[:count])
         self.segments = structured(run.segments[: motion.counts.segments], SEGMENT)
         self.pieces, self.arms = np.asarray(run.pieces), named(together(run.arms, ARM))
-        self.modes, self.paused = (named(together(run.modes, MODE)), named(together(run.clock, PIECE)).paused)
+        self.modes, self.paused = (
+            named(together(run.modes, MODE)),
+            named(together(run.clock, PIECE)).paused,
+        )
         self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]

@@ -14,9 +14,9 @@ import numpy as np
 
 from kvtheory.models.continuum.prony.contact import (
     GOLDEN,
+    Motion,
     at_far_end,
     derivative,
-    Motion,
     edge_at,
     free,
     motion,

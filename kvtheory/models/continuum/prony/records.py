@@ -63,9 +63,9 @@ GIVEN = record(
     fixed="?", sprung="?",
 )  # fmt: skip
 """Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; C/K
-and sum K_i/K of the foundation; the last coefficient of a polynomial in Legendre's over that of its last power; the largest sum of A_i
-that a step may reach; controls of the step size; numbers of stages and of arms; whether the indenter is
-fixed, and held by a spring."""
+and sum K_i/K of the foundation; the last coefficient of a polynomial in Legendre's over that of its last
+power; the largest sum of A_i that a step may reach; controls of the step size; numbers of stages and of arms;
+whether the indenter is fixed, and held by a spring."""
 
 
 METHOD = record(A="f8", inverse="f8", powers="f8")
@@ -98,8 +98,8 @@ STAGE = record(
     way="f8", sliding_velocity="f8", edges=("f8", (2,)), entry_time=("f8", (2,)),
     entry_step=("i8", (2,)), edge_shift=("f8", (2,)), compression=("f8", (2,)), rise=("f8", (2,)),
 )  # fmt: skip
-"""Node of a stage and the sum of its row of A^-1; clock, time, d', x', d, x; Y and lambda of the base under the
-indenter; of both edges xi_e, the instant and the step in which the element there passed an edge, and the
+"""Node of a stage and the sum of its row of A^-1; clock, time, d', x', d, x; Y and lambda of the base under
+the indenter; of both edges xi_e, the instant and the step in which the element there passed an edge, and the
 velocity through the material times the span; u and u' there, see `SIDE`."""
 UNKNOWN = record(change="f8", move="f8", residual="f8", before="f8", image="f8", back="f8")
 """Of an unknown of Broyden's method: its change over the stage, and the last move; the residual, and that

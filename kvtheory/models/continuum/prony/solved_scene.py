@@ -37,8 +37,8 @@ from kvtheory.models.continuum.solved_scene import (
     scaled_drive,
 )
 from kvtheory.progress import Progress
-from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.records import readable
+from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene

@@ -337,7 +337,9 @@ def find_edge(run: Run, k: int) -> bool:
             arm.stress_at_edge[i, j, k] = element.stress[i]
     interpolate_edge(run, k)
     polynomials = run.polynomials
-    interpolate(run, polynomials.compression[index, :, k], stages.compression[:, k], side.compression)
+    interpolate(
+        run, polynomials.compression[index, :, k], stages.compression[:, k], side.compression
+    )
     interpolate(run, polynomials.rise[index, :, k], stages.rise[:, k], side.rise)
     found, values = run.memory.stress_at_edge[index, :, :, k], arm.stress_at_edge[:, :, k]
     for i in everything:

@@ -174,7 +174,8 @@ def solve(
 ) -> Trajectory:  # fmt: skip
     """Solve the transient of `drive` from rest until `end`, in scaled form.
 
-    `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `damper` is C/(K tau), `numbers` eps and kappa, which is infinite for a fixed
+    `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `damper` is C/(K tau), `numbers` eps and kappa,
+    which is infinite for a fixed
     indenter. The rest is as in `continuum.solver.solve`.
 
     Raises

@@ -40,8 +40,8 @@ from kvtheory.models.continuum.prony.records import (
     NEVER,
     PEELING,
     SIDES,
-    TOUCHING,
     SMOOTH,
+    TOUCHING,
     Run,
 )
 from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
@@ -212,7 +212,8 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
 def _keeps(run: Run, k: int, at: Motion) -> float:
     """Return a number that is positive as long as an edge may keep its state.
 
-    It touches as long as the indenter presses faster than the free surface there rises. One that peels moves inward over the ground, but for the error of its polynomial: its p' has the right
+    It touches as long as the indenter presses faster than the free surface there rises. One that peels moves
+    inward over the ground, but for the error of its polynomial: its p' has the right
     sign then, but is lost in the terms of a stiff arm.
     """
     now, n, index = run.now, run.given.stages, run.now.steps
