@@ -1,6 +1,7 @@
 r"""The contact of a parabola with a Prony series: accumulators, and the history of both edges (F23).
 
-Scaled form, with k_i = K_i/K and T_i = tau_i/tau: u = d - xi^2 in the contact, p = u + sum s_i. An element at
+Scaled form, with k_i = K_i/K, T_i = tau_i/tau and c = C/(K tau): u = d - xi^2 in the contact, u' = d' - 2
+lambda xi, p = u + c u' + sum s_i. An element at
 X = xi - Y that entered at sigma, where an edge was at xi_e = X + Y(sigma), and its arms had the stresses s_e,
 has
 
@@ -11,14 +12,15 @@ has
 A_i and B_i starting at zero; those in contact at rest lack the term in brackets. Where A_i and B_i were
 restarted at s_0 (see `restarts`), elements that entered before also have the stress carried over from before,
 e^-(s - s_0)/T_i k_i (A_i - xi B_i)(s_0). The moments F_i and M_i of s_i over the contact, from which both
-forces follow, obey, with I_n = int xi^n dxi, summed over both edges,
+forces follow (F33), obey, with I_n = int xi^n dxi, summed over both edges,
 
     F_i' = k_i (d' I_0 - 2 lambda I_1) - F_i/T_i +- s_e X_e',
     M_i' = lambda F_i + k_i (d' I_1 - 2 lambda I_2) - M_i/T_i +- xi_e s_e X_e'.
 
 An edge peels at p = 0, or touches the free surface, d - xi^2 = u: zero on ground that was never touched, and
-where an edge left it at sigma, the solution of u + sum s_i = 0, a sum of N modes. It peels as long as p of
-the element there would fall, and touches as long as it rises.
+where an edge left it at sigma, the solution of u + c u' + sum s_i = 0, a sum of N modes, N + 1 with a damper.
+It peels as long as p of the element there would fall, and touches as long as the indenter presses faster than
+the free surface there would rise. Where lambda jumps, the pressure of a damper does: see `records.paused`.
 
 A step stores `polynomials` over its length, and those of each arm in `memory`. A loop
 `for i in over(count)` runs over arms: compiled, i is one after the other; interpreted, all at once, as a
@@ -29,12 +31,12 @@ is a list that begins at the edge. An edge that passes the end of a segment, or 
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.continuum.prony.records import NEVER, PEELING, SIDES, TOUCHING, Run
-from kvtheory.scene.base_motion import evaluate
+from kvtheory.scene.base_motion import DISPLACEMENT, START, evaluate
 
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11
 """Iteration limit, and allowed error of an edge, relative to 1 + |Y|; that at the limit, due to rounding."""
@@ -58,6 +60,18 @@ def over(count: int) -> Any:
 def total(values: Any) -> Any:
     """Return the sum over the arms of a turn of such a loop."""
     return values.sum()
+
+
+class Motion(NamedTuple):
+    """Clock, time, d, d', Y and lambda of the base under the indenter, and the share of the step."""
+
+    s: float
+    time: float
+    d: float
+    v: float
+    Y: float
+    number: float
+    theta: float
 
 
 COMPILED = {"over": lambda count: range(count), "total": lambda value: value}  # noqa: PLW0108 - numba needs it
@@ -122,18 +136,39 @@ def integral(row: Any, theta: float) -> float:
     return total * theta
 
 
-def motion(run: Run, index: int, s: float) -> tuple[float, float, float, float, float]:
-    """Return d, d', Y, lambda and theta at `s`, from a step."""
+def time_at(run: Run, piece: int, s: float) -> float:
+    """Return the time at a clock in a piece of the drive."""
+    since = run.clock.since[piece]
+    return float(since if run.clock.paused[piece] else since + (s - run.pieces[piece][START]))
+
+
+def base(run: Run, piece: int, s: float) -> tuple[float, float, float]:
+    """Return Y, lambda and lambda' of the drive; in a pause, the base stands still while lambda changes."""
+    row = run.pieces[piece]
+    Y, number, slope = evaluate(row, s)
+    return float(row[DISPLACEMENT] if run.clock.paused[piece] else Y), number, slope
+
+
+def motion(run: Run, index: int, s: float) -> Motion:
+    """Return the motion at a clock, from a step."""
     step = run.steps[index]
     theta = (s - step.start) / step.span
-    Y, number, _ = evaluate(run.pieces[step.piece], s)
+    Y, number, _ = base(run, step.piece, s)
     rate = run.polynomials.depth_rate[index]
-    d = step.depth + step.span * integral(rate, theta)
+    d = step.depth + step.lasts * integral(rate, theta)
     if run.given.sprung:
         along = run.polynomials.offset_rate[index]
-        Y -= step.along + step.span * integral(along, theta)
+        Y -= step.along + step.lasts * integral(along, theta)
         number -= value(along, theta)
-    return d, value(rate, theta), Y, number, theta
+    return Motion(s, time_at(run, step.piece, s), d, value(rate, theta), Y, number, theta)
+
+
+def present(run: Run) -> Motion:
+    """Return the motion at present."""
+    now = run.now
+    Y, number, _ = base(run, now.piece, now.s)
+    time = time_at(run, now.piece, now.s)
+    return Motion(now.s, time, now.d, now.v, Y - now.x, number - now.w, 0.0)
 
 
 def step_of(run: Run, edge: int, index: int, sigma: float) -> int:
@@ -147,7 +182,7 @@ def step_of(run: Run, edge: int, index: int, sigma: float) -> int:
 
 
 def pressed(
-    run: Run, s: float, d: float, Y: float, xi: float, edge: int, index: int, sigma: float
+    run: Run, at: Motion, xi: float, edge: int, index: int, sigma: float
 ) -> tuple[float, float]:
     """Return p and xi of an element in contact, and write its s_i into `element`, which has A_i and B_i.
 
@@ -155,88 +190,102 @@ def pressed(
     the stages of that step the polynomials leave a gap or an overlap there. The indenter closes it at once,
     and an arm keeps the share of this stress that it would keep over the step.
     """
-    theta = xi_e = deeper = 0.0
-    memory, element = run.memory, run.element
+    theta = xi_e = deeper = fades = 0.0
+    memory, element, polynomials = run.memory, run.element, run.polynomials
     if index != NEVER:
-        d_e, _, Y_e, _, theta = motion(run, index, sigma)
-        xi_e = value(run.polynomials.edges[index, :, edge], theta)
-        xi, deeper = xi_e - Y_e + Y, d_e - xi_e * xi_e
+        then = motion(run, index, sigma)
+        theta, fades = then.theta, then.time - at.time
+        xi_e = value(polynomials.edges[index, :, edge], theta)
+        xi = xi_e - then.Y + at.Y
+        deeper = then.d - xi_e * xi_e - value(polynomials.compression[index, :, edge], theta)
         for i in over(run.given.arms):
             element.stress_at_edge[i] = past_stress(run, index, i, edge, theta)
-            deeper += total(element.stress_at_edge[i])
-    p = d - xi * xi
+    p = at.d - xi * xi + run.given.damper * (at.v - 2.0 * at.number * xi)
     for i in over(run.given.arms):
         k = run.arms.stiffness[i]
         element.stress[i] = k * (element.accumulated_depth[i] - xi * element.accumulated_slide[i])
         if index != NEVER:
             A = past(memory.accumulated_depth, index, i, theta)
-            then = A - xi_e * past(memory.accumulated_slide, index, i, theta)
+            strain = A - xi_e * past(memory.accumulated_slide, index, i, theta)
             T = run.arms.relaxation_time[i]
-            left = element.stress_at_edge[i] + k * (T / (T + run.steps[index].span) * deeper - then)
-            element.stress[i] += left * np.exp(np.minimum((sigma - s) / T, 1.0))
+            strain -= T / (T + run.steps[index].lasts) * deeper
+            left = element.stress_at_edge[i] - k * strain
+            element.stress[i] += left * np.exp(np.minimum(fades / T, 1.0))
         p += total(element.stress[i])
     if run.now.restart > 0:
-        p += carried_over(run, s, xi - Y, 0 if index == NEVER else run.steps[index].restart)
+        p += carried_over(
+            run, at.time, xi - at.Y, 0 if index == NEVER else run.steps[index].restart
+        )
     return p, xi
 
 
-def carried_over(run: Run, s: float, X: float, entered: int) -> float:
+def carried_over(run: Run, time: float, X: float, entered: int) -> float:
     """Add to the s_i of the element at `X` the stress carried over from before the last restart.
 
     `entered` is the last restart when the element entered. Return the sum of this stress.
     """
     j, added, memory = run.now.restart, 0.0, run.memory
     while j > entered:
-        start = run.steps[j].start
-        _, _, Y, _, theta = motion(run, j - 1, start)
+        then = motion(run, j - 1, run.steps[j].start)
+        Y, theta = then.Y, then.theta
         depth, slide = memory.accumulated_depth, memory.accumulated_slide
         for i in over(run.given.arms):
             A = past(depth, j - 1, i, theta) - depth[j, i, 0]
             B = past(slide, j - 1, i, theta) - slide[j, i, 0]
             stress = run.arms.stiffness[i] * (A - (X + Y) * B)
-            stress = stress * np.exp((start - s) / run.arms.relaxation_time[i])
+            stress = stress * np.exp((then.time - time) / run.arms.relaxation_time[i])
             run.element.stress[i] += stress
             added += total(stress)
         j = run.steps[j - 1].restart
     return added
 
 
-def free(
-    run: Run, s: float, d: float, Y: float, edge: int, index: int, sigma: float
-) -> tuple[float, float]:
-    """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi; write its s_i.
+def free(run: Run, at: Motion, edge: int, index: int, sigma: float) -> tuple[float, float]:
+    """Return the gap u - (d - xi^2) above an element that an edge left at `sigma`, and xi.
 
-    If the polynomials left it with a pressure, it rises at once.
+    Write its s_i, u and u'. If the polynomials left it with a pressure, and no damper, it rises at once.
     """
-    d_e, _, Y_e, _, theta = motion(run, index, sigma)
-    xi_e = value(run.polynomials.edges[index, :, edge], theta)
-    xi, arms, element, u = xi_e - Y_e + Y, run.arms, run.element, 0.0
-    p_e = u_e = d_e - xi_e * xi_e
+    then, arms, modes, element = motion(run, index, sigma), run.arms, run.modes, run.element
+    xi_e = value(run.polynomials.edges[index, :, edge], then.theta)
+    xi, count = xi_e - then.Y + at.Y, len(run.to_modes)
+    p_e = u_e = then.d - xi_e * xi_e
     for i in over(run.given.arms):
-        element.stress_at_edge[i] = past_stress(run, index, i, edge, theta)
+        element.stress_at_edge[i] = past_stress(run, index, i, edge, then.theta)
         p_e += total(element.stress_at_edge[i])
-    higher = p_e / (1.0 + run.given.glass)
-    u_e -= higher
-    for i in over(run.given.arms):
-        element.stress_at_edge[i] -= arms.stiffness[i] * higher
-    for m in range(run.given.arms):
-        mode = 0.0
+    if run.given.damper == 0.0:
+        higher = p_e / (1.0 + run.given.glass)
+        u_e -= higher
+        for i in over(run.given.arms):
+            element.stress_at_edge[i] -= arms.stiffness[i] * higher
+    u = rise = 0.0
+    for m in range(count):
+        mode = run.to_modes[m, count - 1] * u_e if run.given.damper > 0.0 else 0.0
         for i in over(run.given.arms):
             strain = element.stress_at_edge[i] / arms.stiffness[i]
             mode += total(run.to_modes[m, i] * (u_e - strain))
-        element.mode[m] = mode * math.exp(min((sigma - s) * arms.mode_rate[m], 1.0))
-        u += arms.mode_share[m] * element.mode[m]
+        mode *= math.exp(min((then.time - at.time) * modes.rate[m], 1.0))
+        u += modes.share[m] * mode
+        rise -= modes.rate[m] * modes.share[m] * mode
+        modes.amplitude[m] = mode
     for i in over(run.given.arms):
         element.stress[i] = 0.0
-        for m in range(run.given.arms):
-            element.stress[i] += run.from_modes[i, m] * element.mode[m]
-    return u - d + xi * xi, xi
+        for m in range(count):
+            element.stress[i] += run.from_modes[i, m] * modes.amplitude[m]
+    run.now.compression, run.now.rise = u, rise
+    return u - at.d + xi * xi, xi
+
+
+def untouched(run: Run) -> None:
+    """Write s_i, u and u' of an element that was never touched."""
+    for i in over(run.given.arms):
+        run.element.stress[i] = 0.0
+    run.now.compression = run.now.rise = 0.0
 
 
 def edge_at(
-    run: Run, k: int, s: float, d: float, Y: float, xi: float, index: int, sigma: float
+    run: Run, k: int, at: Motion, xi: float, index: int, sigma: float
 ) -> tuple[float, int, float]:
-    """Return xi of an edge, the step and the instant of the element there; write its s_i into `element`.
+    """Return xi of an edge, the step and the instant of the element there; write its s_i, and u' if free.
 
     From a guess of `xi`, of elements that were in contact at rest, or else of `sigma`: the nearest root of p,
     or of the gap, by a secant method with limited steps until the root is bracketed. Beyond the end of its
@@ -245,13 +294,15 @@ def edge_at(
     """
     side, state = run.now.sides[k], run.now.sides[k].state
     if side.segment == NEVER or (state == TOUCHING and run.segments[side.segment].step == NEVER):
-        for i in over(run.given.arms):
-            run.element.stress[i] = 0.0
-        return SIDES[k] * math.sqrt(max(d, 0.0)), index, sigma
-    segment, span = run.segments[side.segment], s - run.now.s
+        untouched(run)
+        return SIDES[k] * math.sqrt(max(at.d, 0.0)), index, sigma
+    if state == TOUCHING and run.clock.paused[run.now.piece]:  # both surfaces stand still
+        free(run, at, run.segments[side.segment].edge, side.index, side.sigma)
+        return float(side.xi), int(side.index), float(side.sigma)
+    segment, span, Y = run.segments[side.segment], at.s - run.now.s, at.Y
     edge, middle = segment.edge, 0.5 * (run.now.sides[0].xi + run.now.sides[1].xi)
     inward, low, high = (
-        (-1.0, segment.a, side.near) if edge == k else (1.0, side.near, min(segment.b, s))
+        (-1.0, segment.a, side.near) if edge == k else (1.0, side.near, min(segment.b, at.s))
     )
     end = segment.a if edge == k else segment.b
     start, x, move = side.sigma, sigma, FIRST_MOVE * span
@@ -261,17 +312,16 @@ def edge_at(
         low, high = (-math.inf, end) if k == 0 else (end, math.inf)
         move = AT_REST_MOVE * (run.now.sides[1].xi - run.now.sides[0].xi)
         index, start, x, reach = NEVER, side.xi, xi, FARTHEST
-    before = at = last = inner = outer = math.nan
+    before = previous = last = inner = outer = math.nan
     secant = False  # whether the last move was not limited: a small one means little where X stands still
-    stiff = 1.0 + run.given.glass if state == PEELING else 1.0
-    # Where X stands still, a larger p is not that of a root.
-    flat = STALLED * stiff * (1.0 + abs(Y))
+    stiff, still = _rounding(run, at, state, middle)
+    flat = still * (1.0 + abs(Y))
     for _ in range(ITERATIONS):
         x = max(min(x, high), low)
         if index != NEVER:
             index = step_of(run, edge, index, x)
-        f, xi = _margin(run, state, s, d, Y, edge, index, x)
-        settled = (secant and abs(f) <= flat) or x == at or abs(f) <= EDGE_ERROR * stiff
+        f, xi = _margin(run, state, at, edge, index, x)
+        settled = (secant and abs(f) <= flat) or x == previous or abs(f) <= EDGE_ERROR * stiff
         if abs(f) <= EDGE_ERROR or (settled and abs(xi - last) <= EDGE_ERROR * (1.0 + abs(Y))):
             return xi, index, x
         passes = x == end and f < 0.0 and math.isnan(inner)
@@ -280,15 +330,15 @@ def edge_at(
             continue
         returns = state == PEELING and index != NEVER and x == side.near and f > 0.0
         if passes or (returns and math.isnan(outer)):
-            return _beyond_end(run, k, xi, f), index, x
+            return _beyond_end(run, k, at, xi, f), index, x
         toward, inner, outer = (inward, inner, x) if f < 0.0 else (-inward, x, outer)
         bracketed, secant = not math.isnan(inner + outer), not math.isnan(last)
         if secant:
-            move = -f * (x - at) / (f - before) if f != before else 0.0
+            move = -f * (x - previous) / (f - before) if f != before else 0.0
         else:
             move *= toward
-        before, at, last = f, x, xi
-        stands = move == 0.0 and abs(f) > STALLED * stiff  # X does, where sliding began
+        before, previous, last = f, x, xi
+        stands = move == 0.0 and abs(f) > still  # X does, where sliding began
         if not bracketed and (stands or toward * move < 0.0 or abs(move) >= reach):
             move, reach, secant = toward * reach, FASTER * reach, False
         elif bracketed and not min(inner, outer) <= x + move <= max(inner, outer):
@@ -297,22 +347,34 @@ def edge_at(
     return (xi if abs(xi - last) <= STALLED else math.nan), index, x
 
 
-def _beyond_end(run: Run, k: int, xi: float, f: float) -> float:
+def _rounding(run: Run, at: Motion, state: int, middle: float) -> tuple[float, float]:
+    """Return the size of the terms of p, or of the gap, and the largest value of it where X stands still.
+
+    A larger one is not that of a root. With a damper, a gap grows as the square of X.
+    """
+    given = run.given
+    if state == PEELING:
+        terms = 1.0 + given.glass + given.damper * (abs(at.v) + 2.0 * abs(at.number * middle))
+        return terms, STALLED * terms
+    return 1.0, EDGE_ERROR if given.damper > 0.0 else STALLED
+
+
+def _beyond_end(run: Run, k: int, at: Motion, xi: float, f: float) -> float:
     """Return xi of an edge beyond the end of its segment, where p, or the gap, is `f`."""
     slope, outward = 2.0 * xi, SIDES[k]
     if run.now.sides[k].state == PEELING:
-        outward = -SIDES[k]
+        outward, slope = -SIDES[k], slope + 2.0 * run.given.damper * at.number
         for i in over(run.given.arms):
             slope += total(run.arms.stiffness[i] * run.element.accumulated_slide[i])
     return xi - outward * max(min(f / abs(slope), FARTHEST), -FARTHEST)
 
 
-def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) -> float:
+def at_far_end(run: Run, k: int, at: Motion, middle: float) -> float:
     """Return p, or the gap if the edge touches, where the segment of an edge ends; `element` has A_i and B_i.
 
     An end that is beyond the `middle` of the contact is passed by the other edge.
     """
-    side, never = run.now.sides[k], math.inf
+    side, never, Y = run.now.sides[k], math.inf, at.Y
     if side.segment == NEVER:
         return never
     segment, touches = run.segments[side.segment], side.state == TOUCHING
@@ -321,16 +383,16 @@ def at_far_end(run: Run, k: int, s: float, d: float, Y: float, middle: float) ->
         return never
     if segment.step == NEVER:
         if touches:
-            return (X + Y) * (X + Y) - d
-        return pressed(run, s, d, Y, X + Y, segment.edge, NEVER, 0.0)[0]
+            return (X + Y) * (X + Y) - at.d
+        return pressed(run, at, X + Y, segment.edge, NEVER, 0.0)[0]
     index = step_of(run, segment.edge, segment.step, far)
-    return _margin(run, side.state, s, d, Y, segment.edge, index, far)[0]
+    return _margin(run, side.state, at, segment.edge, index, far)[0]
 
 
 def _margin(
-    run: Run, state: int, s: float, d: float, Y: float, edge: int, index: int, x: float
+    run: Run, state: int, at: Motion, edge: int, index: int, x: float
 ) -> tuple[float, float]:
     """Return p, or the gap if the edge touches, and xi."""
     if state == PEELING:
-        return pressed(run, s, d, Y, x, edge, index, x)
-    return free(run, s, d, Y, edge, index, x)
+        return pressed(run, at, x, edge, index, x)
+    return free(run, at, edge, index, x)

@@ -1,8 +1,9 @@
-r"""The energy ledger of a transient on a Prony series (facts F14 and F23).
+r"""The energy ledger of a transient on a Prony series (facts F14, F23 and F33).
 
-In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_i T_i), in the contact and
-where the surface relaxes behind it. The ledger takes the stresses of each element from the memory, not the
-moments from which the solver computes the forces, so that its balance checks them. It is integrated by
+In units of K, each arm of an element stores s_i^2/2k_i and dissipates s_i^2/(k_i T_i), and a damper
+dissipates c u'^2, in the contact and where the surface relaxes behind it. The ledger takes the stresses of
+each element from the memory, not the moments from which the solver computes the forces, so that its balance
+checks them. It is integrated by
 Gauss's rule over the ground that the edges passed: between the ends of steps, on panels that double from the
 present backwards, since the stresses of fast arms change there: from the shortest relaxation time on in the
 contact, from the shortest time in which the free surface relaxes behind it.
@@ -16,9 +17,10 @@ Q_i = int s_i^2 dxi follows the balance, with the moments F_i and M_i, over both
 
 An element that an edge left at sigma relaxes in modes, m_j e^-r_j(s - sigma), and has lost since then
 
-    sum_jl m_j m_l L_jl (1 - e^-(r_j + r_l)(s - sigma))/(r_j + r_l),    L_jl = sum_i f_ij f_il/(k_i T_i)
+    sum_jl m_j m_l L_jl (1 - e^-(r_j + r_l)(s - sigma))/(r_j + r_l)
 
-with s_i = sum_j f_ij m_j: that of free ground follows from the ground at present, and that of ground which an
+with s_i = sum_j f_ij m_j, u = sum_j h_j m_j and L_jl = sum_i f_ij f_il/(k_i T_i) + c h_j r_j h_l r_l: that of
+free ground follows from the ground at present, and that of ground which an
 edge meets again from the element at this edge.
 """
 
@@ -33,15 +35,17 @@ from kvtheory.models.continuum.prony.records import (
     ARM,
     ARM_STATE,
     FREE,
+    MODE,
     NEVER,
     PEELING,
+    PIECE,
     POLYNOMIAL,
     SEGMENT,
     TOUCHING,
     named,
     together,
 )
-from kvtheory.models.continuum.prony.step import forces
+from kvtheory.models.continuum.prony.step import forces, moments
 from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as drive_
@@ -75,13 +79,26 @@ class Ground:
         self.memory = named(together(run.memory, ARM_STATE)[:count])
         self.segments = structured(run.segments[: motion.counts.segments], SEGMENT)
         self.pieces, self.arms = np.asarray(run.pieces), named(together(run.arms, ARM))
+        self.modes, self.paused = (
+            named(together(run.modes, MODE)),
+            named(together(run.clock, PIECE)).paused,
+        )
+        self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]
         longest = float(motion.counts.s)
         self.ages = [
             fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
-            for fastest in (1.0 / self.arms.mode_rate.max(), self.arms.relaxation_time.min())
+            for fastest in (
+                1.0 / self.modes.rate.max(),
+                self.arms.relaxation_time.min(initial=longest),
+            )
         ]
+
+    def time(self, index: Any, s: Array) -> Array:
+        """Return the time at clocks in steps."""
+        step = self.steps[index]
+        return np.asarray(step["time"] + np.where(step["lasts"] > 0.0, s - step["start"], 0.0))
 
     def step_at(self, s: Array) -> Any:
         """Return the steps at times."""
@@ -112,17 +129,16 @@ class Ground:
         powers = self.polynomials.edges[index, :, edge].T
         xi = polynomial.polyval(theta, powers, tensor=False)
         rate = polynomial.polyval(theta, polynomial.polyder(powers), tensor=False) / step["span"]
-        return xi - Y, rate - number, index, theta
+        return xi - Y, rate - np.where(step["lasts"] > 0.0, number, 0.0), index, theta
 
     def slid(self, index: Any, theta: Array, s: Array) -> tuple[Array, Array]:
         """Return Y and lambda of the base under the indenter."""
         step = self.steps[index]
         piece, along = self.pieces[step["piece"]].T, self.polynomials.offset_rate[index].T
         t, powers = s - piece[drive_.START], piece[drive_.POWERS :]
-        Y = piece[drive_.DISPLACEMENT] + polynomial.polyval(
-            t, polynomial.polyint(powers), tensor=False
-        )
-        Y -= step["along"] + step["span"] * polynomial.polyval(
+        moved = polynomial.polyval(t, polynomial.polyint(powers), tensor=False)
+        Y = piece[drive_.DISPLACEMENT] + np.where(self.paused[step["piece"]], 0.0, moved)
+        Y -= step["along"] + step["lasts"] * polynomial.polyval(
             theta, polynomial.polyint(along), tensor=False
         )
         number = polynomial.polyval(t, powers, tensor=False)
@@ -145,7 +161,7 @@ class Ground:
 
     def _block(self, s: Array) -> Array:
         """Return the integrals at a few times: (2, 3, times)."""
-        states = self.motion.states(s, peaks=False)
+        states = self.motion.states(self.time(self.step_at(s), s), peaks=False)
         (l, r), Y = states["edges"].T, states["way"]
         indices = enumerate(self.step_at(s).tolist())
         rows = [(i, *part) for i, index in indices for part in self.parts[index]]
@@ -203,17 +219,21 @@ class Ground:
         Those in contact at rest have X instead of an instant.
         """
         k, T = self.arms.stiffness[:, None], self.arms.relaxation_time[:, None]
-        X, rate, index, theta = self.place(edge, np.where(rest, 0.0, nodes))
+        at = np.where(rest, 0.0, nodes)
+        X, rate, index, theta = self.place(edge, at)
+        xi_e = X + self.slid(index, theta, at)[0]
         X, rate = np.where(rest, nodes, X), np.where(rest, 1.0, np.abs(rate))
+        now = self.step_at(s)
+        age = np.maximum(self.time(now, s) - self.time(index, at), 0.0)
         memory = self.memory
         stress = self._stress(index, edge, theta)
         if contact:
-            xi, now = X + states["way"], self.step_at(s)
-            u, xi_e = states["depth"] - xi * xi, X + self.slid(index, theta, nodes)[0]
+            xi = X + states["way"]
+            u = states["depth"] - xi * xi
             A = _of_arms(memory.accumulated_depth, index, theta)
             B = _of_arms(memory.accumulated_slide, index, theta)
             left = stress - k * (A - xi_e * B)
-            fade = np.exp(np.minimum((nodes - s) / T, 0.0))
+            fade = np.exp(-age / T)
             when = (s - self.starts[now]) / self.steps["span"][now]
             A = _of_arms(memory.accumulated_depth, now, when)
             B = _of_arms(memory.accumulated_slide, now, when)
@@ -221,29 +241,42 @@ class Ground:
             self._carry_over(stress, s, X, now, np.where(rest, 0, index))
             lost = np.zeros_like(u)
         else:
-            age, modes = np.maximum(s - nodes, 0.0), self._modes(stress)
+            modes = self._modes(stress, self._depth(index, theta) - xi_e * xi_e)
             lost = self._lost(modes, age)
-            modes = modes * np.exp(-age * self.arms.mode_rate[:, None])
-            u = np.einsum("m,mq->q", self.arms.mode_share, modes)
+            modes = modes * np.exp(-age * self.modes.rate[:, None])
+            u = np.einsum("m,mq->q", self.modes.share, modes)
             stress = np.einsum("im,mq->iq", self.motion.run.from_modes, modes)
         return Integrals(u * rate, (u * u + (stress * stress / k).sum(axis=0)) * rate, lost * rate)
 
-    def _modes(self, stress: Array) -> Array:
-        """Return the modes of elements with these stresses, whose pressure is zero."""
-        each = -stress.sum(axis=0) - stress / self.arms.stiffness[:, None]
+    def _modes(self, stress: Array, u: Array) -> Array:
+        """Return the modes of elements with these stresses, and u; without a damper, p = 0 gives it."""
+        u = u if self.damper else -stress.sum(axis=0)
+        each = u - stress / self.arms.stiffness[:, None]
+        each = np.concatenate([each, u[None]]) if self.damper else each
         return np.asarray(np.einsum("mi,iq->mq", self.motion.run.to_modes, each))
 
     def _lost(self, modes: Array, age: Array) -> Array:
         """Return what free elements lost since an edge left them with these modes."""
-        arms, f = self.arms, self.motion.run.from_modes
-        k, T, rates = arms.stiffness, arms.relaxation_time, arms.mode_rate
+        arms, modes_of, f = self.arms, self.modes, self.motion.run.from_modes
+        k, T, rates = arms.stiffness, arms.relaxation_time, modes_of.rate
+        rise = rates * modes_of.share
         each = np.einsum("ij,il,i->jl", f, f, 1.0 / (k * T))
+        each += self.damper * np.outer(rise, rise)
         both = rates[:, None] + rates
         faded = -np.expm1(-both[..., None] * age) / both[..., None]
         return np.asarray(np.einsum("jq,lq,jl,jlq->q", modes, modes, each, faded))
 
-    def powers(self, s: Array) -> tuple[Array, Array, Array]:
-        """Return the powers at times: of the drive, in the damper over its damping, and P_i of each arm."""
+    def _depth(self, index: Any, theta: Array) -> Array:
+        """Return d in steps at theta."""
+        step, powers = self.steps[index], self.polynomials.depth_rate[index].T
+        risen = polynomial.polyval(theta, polynomial.polyint(powers), tensor=False)
+        return np.asarray(step["depth"] + step["lasts"] * risen)
+
+    def powers(self, s: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the powers at clocks: of the drive, of both dampers over their damping, and P_i of each arm.
+
+        The damper of the foundation is the second one. In a pause only what is kept changes.
+        """
         index = self.step_at(s)
         theta = (s - self.starts[index]) / self.steps["span"][index]
         number = self.slid(index, theta, s)[1]
@@ -254,19 +287,21 @@ class Ground:
         polynomials, memory, step = self.polynomials, self.memory, self.steps[index]
         rate = along(polynomials.depth_rate[index])
         F, M = _of_arms(memory.force, index, theta), _of_arms(memory.moment, index, theta)
-        d = step["depth"] + step["span"] * polynomial.polyval(
-            theta, polynomial.polyint(polynomials.depth_rate[index].T), tensor=False
-        )
         l, r = (along(polynomials.edges[index, :, k]) for k in range(2))
         of_arrays: Any = forces
-        _, friction = of_arrays(l, r, d, F.sum(axis=0), M.sum(axis=0))
+        c, lasts, d = self.damper, step["lasts"] > 0.0, self._depth(index, theta)
+        damped = c * rate, 2.0 * c * number
+        _, friction = of_arrays(l, r, d, damped, F.sum(axis=0), M.sum(axis=0))
+        I_0, I_1, I_2, _ = moments(l, r)
+        pressed = rate * rate * I_0 - 4.0 * number * (rate * I_1 - number * I_2)
         power = 2.0 * self.arms.stiffness[:, None] * (rate * F - 2.0 * number * M)
+        w = along(polynomials.offset_rate[index])
+        power = np.where(lasts, power, 0.0)
         for k, side in enumerate((-1.0, 1.0)):
             _, moves, _, _ = self.place(k, s)
             flies = step["sides"]["state"][:, k] == FREE
             power += side * np.where(flies, 0.0, moves) * self._stress(index, k, theta) ** 2
-        w = along(polynomials.offset_rate[index])
-        return (number + w) * friction, w * w, power
+        return lasts * (number + w) * friction, lasts * w * w, lasts * pressed, power
 
     def spent(self, s: float, damping: float) -> tuple[float, float, float, float]:
         """Return the work until `s`, and what contact, ground that was met again and damper lost."""
@@ -278,12 +313,13 @@ class Ground:
             (panels[:-1, None] + width * ABSCISSAE).reshape(-1),
             (width * WEIGHTS).reshape(-1),
         )
-        drive, damper, powers = self.powers(t)
-        fade = 2.0 * (t - s) / self.arms.relaxation_time[:, None]
+        drive, damper, pressed, powers = self.powers(t)
+        age = self.time(self.step_at(np.array([s])), np.array([s])) - self.time(self.step_at(t), t)
+        fade = -2.0 * age / self.arms.relaxation_time[:, None]
         kept = -np.expm1(fade) / self.arms.stiffness[:, None]
         rows = (
             drive,
-            0.375 * (kept * powers).sum(axis=0),
+            0.375 * (kept * powers).sum(axis=0) + 0.75 * self.damper * pressed,
             0.75 * self.met_again(t),
             damping * damper,
         )
@@ -304,8 +340,10 @@ class Ground:
             edge = segment["edge"]
             sigma = self.instants(edge, X, segment["a"], np.minimum(segment["b"], s[at]))
             _, _, then, theta = self.place(edge, sigma)
-            stress = self._stress(then, edge, theta)
-            found[at] += self._lost(self._modes(stress), s[at] - sigma) * np.abs(moves)
+            u = self._depth(then, theta) - (X + self.slid(then, theta, sigma)[0]) ** 2
+            modes = self._modes(self._stress(then, edge, theta), u)
+            age = np.maximum(self.time(index[at], s[at]) - self.time(then, sigma), 0.0)
+            found[at] += self._lost(modes, age) * np.abs(moves)
         return found
 
     def _stress(self, index: Any, edge: Any, theta: Array) -> Array:
@@ -320,13 +358,14 @@ class Ground:
         j, first = restart[now], restart[entered]
         while (of := np.nonzero(j > first)[0]).size:
             start, last = self.starts[j[of]], j[of] - 1
+            gone = self.time(now[of], s[of]) - self.time(last, start)
             theta = (start - self.starts[last]) / self.steps["span"][last]
             A, B = (
                 _of_arms(powers, last, theta) - powers[j[of], :, 0].T
                 for powers in (memory.accumulated_depth, memory.accumulated_slide)
             )
             xi = X[of] + self.slid(last, theta, start)[0]
-            stress[:, of] += k * (A - xi * B) * np.exp((start - s[of]) / T)
+            stress[:, of] += k * (A - xi * B) * np.exp(-gone / T)
             j[of] = restart[last]
 
 
@@ -337,7 +376,7 @@ def _of_arms(powers: Array, index: Any, theta: Array) -> Array:
 
 def volume(motion: Trajectory, s: float) -> float:
     """Return U = int u dxi over the whole surface; f_z = 3/4 (U + sum S_i), S_i' = k_i U' - S_i/T_i (F14)."""
-    within, outside = Ground(motion).integrals(np.array([s]))
+    within, outside = Ground(motion).integrals(motion.clock([s]))
     return float(within.volume[0] + outside.volume[0])
 
 
@@ -353,8 +392,9 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     """
     times, ground, given = np.asarray(s, dtype=float), Ground(motion), readable(motion.run.given[0])
     flat = times.reshape(-1)
-    sums = np.array([ground.spent(t, given.damping) for t in flat.tolist()]).reshape(-1, 4).T
-    states, (within, outside) = motion.states(flat, peaks=False), ground.integrals(flat)
+    clock = motion.clock(flat)
+    sums = np.array([ground.spent(t, given.damping) for t in clock.tolist()]).reshape(-1, 4).T
+    states, (within, outside) = motion.states(flat, peaks=False), ground.integrals(clock)
     sums[2] += 0.75 * outside.lost
     moving = np.array([states[name] for name in ("depth", "depth_rate", "offset", "offset_rate")])
     stored = 0.375 * np.array([within.stored, outside.stored])

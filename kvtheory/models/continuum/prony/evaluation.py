@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 from kvtheory.models.continuum.prony.contact import (
+    Motion,
     accumulated,
     free,
     integral,
@@ -31,11 +32,9 @@ both forces, the largest pressure, Y, the states of both edges; p and u at a pla
 
 
 class Contact(NamedTuple):
-    """A time, with depth, Y of the base under the indenter and both edges at this time."""
+    """The motion at an instant, and both edges."""
 
-    s: float
-    d: float
-    Y: float
+    motion: Motion
     l: float
     r: float
 
@@ -54,19 +53,22 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         s = times[i]
         index = step_at(run, s)
         step, memory = run.steps[index], run.memory
-        d, v, Y, number, theta = motion(run, index, s)
+        at, c = motion(run, index, s), run.given.damper
+        theta = at.theta
         first = second = 0.0
         for k in over(run.given.arms):
             first += total(past(memory.force, index, k, theta))
             second += total(past(memory.moment, index, k, theta))
         edges, along = run.polynomials.edges[index], run.polynomials.offset_rate[index]
         l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
-        found.depth[i], found.depth_rate[i] = d, v
-        found.sliding_velocity[i], found.way[i] = number, Y
+        found.depth[i], found.depth_rate[i] = at.d, at.v
+        found.sliding_velocity[i], found.way[i] = at.number, at.Y
         found.drive_velocity[i] = evaluate(run.pieces[step.piece], s)[1]
-        found.offset[i] = step.along + step.span * integral(along, theta)
+        found.offset[i] = step.along + step.lasts * integral(along, theta)
         found.offset_rate[i] = value(along, theta)
-        found.normal_force[i], found.friction_force[i] = forces(l, r, d, first, second)
+        damped = c * at.v, 2.0 * c * at.number
+        f_z, f_x = forces(l, r, at.d, damped, first, second)
+        found.normal_force[i], found.friction_force[i] = f_z, f_x
         if step.sides[0].state == FREE:
             l = r = math.nan
         found.edges[i, 0], found.edges[i, 1] = l, r
@@ -75,7 +77,7 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         found.peak_pressure[i] = 0.0
         if peaks:
             accumulated(run, index, theta)
-            found.peak_pressure[i] = peak(run, index, Contact(s, d, Y, l, r))
+            found.peak_pressure[i] = peak(run, index, Contact(at, l, r))
 
 
 def pressure_of(run: Run, at: Contact, number: int, place: float) -> float:
@@ -86,22 +88,22 @@ def pressure_of(run: Run, at: Contact, number: int, place: float) -> float:
     segment = run.segments[number]
     at_rest = segment.step == NEVER
     index = NEVER if at_rest else step_at(run, place)
-    p, xi = pressed(run, at.s, at.d, at.Y, place + at.Y, segment.edge, index, place)
-    slack = 1e-12 * (1.0 + abs(at.Y))
+    p, xi = pressed(run, at.motion, place + at.motion.Y, segment.edge, index, place)
+    slack = 1e-12 * (1.0 + abs(at.motion.Y))
     return p if at.l - slack <= xi <= at.r + slack else -math.inf
 
 
 def peak(run: Run, index: int, at: Contact) -> float:
     """Return the largest pressure: of samples in each segment, refined by golden sections about the best."""
-    largest, step, fastest, s = 0.0, run.steps[index], math.inf, at.s
+    largest, step, fastest, s, Y = 0.0, run.steps[index], math.inf, at.motion.s, at.motion.Y
     for i in range(run.given.arms):
         fastest = min(fastest, LAYER * run.arms.relaxation_time[i])
     for i in range(step.first, step.first + step.count):
         number = run.chain[i]
         segment = run.segments[number]
         at_rest = segment.step == NEVER
-        low = max(segment.X_a, at.l - at.Y) if at_rest else segment.a
-        high = min(segment.X_b, at.r - at.Y) if at_rest else min(segment.b, s)
+        low = max(segment.X_a, at.l - Y) if at_rest else segment.a
+        high = min(segment.X_b, at.r - Y) if at_rest else min(segment.b, s)
         if not at_rest:
             low, high = inside(run, at, number, low, high)
         if not high - low > ROUNDING * s:
@@ -135,9 +137,9 @@ def inside(run: Run, at: Contact, number: int, low: float, high: float) -> tuple
     """Return the instants between which the elements of a segment entered that are in contact."""
     first, last = (at.l, at.r) if run.segments[number].edge == 1 else (at.r, at.l)
     if pressure_of(run, at, number, low) == -math.inf:
-        low = instant_of(run, number, at.s, first - at.Y)
+        low = instant_of(run, number, at.motion.s, first - at.motion.Y)
     if pressure_of(run, at, number, high) == -math.inf:
-        high = instant_of(run, number, at.s, last - at.Y)
+        high = instant_of(run, number, at.motion.s, last - at.motion.Y)
     return low, high
 
 
@@ -182,17 +184,18 @@ def instant_of(run: Run, number: int, s: float, X: float) -> float:
 
 def _place(run: Run, edge: int, s: float) -> float:
     index = step_at(run, s)
-    _, _, Y, _, theta = motion(run, index, s)
-    return value(run.polynomials.edges[index, :, edge], theta) - Y
+    at = motion(run, index, s)
+    return value(run.polynomials.edges[index, :, edge], at.theta) - at.Y
 
 
 def pressure(run: Run, at: Contact, xi: float) -> float:
     """Return the pressure at one place, zero outside of the contact."""
-    index, X = step_at(run, at.s), xi - at.Y
+    s = at.motion.s
+    index, X = step_at(run, s), xi - at.motion.Y
     step = run.steps[index]
     if not at.l <= xi <= at.r:
         return 0.0
-    accumulated(run, index, (at.s - step.start) / step.span)
+    accumulated(run, index, (s - step.start) / step.span)
     largest = 0.0
     for i in range(step.first, step.first + step.count):
         segment = run.segments[run.chain[i]]
@@ -200,7 +203,7 @@ def pressure(run: Run, at: Contact, xi: float) -> float:
             if segment.X_a <= X <= segment.X_b:
                 largest = max(largest, pressure_of(run, at, run.chain[i], X))
         else:
-            sigma = instant_of(run, run.chain[i], at.s, X)
+            sigma = instant_of(run, run.chain[i], s, X)
             if not math.isnan(sigma):
                 largest = max(largest, pressure_of(run, at, run.chain[i], sigma))
     return largest
@@ -208,9 +211,10 @@ def pressure(run: Run, at: Contact, xi: float) -> float:
 
 def compression(run: Run, at: Contact, xi: float) -> float:
     """Return the compression at one place: under the indenter, or where an edge left the ground."""
-    index, X = step_at(run, at.s), xi - at.Y
+    s, d = at.motion.s, at.motion.d
+    index, X = step_at(run, s), xi - at.motion.Y
     if at.l <= xi <= at.r:
-        return float(at.d - xi * xi)
+        return float(d - xi * xi)
     for k in range(2):
         side = run.steps[index].sides[k]
         if side.state != FREE and (xi < at.l) != (k == 0):
@@ -218,10 +222,10 @@ def compression(run: Run, at: Contact, xi: float) -> float:
         number = side.own if side.state == PEELING else side.segment
         while number != NEVER:
             segment = run.segments[number]
-            sigma = math.nan if segment.step == NEVER else instant_of(run, number, at.s, X)
+            sigma = math.nan if segment.step == NEVER else instant_of(run, number, s, X)
             if not math.isnan(sigma):
-                gap, _ = free(run, at.s, at.d, at.Y, segment.edge, step_at(run, sigma), sigma)
-                return gap + at.d - xi * xi
+                gap, _ = free(run, at.motion, segment.edge, step_at(run, sigma), sigma)
+                return gap + d - xi * xi
             number = segment.next
     return 0.0
 
@@ -242,7 +246,7 @@ def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
         states(one, times, found, task == STATES)
     else:
         l, r = found.edges[0, 0], found.edges[0, 1]
-        at = Contact(times[0], found.depth[0], found.way[0], l, r)
+        at = Contact(motion(one, step_at(one, times[0]), times[0]), l, r)
         for i in range(1, len(times)):
             if task == PRESSURE:
                 found.pressure[i] = pressure(one, at, times[i])

@@ -14,19 +14,21 @@ import numpy as np
 
 from kvtheory.models.continuum.prony.contact import (
     GOLDEN,
+    Motion,
     at_far_end,
     derivative,
     edge_at,
     free,
     motion,
     over,
+    present,
     step_of,
+    untouched,
     value,
 )
 from kvtheory.models.continuum.prony.records import FREE, NEVER, SIDES, TOUCHING, Run
 from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, turn
 from kvtheory.models.continuum.prony.step import prepare, solve
-from kvtheory.scene.base_motion import evaluate
 
 CLOSED = 0.03
 """Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens at a
@@ -52,7 +54,8 @@ class Gap(NamedTuple):
 
 def closed(run: Run) -> float:
     """Return the width of a contact that is closed."""
-    return float(CLOSED * np.cbrt(run.given.rtol))
+    light = run.given.damper / run.given.eps if run.given.eps > 0.0 else 0.0
+    return float(CLOSED * np.cbrt(run.given.rtol / (1.0 + light)))
 
 
 def flies(run: Run) -> bool:
@@ -94,8 +97,8 @@ def close(run: Run, span: float) -> bool:
         mean = 0.5 * (run.state.stress_at_edge[i, 0] + run.state.stress_at_edge[i, 1])
         stages.stress_at_edge[i, j, 0] = stages.stress_at_edge[i, j, 1] = mean
         stages.force[i, j] = stages.moment[i, j] = 0.0 * mean
-    _, _, Y, _, _ = motion(run, now.steps, now.s + span)
-    _end_with(run, l, r, X + Y, X + Y)
+    Y = motion(run, now.steps, now.s + span).Y
+    end_with(run, l, r, X + Y, X + Y)
     return True
 
 
@@ -128,13 +131,18 @@ def _without_forces(run: Run, xi: float) -> bool:
     return solve(run)
 
 
-def _end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
+def end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
     """Let edges, stresses and moments change uniformly over a step, to those at the last stage."""
     now, n, state, last = run.now, run.given.stages, run.state, run.arm_stages
     edges = run.polynomials.edges[now.steps]
     for k, first, end_of in ((0, l, l_end), (1, r, r_end)):
         _uniform(edges[:, k], first, end_of)
         run.stages.edges[n - 1, k] = end_of
+        side, of_stage, powers = now.sides[k], run.stages, run.polynomials
+        _uniform(
+            powers.compression[now.steps, :, k], side.compression, of_stage.compression[n - 1, k]
+        )
+        _uniform(powers.rise[now.steps, :, k], side.rise, of_stage.rise[n - 1, k])
     memory, index = run.memory, now.steps
     for i in range(run.given.arms):
         _uniform(memory.force[index, i], state.force[i], last.force[i, n - 1])
@@ -162,64 +170,62 @@ def distance(run: Run) -> float:
     return least
 
 
-def least_gap(run: Run, s: float, d: float, Y: float) -> Gap:
+def least_gap(run: Run, at: Motion) -> Gap:
     """Return the least gap between the indenter and the ground, at a time in flight."""
     found = Gap(math.inf, 0, NEVER, 0.0)
     for k in range(2):
         segment, outer = run.now.sides[k].segment, run.now.sides[k].near
         while segment != NEVER:
-            gap, x = _gap_above(run, segment, s, d, Y, found.size)
+            gap, x = _gap_above(run, segment, at, found.size)
             if gap < found.size:
                 found = Gap(gap, k, segment, x)
             outer, segment = far_end(run.segments[segment], k), int(run.segments[segment].next)
-        xi = SIDES[k] * max(SIDES[k] * (outer + Y), 0.0)
-        if xi * xi - d < found.size:
-            found = Gap(xi * xi - d, k, NEVER, xi - Y)
+        xi = SIDES[k] * max(SIDES[k] * (outer + at.Y), 0.0)
+        if xi * xi - at.d < found.size:
+            found = Gap(xi * xi - at.d, k, NEVER, xi - at.Y)
     return found
 
 
-def _gap_above(
-    run: Run, number: int, s: float, d: float, Y: float, enough: float
-) -> tuple[float, float]:
+def _gap_above(run: Run, number: int, at: Motion, enough: float) -> tuple[float, float]:
     """Return the least gap above a segment if it is below `enough`, and the instant, or X, of the element."""
-    part = run.segments[number]
-    l, r = min(part.X_a, part.X_b) + Y, max(part.X_a, part.X_b) + Y
+    part, d = run.segments[number], at.d
+    l, r = min(part.X_a, part.X_b) + at.Y, max(part.X_a, part.X_b) + at.Y
     xi = min(max(0.0, l), r)
     if xi * xi - d >= enough:
         return math.inf, 0.0
     if part.step == NEVER:
-        return xi * xi - d, xi - Y
-    found, at, index, x = math.inf, part.a, part.step, part.a
+        return xi * xi - d, xi - at.Y
+    found, best, index, x = math.inf, part.a, part.step, part.a
     before, low, high = part.a, part.a, part.b
     while True:
         index = step_of(run, part.edge, index, x)
-        gap, _ = free(run, s, d, Y, part.edge, index, x)
+        gap, _ = free(run, at, part.edge, index, x)
         if gap < found:
-            found, at, low, high = gap, x, before, math.inf
-        high = min(high, x) if x > at else high
+            found, best, low, high = gap, x, before, math.inf
+        high = min(high, x) if x > best else high
         if x >= part.b:
             break
         before, x = x, min(x + run.steps[index].span / SAMPLES, part.b)
-    return _refined(run, number, s, d, Y, (low, at, min(high, part.b)), found)
+    return _refined(run, number, at, (low, best, min(high, part.b)), found)
 
 
 def _refined(
-    run: Run, number: int, s: float, d: float, Y: float, between: tuple[float, float, float], found: float
+    run: Run, number: int, at: Motion, between: tuple[float, float, float], found: float
 ) -> tuple[float, float]:  # fmt: skip
     """Return the least gap, and its instant, by golden sections about the second of three instants."""
-    part, (low, at, high) = run.segments[number], between
+    part, (low, best, high) = run.segments[number], between
     for _ in range(REFINED):
-        wide = high - at > at - low
-        x = at + GOLDEN * (high - at if wide else low - at)
-        gap, _ = free(run, s, d, Y, part.edge, step_of(run, part.edge, part.step, x), x)
+        wide = high - best > best - low
+        x = best + GOLDEN * (high - best if wide else low - best)
+        gap, _ = free(run, at, part.edge, step_of(run, part.edge, part.step, x), x)
         if gap < found:
-            low, high = (at, high) if wide else (low, at)
-            found, at = gap, x
+            low, high = (best, high) if wide else (low, best)
+            found, best = gap, x
         elif wide:
             high = x
         else:
             low = x
-    return found, at
+    return found, best
 
 
 def touches_at(run: Run, theta: float, number: int, x: float) -> float:
@@ -227,38 +233,37 @@ def touches_at(run: Run, theta: float, number: int, x: float) -> float:
     step, low, high = run.steps[run.now.steps], 0.0, theta
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        s = step.start + middle * step.span
-        d, _, Y, _, _ = motion(run, run.now.steps, s)
-        if _gap_at(run, number, x, s, d, Y) > 0.0:
+        at = motion(run, run.now.steps, step.start + middle * step.span)
+        if _gap_at(run, number, x, at) > 0.0:
             low = middle
         else:
             high = middle
     return low
 
 
-def _gap_at(run: Run, number: int, x: float, s: float, d: float, Y: float) -> float:
-    """Return the gap above an element, and write its stresses."""
+def _gap_at(run: Run, number: int, x: float, at: Motion) -> float:
+    """Return the gap above an element, and write its state."""
     if number == NEVER or run.segments[number].step == NEVER:
-        for i in over(run.given.arms):
-            run.element.stress[i] = 0.0
-        return float((x + Y) * (x + Y) - d)
+        untouched(run)
+        return float((x + at.Y) * (x + at.Y) - at.d)
     part = run.segments[number]
-    return free(run, s, d, Y, part.edge, step_of(run, part.edge, part.step, x), x)[0]
+    return free(run, at, part.edge, step_of(run, part.edge, part.step, x), x)[0]
 
 
 def land(run: Run, side: int, number: int, x: float) -> None:
     """Begin a contact of no width above an element; both edges touch, and move over the free ground."""
     now = run.now
-    Y = evaluate(run.pieces[now.piece], now.s)[0] - now.x
-    _gap_at(run, number, x, now.s, now.d, Y)
+    Y = present(run).Y
+    _gap_at(run, number, x, present(run))
     X = x
     if number != NEVER and run.segments[number].step != NEVER:
         part = run.segments[number]
         index = step_of(run, part.edge, part.step, x)
-        _, _, Y_e, _, theta = motion(run, index, x)
-        X = value(run.polynomials.edges[index, :, part.edge], theta) - Y_e
+        then = motion(run, index, x)
+        X = value(run.polynomials.edges[index, :, part.edge], then.theta) - then.Y
     for k in range(2):
         now.sides[k].xi, now.sides[k].sigma = X + Y, x
+        now.sides[k].compression, now.sides[k].rise = now.compression, now.rise
         for i in over(run.given.arms):
             run.state.stress_at_edge[i, k] = run.element.stress[i]
     inward, part_of = now.sides[1 - side].segment, now.sides[side].segment
@@ -304,17 +309,18 @@ def open_contact(run: Run, span: float) -> bool:
     prepare(run, span)
     if not _without_forces(run, xi):
         return False
-    s, stages, arm_stages, j = now.s + span, run.stages, run.arm_stages, n - 1
-    d, _, Y, _, _ = motion(run, now.steps, s)
+    stages, arm_stages, j = run.stages, run.arm_stages, n - 1
+    at = motion(run, now.steps, now.s + span)
     for k in range(2):
         side = now.sides[k]
         side.state = TOUCHING
-        while at_far_end(run, k, s, d, Y, xi) < 0.0:  # it opens over more than one segment
+        while at_far_end(run, k, at, xi) < 0.0:  # it opens over more than one segment
             aim(run, k, int(run.segments[side.segment].next))
-        place, index, sigma = edge_at(run, k, s, d, Y, xi, side.index, side.sigma)
+        place, index, sigma = edge_at(run, k, at, xi, side.index, side.sigma)
         if not abs(place) < math.inf:
             return False
         stages.edges[j, k], stages.entry_step[j, k], stages.entry_time[j, k] = place, index, sigma
+        stages.compression[j, k], stages.rise[j, k] = now.compression, now.rise
         for i in over(run.given.arms):
             arm_stages.stress_at_edge[i, j, k] = run.element.stress[i]
     l, r = stages.edges[j, 0], stages.edges[j, 1]
@@ -322,5 +328,5 @@ def open_contact(run: Run, span: float) -> bool:
         first, second = arm_stages.stress_at_edge[i, j, 0], arm_stages.stress_at_edge[i, j, 1]
         arm_stages.force[i, j] = 0.5 * (r - l) * (first + second)
         arm_stages.moment[i, j] = 0.5 * (r - l) * (l * first + r * second)
-    _end_with(run, xi, xi, l, r)
+    end_with(run, xi, xi, l, r)
     return bool(l < r)

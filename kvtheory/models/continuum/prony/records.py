@@ -9,6 +9,7 @@ import numpy as np
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.records import blanks, new, record, structured
+from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.theory.laws import Element
 
@@ -19,52 +20,62 @@ NEVER = -1
 """Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest, or free
 ground between two places that was never touched."""
 
+SMOOTH = 1e-9
+"""Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
 ROOM = 48
 """Initial capacity in steps."""
 FARTHEST = 5e6
 """Largest sum of A_i that a step may reach, over the root of the tolerance: for rounding."""
 
 SIDE = record(
-    state="i8", segment="i8", own="i8", index="i8", xi="f8", sigma="f8", near="f8", pace="f8"
+    state="i8", segment="i8", own="i8", index="i8", xi="f8", sigma="f8", near="f8", pace="f8",
+    compression="f8", rise="f8",
 )  # fmt: skip
 """State of an edge; the segment in which it moves, of the contact if it peels, of free ground if it touches;
 that which it writes; the step in which the element there passed an edge; xi_e; the instant at which it did,
-that at which the edge began in the segment, and the rate of that instant."""
+that at which the edge began in the segment, and the rate of that instant; u of the element there, and u' of
+the free ground that a touching edge meets."""
 SEGMENT = record(
     edge="i8", step="i8", next="i8", a="f8", b="f8", X_a="f8", X_b="f8"
 )  # fmt: skip
 """Edge and first step of a segment, the next one outward on free ground, the instants and X at its ends."""
 STEP = record(
-    start="f8", span="f8", depth="f8", along="f8", piece="i8", kinked=("i8", (2,)), first="i8",
-    count="i8", restart="i8", sides=(SIDE, (2,)),
+    start="f8", span="f8", time="f8", lasts="f8", depth="f8", along="f8", piece="i8",
+    kinked=("i8", (2,)), first="i8", count="i8", restart="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
-"""Start and span of a step; d and x at its start, the piece of the drive, whether the histories of the edges
+"""Start and span of a step on the clock of the run; the time at its start, and how long it lasts, see
+`paused`; d and x at its start, the piece of the drive, whether the histories of the edges
 have a kink there; where the contact's segments are in `chain`, and their number; the first step since the
 last restart of the accumulators; both sides at its start."""
 NOW = record(
     s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
     chain="i8", first="i8", count="i8", restart="i8", toggles="i8", rejected="i8", evaluations="i8",
-    kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)),
+    kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)), compression="f8", rise="f8",
 )  # fmt: skip
-"""Time, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
+"""Clock, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
 steps, segments and entries in `chain`; the contact there; the first step since the last restart of the
 accumulators in `Run.element`; the changes at this instant, numbers of rejected steps and evaluations; whether
-the histories of the edges have a kink here, and whether the last step continues smoothly; both sides."""
+the histories of the edges have a kink here, and whether the last step continues smoothly; both sides; u and
+u' of the free element that was evaluated last."""
 GIVEN = record(
-    eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", glass="f8",
+    eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", damper="f8", glass="f8",
     last_power="f8", farthest="f8", first_step="f8", longest="f8", grow="f8", stages="i8", arms="i8",
     fixed="?", sprung="?",
 )  # fmt: skip
-"""Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; sum
-K_i/K; the last coefficient of a polynomial in Legendre's over that of its last power; the largest sum of A_i
-that a step may reach; controls of the step size; numbers of stages and of arms; whether the indenter is
-fixed, and held by a spring."""
+"""Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; C/K
+and sum K_i/K of the foundation; the last coefficient of a polynomial in Legendre's over that of its last
+power; the largest sum of A_i that a step may reach; controls of the step size; numbers of stages and of arms;
+whether the indenter is fixed, and held by a spring."""
 
 
 METHOD = record(A="f8", inverse="f8", powers="f8")
 """An entry of A, of its inverse, and of the matrix of the powers of theta from the stages."""
-ARM = record(stiffness="f8", relaxation_time="f8", mode_rate="f8", mode_share="f8")
-"""k_i and T_i of an arm; rate and share of a free mode."""
+PIECE = record(paused="?", since="f8")
+"""Whether a piece of the drive is a pause, and the time at which it begins."""
+ARM = record(stiffness="f8", relaxation_time="f8")
+"""k_i and T_i of an arm."""
+MODE = record(rate="f8", share="f8", amplitude="f8")
+"""Rate of a mode of free ground, its share in u, and its amplitude in one element."""
 _OF_CONTACT: Any = {
     "accumulated_depth": "f8", "accumulated_slide": "f8", "stress_at_edge": ("f8", (2,)),
     "force": "f8", "moment": "f8",
@@ -74,20 +85,22 @@ ARM_STATE = record(**_OF_CONTACT)
 ARM_STAGE = record(**_OF_CONTACT, source="f8")
 """The same at a stage, and the source of the equation that is being solved, see `step.relax`."""
 ELEMENT = record(
-    accumulated_depth="f8", accumulated_slide="f8", stress="f8", stress_at_edge="f8", mode="f8"
+    accumulated_depth="f8", accumulated_slide="f8", stress="f8", stress_at_edge="f8"
 )  # fmt: skip
-"""Of an arm of one element: A_i and B_i at this time, s_i, s_i as an edge passed the element, and a free
-mode."""
-POLYNOMIAL = record(depth_rate="f8", offset_rate="f8", edges=("f8", (2,)))
-"""A coefficient of d', x' and both xi_e as polynomials over a step."""
+"""Of an arm of one element: A_i and B_i at this time, s_i, and s_i as an edge passed the element."""
+POLYNOMIAL = record(
+    depth_rate="f8", offset_rate="f8", edges=("f8", (2,)), compression=("f8", (2,)),
+    rise=("f8", (2,)),
+)  # fmt: skip
+"""A coefficient of d', x', both xi_e, and u and u' there, see `SIDE`, as polynomials over a step."""
 STAGE = record(
-    node="f8", of_start="f8", time="f8", depth_rate="f8", offset_rate="f8", depth="f8", offset="f8",
+    node="f8", of_start="f8", s="f8", time="f8", depth_rate="f8", offset_rate="f8", depth="f8", offset="f8",
     way="f8", sliding_velocity="f8", edges=("f8", (2,)), entry_time=("f8", (2,)),
-    entry_step=("i8", (2,)), edge_velocity=("f8", (2,)),
+    entry_step=("i8", (2,)), edge_shift=("f8", (2,)), compression=("f8", (2,)), rise=("f8", (2,)),
 )  # fmt: skip
-"""Node of a stage and the sum of its row of A^-1; s, d', x', d, x; Y and lambda of the base under the
-indenter; of both edges xi_e, the instant and the step in which the element there passed an edge, and the
-velocity through the material."""
+"""Node of a stage and the sum of its row of A^-1; clock, time, d', x', d, x; Y and lambda of the base under
+the indenter; of both edges xi_e, the instant and the step in which the element there passed an edge, and the
+velocity through the material times the span; u and u' there, see `SIDE`."""
 UNKNOWN = record(change="f8", move="f8", residual="f8", before="f8", image="f8", back="f8")
 """Of an unknown of Broyden's method: its change over the stage, and the last move; the residual, and that
 before this move; the inverse Jacobian times their difference, and the move times the inverse Jacobian."""
@@ -110,6 +123,7 @@ class Run(NamedTuple):
     given: Any
     now: Any
     pieces: Any
+    clock: Any
     steps: Any
     polynomials: Any
     memory: Any
@@ -117,6 +131,7 @@ class Run(NamedTuple):
     chain: Any
     method: Any
     arms: Any
+    modes: Any
     to_modes: Any
     from_modes: Any
     state: Any
@@ -133,7 +148,8 @@ RECORDS = {"given": GIVEN, "now": NOW, "steps": STEP, "segments": SEGMENT}
 """Types of the records of a run."""
 NAMED = {
     "polynomials": POLYNOMIAL, "memory": ARM_STATE, "method": METHOD, "arms": ARM, "state": ARM_STATE,
-    "stages": STAGE, "arm_stages": ARM_STAGE, "unknowns": UNKNOWN, "element": ELEMENT,
+    "stages": STAGE, "arm_stages": ARM_STAGE, "unknowns": UNKNOWN, "element": ELEMENT, "modes": MODE,
+    "clock": PIECE,
 }  # fmt: skip
 """Types of what is read by name before its indices."""
 
@@ -155,30 +171,33 @@ def together(views: Any, kind: np.dtype[Any]) -> Any:
 
 def begin(
     drive: BaseMotion, arms: Any, numbers: tuple[float, float], spring: Spring | None, end: float,
-    rtol: float, control: StepControl, *, arrays: bool,
+    rtol: float, control: StepControl, damper: float, *, arrays: bool,
 ) -> Run:  # fmt: skip
-    """Return a new run at rest; `arms` are pairs k_i, T_i, and `numbers` eps and kappa."""
+    """Return a new run at rest; `arms` are pairs k_i, T_i, `damper` is C/K, `numbers` are eps and kappa."""
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
+    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
-        float(sum(k for k, _ in arms)), 1.0 / math.comb(2 * n, n),
+        damper, float(sum(k for k, _ in arms)), 1.0 / math.comb(2 * n, n),
         max(FARTHEST * math.sqrt(rtol), 100.0), control.first_step, control.longest, control.grow, n,
         count, fixed, spring is not None,
     )  # fmt: skip
-    element = Element.of(1.0, 0.0, arms)
-    k, T = np.array(arms, dtype=float).T
+    element = Element.of(1.0, damper, arms)
+    k, T = np.array(arms, dtype=float).reshape(-1, 2).T
     tableau, stages = radau(n), np.zeros(n, STAGE)
     stages["node"], stages["of_start"] = tableau.nodes, np.array(tableau.inverse).sum(axis=1)
     method, own_arms = np.zeros((n, n), METHOD), np.zeros(count, ARM)
     method["A"], method["inverse"], method["powers"] = tableau.A, tableau.inverse, tableau.powers
     own_arms["stiffness"], own_arms["relaxation_time"] = k, T
-    own_arms["mode_rate"], own_arms["mode_share"] = element.rates, element.shares
+    modes = np.zeros(element.rates.size, MODE)
+    modes["rate"], modes["share"] = element.rates, element.shares
     run = Run(
         given=[new(GIVEN, *given)],
         now=blanks(1, NOW),
-        pieces=drive.rows,
+        pieces=pieces,
+        clock=clock,
         steps=blanks(1 if arrays else ROOM, STEP),
         polynomials=np.zeros((ROOM, n + 1), POLYNOMIAL),
         memory=np.zeros((ROOM, count, n + 1), ARM_STATE),
@@ -186,8 +205,9 @@ def begin(
         chain=np.zeros(8 * ROOM, dtype=np.int64),
         method=method,
         arms=own_arms,
+        modes=modes,
         to_modes=np.ascontiguousarray(element.to_modes),
-        from_modes=-(k * T)[:, None] * element.from_modes * element.rates,
+        from_modes=-(k * T)[:, None] * element.from_modes[:count] * element.rates,
         state=np.zeros(count, ARM_STATE),
         stages=stages,
         arm_stages=np.zeros((count, n), ARM_STAGE),
@@ -202,6 +222,37 @@ def begin(
         return run._replace(**{name: named(getattr(run, name)) for name in NAMED})
     run = as_arrays(run)
     return run._replace(steps=_longer(run.steps, ROOM), segments=_longer(run.segments, 2 * ROOM))
+
+
+def with_pauses(drive: BaseMotion, end: float, *, needed: bool) -> tuple[Any, Any, float]:
+    """Return the pieces of a drive on the clock of a run, what time it is in them, and the clock at the end.
+
+    Where the velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
+    runs on for a while in which time stands still and the velocity changes uniformly. Without a damper
+    there is no such pause, and the clock shows the time.
+    """
+    if not needed:
+        clock = np.zeros(len(drive.rows), PIECE)
+        clock["since"] = drive.rows[:, b_.START]
+        return drive.rows, clock, end
+    found, pauses, lost, before, last = [], [], 0.0, 0.0, end
+    rows = np.pad(drive.rows, ((0, 0), (0, max(b_.POWERS + 2 - drive.rows.shape[1], 0))))
+    pause = end / (1.0 + len(rows))
+    for row in rows:
+        start, after = row[b_.START], row[b_.POWERS]
+        if start <= end and abs(after - before) > SMOOTH * (1.0 + abs(after)):
+            new = np.zeros_like(row)
+            new[: b_.POWERS] = start + lost, start + lost + pause, row[b_.DISPLACEMENT]
+            new[b_.POWERS : b_.POWERS + 2] = before, (after - before) / pause
+            found, lost = [*found, new], lost + pause
+            pauses.append((True, start))
+            last = end + lost
+        moved = row.copy()
+        moved[[b_.START, b_.END]] += lost
+        found.append(moved)
+        pauses.append((False, start))
+        before = b_.evaluate(row, row[b_.END])[1]
+    return np.array(found), np.array(pauses, PIECE), last
 
 
 def _longer(rows: Any, count: int) -> Any:

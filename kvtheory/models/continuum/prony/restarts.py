@@ -6,10 +6,9 @@ again from zero, and F_i and M_i from their integrals over the contact, by Radau
 steps. An element in contact keeps the stress k_i (A_i - xi B_i) of that instant, see `contact`.
 """
 
-from kvtheory.models.continuum.prony.contact import at_present, derivative, motion, pressed
+from kvtheory.models.continuum.prony.contact import at_present, derivative, motion, present, pressed
 from kvtheory.models.continuum.prony.records import NEVER, PEELING, Run
 from kvtheory.models.continuum.prony.segments import here
-from kvtheory.scene.base_motion import evaluate
 
 LARGE = 0.06
 """Share of the largest A_i that a step may reach, from which on it is restarted."""
@@ -62,16 +61,15 @@ def restart_accumulators(run: Run) -> None:
 
 def integrate(run: Run, index: int, edge: int, low: float, high: float, large: float) -> None:
     """Add the integrals over elements that entered between two instants of a step to F_i and M_i."""
-    now, n = run.now, run.given.stages
-    Y, _, _ = evaluate(run.pieces[now.piece], now.s)
-    Y -= now.x
+    n = run.given.stages
+    at = present(run)
     for j in range(n):
         x, weight = low + (high - low) * run.stages.node[j], high - low
         if index != NEVER:
-            _, _, _, number, theta = motion(run, index, x)
-            rate = derivative(run.polynomials.edges[index, :, edge], theta) / run.steps[index].span
-            weight *= abs(rate - number)
-        _, xi = pressed(run, now.s, now.d, Y, x + Y, edge, index, x)
+            then, step = motion(run, index, x), run.steps[index]
+            rate = derivative(run.polynomials.edges[index, :, edge], then.theta)
+            weight *= abs(rate - step.lasts * then.number) / step.span
+        _, xi = pressed(run, at, x + at.Y, edge, index, x)
         for i in range(run.given.arms):
             if abs(run.state.accumulated_depth[i]) > large:
                 force = weight * run.method.A[n - 1, j] * run.element.stress[i]

@@ -2,8 +2,8 @@
 
 import math
 
+from kvtheory.models.continuum.prony.contact import over, present, total
 from kvtheory.models.continuum.prony.records import NEVER, PEELING, TOUCHING, Run
-from kvtheory.scene.base_motion import evaluate
 
 INSTANT, SHORT = 1e-13, 0.1
 """Length of a segment in time, relative to the run, or in space, as a share of the tolerance, below which it
@@ -12,8 +12,7 @@ counts as none."""
 
 def here(run: Run, k: int) -> float:
     """Return X of an edge at present."""
-    Y, _, _ = evaluate(run.pieces[run.now.piece], run.now.s)
-    return float(run.now.sides[k].xi - Y + run.now.x)
+    return float(run.now.sides[k].xi - present(run).Y)
 
 
 def begin(run: Run, k: int, outward: int) -> None:
@@ -123,6 +122,7 @@ def turn(run: Run, k: int) -> None:
         renew(run)
         run.chain[now.first + (now.count - 1 if k == 1 else 0)] = new
         begin(run, k, NEVER)
+        side.rise = left_behind(run, k)
         side.state = TOUCHING
         push(run, k)
         aim(run, k, ground)
@@ -132,6 +132,16 @@ def turn(run: Run, k: int) -> None:
         begin(run, k, ground)
         side.state = PEELING
         aim(run, k, last(run, k))
+
+
+def left_behind(run: Run, k: int) -> float:
+    """Return u' of the free ground at a peeling edge, where p = 0: with a damper, that of the indenter."""
+    at, relaxing = present(run), 0.0
+    if run.given.damper > 0.0:
+        return float(at.v - 2.0 * at.number * run.now.sides[k].xi)
+    for i in over(run.given.arms):
+        relaxing += total(run.state.stress_at_edge[i, k] / run.arms.relaxation_time[i])
+    return float(relaxing / (1.0 + run.given.glass))
 
 
 def split(run: Run, k: int) -> None:

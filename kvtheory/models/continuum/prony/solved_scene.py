@@ -37,6 +37,7 @@ from kvtheory.models.continuum.solved_scene import (
     scaled_drive,
 )
 from kvtheory.progress import Progress
+from kvtheory.records import readable
 from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
@@ -114,7 +115,7 @@ class SolvedPronyScene(ScaledMotion):
         for k, name in enumerate(("left", "right")):
             states = steps["sides"]["state"][:, k]
             before = np.append(TOUCHING, states[:-1])
-            for start, old, new in zip(steps["start"], before, states, strict=True):
+            for start, old, new in zip(steps["time"], before, states, strict=True):
                 kind = f"{name} edge {'touches' if new == TOUCHING else 'peels'}"
                 if FREE in (old, new):
                     kind = "take-off" if new == FREE else "landing"
@@ -194,6 +195,7 @@ def transient(
         return solve(
             drive, arms, (units.inertia_number, units.support_number), drive.end, tolerance,
             spring=spring, control=control, progress=report, max_steps=limit,
+            damper=foundation.damping / (foundation.stiffness * units.time),
         )  # fmt: skip
 
     rtol = min(rtol, LOOSEST)
@@ -290,6 +292,12 @@ def _anywhere(
     way += error("edges")
     surface = (0.0 if fine.units.fixed else error("depth")) + 2.0 * arm * way
     pressure = (1.0 + 2.0 * float(np.sum(together(motion.run.arms, ARM)["stiffness"]))) * surface
+    rate = 0.0 if fine.units.fixed else error("depth_rate")
+    number = tolerance * (1.0 + fine.drive.highest_speed)
+    number += 0.0 if fine.units.rigid_drive else error("sliding_velocity")
+    fastest = np.nanmax(np.abs(here["sliding_velocity"]), initial=0.0)
+    damper = readable(motion.run.given[0]).damper
+    pressure += damper * (rate + 2.0 * (arm * number + float(fastest) * way))
     hops, others = (_hops(each) for each in (motion, other))
     jump = 0.0
     if len(hops) != len(others):
@@ -302,4 +310,4 @@ def _anywhere(
 def _hops(motion: Trajectory) -> Array:
     """Return the scaled times of take-offs and landings."""
     flies = motion.steps["sides"]["state"][:, 0] == FREE
-    return np.asarray(motion.steps["start"][1:][flies[1:] != flies[:-1]], dtype=float)
+    return np.asarray(motion.steps["time"][1:][flies[1:] != flies[:-1]], dtype=float)

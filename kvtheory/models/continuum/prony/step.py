@@ -3,7 +3,8 @@
 At each stage the rates d' and x' are unknown. Given them, the accumulators follow from linear equations, the
 trailing edges from the history, the moments from linear equations again, and the forces from these. The
 residuals of the equations of motion are solved by Broyden's method, which starts from the Jacobian for edges
-that do not move: the pressure vanishes at both edges, so that they do not matter to first order (F24).
+that do not move: without a damper the pressure vanishes at both edges, so that they do not matter to first
+order (F24).
 """
 
 import math
@@ -11,9 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.continuum.prony.contact import edge_at, over, total, value
+from kvtheory.models.continuum.prony.contact import (
+    Motion,
+    base,
+    edge_at,
+    over,
+    present,
+    time_at,
+    total,
+    value,
+)
 from kvtheory.models.continuum.prony.records import FREE, PEELING, Run
-from kvtheory.scene.base_motion import evaluate
 
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
@@ -32,16 +41,22 @@ def moments(l: float, r: float) -> tuple[float, float, float, float]:
     return r - l, (b - a) / 2.0, (b * r - a * l) / 3.0, (b * b - a * a) / 4.0
 
 
-def forces(l: float, r: float, d: float, first: float, second: float) -> tuple[float, float]:
-    """Return f_z and f_x; `first` and `second` are the sums of the moments of the arms."""
+def forces(
+    l: float, r: float, d: float, damped: tuple[float, float], first: float, second: float
+) -> tuple[float, float]:
+    """Return f_z and f_x; `damped` is c d' and 2 c lambda, the last two are the moments of all arms."""
     I_0, I_1, I_2, I_3 = moments(l, r)
-    return 0.75 * (d * I_0 - I_2 + first), -1.5 * (d * I_1 - I_3 + second)
+    d, slope = d + damped[0], damped[1]  # p = d + c d' - 2 c lambda xi - xi^2 + sum s_i
+    f_z = 0.75 * (d * I_0 - slope * I_1 - I_2 + first)
+    return f_z, -1.5 * (d * I_1 - slope * I_2 - I_3 + second)
 
 
 def prepare(run: Run, span: float) -> None:
     """Begin a step of length `span` from the present state, and make the filters of the arms."""
     now, n, step = run.now, run.given.stages, run.steps[run.now.steps]
     step.start, step.span, step.depth, step.along, step.piece = now.s, span, now.d, now.x, now.piece
+    step.time = time_at(run, now.piece, now.s)
+    step.lasts = 0.0 if run.clock.paused[now.piece] else span
     step.first, step.count, step.restart = now.first, now.count, now.restart
     for k in range(2):
         side, kept = now.sides[k], step.sides[k]
@@ -50,14 +65,15 @@ def prepare(run: Run, span: float) -> None:
     stages = run.stages
     for j in range(n):
         after = stages.node[j] * span
-        stages.time[j] = now.s + after
+        stages.s[j] = now.s + after
+        stages.time[j] = time_at(run, now.piece, now.s + after)
         for k in range(2):
             side = now.sides[k]
             stages.entry_step[j, k] = side.index
             stages.entry_time[j, k] = side.sigma + side.pace * after
             stages.edges[j, k] = side.xi
     for i in over(run.given.arms):
-        filter_of(run, i, span)
+        filter_of(run, i, step.lasts)
 
 
 def filter_of(run: Run, i: Any, span: float) -> None:
@@ -109,10 +125,10 @@ def invert(square: Any, n: int, inverse: Any) -> bool:
 
 
 def relax(run: Run, i: Any, values: Any, begin: Any) -> None:
-    """Solve y' = q - y/T_i of an arm at the stages, from `begin`; q is the `source`, y the `values`."""
-    n, span, source = run.given.stages, run.steps[run.now.steps].span, run.arm_stages.source
+    """Solve y' = q - y/T_i at the stages, from `begin`; q times the step is the `source`, y the `values`."""
+    n, source = run.given.stages, run.arm_stages.source
     for j in range(n):
-        source[i, j] = span * source[i, j] + run.stages.of_start[j] * begin
+        source[i, j] += run.stages.of_start[j] * begin
     for j in range(n):
         values[i, j] = 0.0
         for k in range(n):
@@ -222,7 +238,7 @@ def guess_rate(run: Run, first: int, powers: Any, begin: float) -> None:
         change[first + j] = 0.0
         if now.smooth:
             last = run.steps[now.steps - 1]
-            theta = (float(run.stages.time[j]) - last.start) / last.span
+            theta = (float(run.stages.s[j]) - last.start) / last.span
             change[first + j] = value(powers, theta) - begin
 
 
@@ -249,7 +265,7 @@ def evaluate_stages(run: Run, free: int) -> bool:
 def place(run: Run, free: int) -> bool:
     """Evaluate the motion at the stages, and the accumulators; return whether the depth is positive."""
     now, given, n, change = run.now, run.given, run.given.stages, run.unknowns.change
-    span, stages, arm, state = run.steps[now.steps].span, run.stages, run.arm_stages, run.state
+    span, stages, arm, state = run.steps[now.steps].lasts, run.stages, run.arm_stages, run.state
     flies = now.sides[0].state == FREE
     for j in range(n):
         node = span * stages.node[j]
@@ -261,7 +277,7 @@ def place(run: Run, free: int) -> bool:
                 x += span * run.method.A[j, k] * change[free + k]
         stages.depth_rate[j] = now.v + (change[j] if free else 0.0)
         stages.offset_rate[j] = now.w + (change[free + j] if given.sprung else 0.0)
-        Y, number, _ = evaluate(run.pieces[now.piece], stages.time[j])
+        Y, number, _ = base(run, now.piece, stages.s[j])
         stages.depth[j], stages.offset[j] = d, x
         stages.way[j], stages.sliding_velocity[j] = Y - x, number - stages.offset_rate[j]
         if not (d > 0.0 or flies) or not abs(d) < math.inf:
@@ -271,11 +287,11 @@ def place(run: Run, free: int) -> bool:
     for i in over(given.arms):
         depth, slide = state.accumulated_depth[i], state.accumulated_slide[i]
         for j in range(n):
-            arm.source[i, j] = 2.0 * stages.sliding_velocity[j]
+            arm.source[i, j] = span * 2.0 * stages.sliding_velocity[j]
         relax(run, i, arm.accumulated_slide, slide)
         for j in range(n):
             moved = stages.sliding_velocity[j] * arm.accumulated_slide[i, j]
-            arm.source[i, j] = stages.depth_rate[j] + moved
+            arm.source[i, j] = span * (stages.depth_rate[j] + moved)
         relax(run, i, arm.accumulated_depth, depth)
         interpolate_arm(run, i, memory.accumulated_slide[index], arm.accumulated_slide, slide)
         interpolate_arm(run, i, memory.accumulated_depth[index], arm.accumulated_depth, depth)
@@ -297,23 +313,34 @@ def interpolate_edge(run: Run, k: int) -> float:
 
 
 def find_edge(run: Run, k: int) -> bool:
-    """Find an edge at the stages, its stresses, and its velocity through the material."""
+    """Find an edge at the stages, what is there, and its velocity through the material."""
     n, stages, arm, element = run.given.stages, run.stages, run.arm_stages, run.element
     side, index, everything = run.now.sides[k], run.now.steps, over(run.given.arms)
     for j in range(n):
         for i in everything:
             element.accumulated_depth[i] = arm.accumulated_depth[i, j]
             element.accumulated_slide[i] = arm.accumulated_slide[i, j]
-        xi, step, sigma = edge_at(
-            run, k, stages.time[j], stages.depth[j], stages.way[j], stages.edges[j, k],
-            int(stages.entry_step[j, k]), stages.entry_time[j, k],
+        at = Motion(
+            stages.s[j], stages.time[j], stages.depth[j], stages.depth_rate[j], stages.way[j],
+            stages.sliding_velocity[j], stages.node[j],
         )  # fmt: skip
+        xi, step, sigma = edge_at(
+            run, k, at, stages.edges[j, k], int(stages.entry_step[j, k]), stages.entry_time[j, k]
+        )
         if not abs(xi) < math.inf:
             return False
         stages.edges[j, k], stages.entry_step[j, k], stages.entry_time[j, k] = xi, step, sigma
+        stages.compression[j, k], stages.rise[j, k] = run.now.compression, run.now.rise
+        if side.state == PEELING:
+            stages.compression[j, k], stages.rise[j, k] = at.d - xi * xi, side.rise
         for i in everything:
             arm.stress_at_edge[i, j, k] = element.stress[i]
     interpolate_edge(run, k)
+    polynomials = run.polynomials
+    interpolate(
+        run, polynomials.compression[index, :, k], stages.compression[:, k], side.compression
+    )
+    interpolate(run, polynomials.rise[index, :, k], stages.rise[:, k], side.rise)
     found, values = run.memory.stress_at_edge[index, :, :, k], arm.stress_at_edge[:, :, k]
     for i in everything:
         interpolate_arm(run, i, found, values, run.state.stress_at_edge[i, k])
@@ -321,7 +348,7 @@ def find_edge(run: Run, k: int) -> bool:
         speed = 0.0
         for m in range(n):
             speed += run.method.inverse[j, m] * (stages.edges[m, k] - side.xi)
-        stages.edge_velocity[j, k] = speed / run.steps[index].span - stages.sliding_velocity[j]
+        stages.edge_shift[j, k] = speed - run.steps[index].lasts * stages.sliding_velocity[j]
     return True
 
 
@@ -338,7 +365,7 @@ def collect(run: Run) -> None:
 
 def collect_sources(run: Run, of_moments: bool) -> None:
     """Write the sources of F_i, or of M_i, at the stages."""
-    stages, arm = run.stages, run.arm_stages
+    stages, arm, span = run.stages, run.arm_stages, run.steps[run.now.steps].lasts
     for j in range(run.given.stages):
         l, r, v, number = (
             stages.edges[j, 0],
@@ -347,15 +374,15 @@ def collect_sources(run: Run, of_moments: bool) -> None:
             stages.sliding_velocity[j],
         )
         I_0, I_1, I_2, _ = moments(l, r)
-        first, second = -stages.edge_velocity[j, 0], stages.edge_velocity[j, 1]
+        first, second = -stages.edge_shift[j, 0], stages.edge_shift[j, 1]
         change = v * I_0 - 2.0 * number * I_1
         if of_moments:
             first, second, change = l * first, r * second, v * I_1 - 2.0 * number * I_2
         for i in over(run.given.arms):
             at_edges = first * arm.stress_at_edge[i, j, 0] + second * arm.stress_at_edge[i, j, 1]
-            arm.source[i, j] = run.arms.stiffness[i] * change + at_edges
+            arm.source[i, j] = run.arms.stiffness[i] * (span * change) + at_edges
             if of_moments:
-                arm.source[i, j] += number * arm.force[i, j]
+                arm.source[i, j] += span * number * arm.force[i, j]
 
 
 def balance(run: Run, free: int) -> None:
@@ -366,14 +393,15 @@ def balance(run: Run, free: int) -> None:
         run.unknowns.change,
         run.unknowns.residual,
     )
-    span, stages, arm = run.steps[run.now.steps].span, run.stages, run.arm_stages
+    span, stages, arm, c = run.steps[run.now.steps].lasts, run.stages, run.arm_stages, given.damper
     for j in range(n):
         first = second = 0.0
         for i in over(given.arms):
             first += total(arm.force[i, j])
             second += total(arm.moment[i, j])
         d, x = float(stages.depth[j]), float(stages.offset[j])
-        f_z, f_x = forces(stages.edges[j, 0], stages.edges[j, 1], d, first, second)
+        damped = c * stages.depth_rate[j], 2.0 * c * stages.sliding_velocity[j]
+        f_z, f_x = forces(stages.edges[j, 0], stages.edges[j, 1], d, damped, first, second)
         down = along = 0.0
         for k in range(n):
             if free:
@@ -390,14 +418,14 @@ def balance(run: Run, free: int) -> None:
 def linearize(run: Run, free: int, size: int) -> None:
     """Write the derivatives of the residuals by the changes, for edges that do not move."""
     given, n, square, edges = run.given, run.given.stages, run.jacobian, run.stages.edges
-    span = run.steps[run.now.steps].span
+    span = run.steps[run.now.steps].lasts
     for j in range(size):
         for k in range(size):
             square[j, k] = 0.0
     for j in range(n):
         I_0, I_1, _, _ = moments(edges[j, 0], edges[j, 1])
         for k in range(n):
-            share = 0.0
+            share = given.damper if j == k else 0.0
             J_0, J_1, J_2, _ = moments(edges[k, 0], edges[k, 1])
             for i in over(given.arms):
                 share += span * total(run.arms.stiffness[i] * run.filters[i, j, k])
@@ -427,7 +455,9 @@ def size_of(run: Run) -> float:
     for k in range(2):
         largest = max(largest, interpolate_edge(run, k))
         moving = max(moving, abs(now.sides[k].xi))
-    largest *= min(1.0, max(width, given.rtol / (EDGE_SHARE * max(width, TINY))))
+    at = present(run)
+    edge_pressure = given.damper * (abs(at.v) + 2.0 * abs(at.number) * moving)
+    largest *= min(1.0, max(width, edge_pressure, given.rtol / (EDGE_SHARE * max(width, TINY))))
     remembered = first = second = 0.0
     for i in over(given.arms):
         depth, slide = arm.accumulated_depth, arm.accumulated_slide

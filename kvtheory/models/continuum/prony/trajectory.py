@@ -23,6 +23,7 @@ from kvtheory.models.continuum.prony import (
     step,
     walk,
 )
+from kvtheory.models.continuum.prony.contact import time_at
 from kvtheory.models.continuum.prony.evaluation import STATE
 from kvtheory.models.continuum.prony.records import (
     STEP,
@@ -69,6 +70,13 @@ def prepared(run: Run) -> bool:
     return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros(1, STATE))
 
 
+def time_of(run: Run) -> float:
+    """Return the present time of a run."""
+    now, clock = readable(run.now[0]), run.clock
+    clock = named(clock) if isinstance(clock, np.ndarray) else clock
+    return time_at(run._replace(clock=clock), now.piece, now.s)
+
+
 @dataclass(frozen=True)
 class Trajectory:
     """A solved transient: evaluate it anywhere in [0, end] with `states`."""
@@ -93,13 +101,26 @@ class Trajectory:
     @cached_property
     def natural(self) -> Array:
         """Times at which to show the motion: those of the steps, subdivided."""
-        ends = np.append(self.steps["start"], self.counts.s)
+        ends = np.append(self.steps["time"][self.steps["lasts"] > 0.0], self.end)
         times = ends[:-1, None] + np.diff(ends)[:, None] * (np.arange(SUBDIVISIONS) / SUBDIVISIONS)
         return np.append(times.reshape(-1), ends[-1])
 
+    @property
+    def end(self) -> float:
+        """The time at which it ends."""
+        return time_of(self.run)
+
+    def clock(self, s: ArrayLike) -> Array:
+        """Return the clock at times: where the drive jumps, just after the pause, see `records`."""
+        times, steps = np.asarray(s, dtype=float), self.steps
+        index = np.maximum(np.searchsorted(steps["time"], times, side="right") - 1, 0)
+        paused = steps["lasts"][index] == 0.0  # only if the motion ends with a pause
+        clock = steps["start"][index] + (times - steps["time"][index])
+        return np.asarray(np.where(paused, self.counts.s, clock))
+
     def states(self, s: ArrayLike, *, peaks: bool = True) -> NDArray[Any]:
         """Return the states at an array of times as a structured array, see `evaluation.STATE`."""
-        times = np.ascontiguousarray(s, dtype=float)
+        times = np.ascontiguousarray(self.clock(s))
         task = evaluation.STATES if peaks else evaluation.WITHOUT_PEAKS
         return self._perform(task, times, np.zeros(times.size, STATE))
 
@@ -114,7 +135,7 @@ class Trajectory:
     def _profile(self, task: int, xi: Array, s: float) -> Any:
         found = np.zeros(1 + xi.size, STATE)
         found[0] = self.states([s])[0]
-        return self._perform(task, np.append(s, xi), found)[1:]
+        return self._perform(task, np.append(self.clock(s), xi), found)[1:]
 
     @cached_property
     def arrays(self) -> Run:
@@ -147,13 +168,14 @@ class Trajectory:
 
 def solve(
     drive: BaseMotion, arms: Any, numbers: tuple[float, float], end: float, rtol: float,
-    *, spring: Spring | None = None, fast: bool | None = None,
+    *, damper: float = 0.0, spring: Spring | None = None, fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
 ) -> Trajectory:  # fmt: skip
     """Solve the transient of `drive` from rest until `end`, in scaled form.
 
-    `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `numbers` eps and kappa, which is infinite for a fixed
+    `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `damper` is C/(K tau), `numbers` eps and kappa,
+    which is infinite for a fixed
     indenter. The rest is as in `continuum.solver.solve`.
 
     Raises
@@ -168,9 +190,10 @@ def solve(
     0.417162
     """
     arrays = KERNEL.worthwhile() if fast is None else fast
-    run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=arrays)
+    given = drive, arms, numbers, spring, end, rtol, control, damper
+    run = begin(*given, arrays=arrays)
     if arrays and not prepared(run):
-        run = begin(drive, arms, numbers, spring, end, rtol, control, arrays=False)
+        run = begin(*given, arrays=False)
     left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros(1, STATE))
     begun = thread_time()
     while status != walk.DONE:
@@ -182,17 +205,18 @@ def solve(
         ):
             status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
         now = readable(run.now[0])
+        time = time_of(run)
         left = max_steps - now.steps - now.rejected
         if status in REFUSED:
-            raise ValueError(REFUSED[status], now.s)
+            raise ValueError(REFUSED[status], time)
         if status == walk.FULL:
             run = with_more_room(run)
         if left <= 0 and status != walk.DONE:
-            raise TransientError(f"more than {max_steps} steps (`max_steps`)", now.s)
-        if fast is None and interpreted and status != walk.DONE and now.s:
-            to_come = (thread_time() - begun) * (end / now.s - 1.0)
+            raise TransientError(f"more than {max_steps} steps (`max_steps`)", time)
+        if fast is None and interpreted and status != walk.DONE and time:
+            to_come = (thread_time() - begun) * (end / time - 1.0)
             if KERNEL.worthwhile(to_come) and prepared(same := as_arrays(run)):
                 run = same
         if progress is not None:
-            progress(now.s)
+            progress(time)
     return Trajectory(run)

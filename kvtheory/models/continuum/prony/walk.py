@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from kvtheory.models.continuum.prony.contact import (
+    Motion,
     accumulated,
     at_far_end,
     at_present,
@@ -15,9 +16,9 @@ from kvtheory.models.continuum.prony.contact import (
     over,
     past,
     past_stress,
+    present,
     pressed,
     step_of,
-    total,
     value,
 )
 from kvtheory.models.continuum.prony.hops import (
@@ -25,6 +26,7 @@ from kvtheory.models.continuum.prony.hops import (
     closed,
     closes,
     distance,
+    end_with,
     flies,
     fly,
     land,
@@ -38,11 +40,12 @@ from kvtheory.models.continuum.prony.records import (
     NEVER,
     PEELING,
     SIDES,
+    SMOOTH,
     TOUCHING,
     Run,
 )
 from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
-from kvtheory.models.continuum.prony.segments import cross, split, turn
+from kvtheory.models.continuum.prony.segments import cross, left_behind, split, turn
 from kvtheory.models.continuum.prony.step import prepare, size_of, solve
 from kvtheory.scene import base_motion as b_
 
@@ -51,8 +54,6 @@ SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
 SHORTEST, SHARP = 1e-13, 8.0
 """Least step relative to the run: a shorter one would be lost in rounding. A step of at most
 `SHARP` of these is accepted with any error: past the layer of a fast arm, an edge moves abruptly."""
-SMOOTH = 1e-9
-"""Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
 OVERRUN, PASSED, NEAR = 1e-6, 1e-12, 1e-13
 """Share of a step that may lie beyond an event, that beyond the end of an edge's segment, and share of the
 run; a step that ran farther is repeated with the right length. Where an edge passes the end of its segment
@@ -131,11 +132,13 @@ def _has_room(run: Run) -> bool:
 def _first(run: Run) -> float:
     """Return the step size just after a change of the drive: a share of the fastest time of the motion."""
     given, now = run.given, run.now
+    if run.clock.paused[now.piece]:
+        return float(run.pieces[now.piece, b_.END] - now.s)
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
     fast = 1.0 + abs(number) + math.sqrt(abs(slope))
     stiff = 1.5 * (1.0 + given.glass)
     if not given.fixed:
-        fast += math.sqrt(stiff / given.eps)
+        fast += math.sqrt(stiff / given.eps) + 1.5 * given.damper / given.eps
     if given.sprung:
         fast += math.sqrt((given.spring + stiff) / given.eps_x)
     return float(given.first_step / fast)
@@ -143,13 +146,13 @@ def _first(run: Run) -> float:
 
 def _next_piece(run: Run) -> None:
     """Begin a piece of the drive; where the velocity or its slope jumps, histories have a kink."""
-    now = run.now
+    now, paused = run.now, run.clock.paused[run.now.piece]
     _, last, last_slope = b_.evaluate(run.pieces[now.piece], now.s)
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
-        now.span = min(now.span, _first(run))
+        now.span = _first(run) if paused else min(now.span, _first(run))
         if not flies(run):
             for k in range(2):
                 split(run, k)
@@ -158,23 +161,25 @@ def _next_piece(run: Run) -> None:
 
 def _jump(run: Run) -> None:
     """Let edges turn where a jump of the drive changes the rate of the pressure."""
-    now = run.now
-    _, number, _ = b_.evaluate(run.pieces[now.piece], now.s)
+    now, damped, at = run.now, run.given.damper > 0.0, present(run)
+    _, _, slope = b_.evaluate(run.pieces[now.piece], now.s)
     for k in range(2):
-        relaxing = 0.0
-        for i in over(run.given.arms):
-            relaxing += total(run.state.stress_at_edge[i, k] / run.arms.relaxation_time[i])
         side = now.sides[k]
-        if _slack(run, side.state, side.xi, now.v, number - now.w, relaxing) < 0.0:
+        peels = side.state == PEELING
+        if peels and damped and not run.clock.paused[now.piece]:
+            continue  # its motion tells, see `_keeps`
+        rise = left_behind(run, k) if peels else side.rise
+        rises, terms = _pressing(side.xi, at.v, at.number, rise)
+        if damped and abs(rises) <= _allowed(run) * terms:  # p = 0, and its rate tells
+            rises, terms = -2.0 * side.xi * slope, 1.0 + abs(slope)
+        if (-rises if peels else rises) < -_allowed(run) * terms:
             turn(run, k)
 
 
-def _slack(run: Run, state: int, xi: float, v: float, number: float, relaxing: float) -> float:
-    """Return a number that is positive as long as an edge may keep its state: +- p' of the element there."""
-    given = run.given
-    rise = (1.0 + given.glass) * (v - 2.0 * xi * number) - relaxing
-    terms = (1.0 + given.glass) * (1.0 + abs(v) + 2.0 * abs(xi * number)) + abs(relaxing)
-    return float((-rise if state == PEELING else rise) / terms + _allowed(run))
+def _pressing(xi: float, v: float, number: float, rise: float) -> tuple[float, float]:
+    """Return how much faster the indenter presses at an edge than free ground rises there, and the terms."""
+    pressed = v - 2.0 * xi * number
+    return pressed - rise, 1.0 + abs(v) + 2.0 * abs(xi * number) + abs(rise)
 
 
 def _allowed(run: Run) -> float:
@@ -189,41 +194,37 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
     or the gap, at this end has none: with `exact` it is the event function.
     """
     now, index = run.now, run.now.steps
-    s = now.s + theta * run.steps[index].span
-    d, v, Y, number, _ = motion(run, index, s)
+    at = motion(run, index, now.s + theta * run.steps[index].span)
     if flies(run):
-        gap = least_gap(run, s, d, Y).size + closed(run) * closed(run)
+        gap = least_gap(run, at).size + closed(run) * closed(run)
         return Monitors(gap, NOTHING.state, NOTHING.ground)
     edges = run.polynomials.edges[index]
     l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
-    l_ground, r_ground = _ahead(run, 0, l, Y), _ahead(run, 1, r, Y)
+    l_ground, r_ground = _ahead(run, 0, l, at.Y), _ahead(run, 1, r, at.Y)
     if exact:
         accumulated(run, index, theta)
         middle = 0.5 * (l + r)
-        l_ground, r_ground = (
-            at_far_end(run, 0, s, d, Y, middle),
-            at_far_end(run, 1, s, d, Y, middle),
-        )
-    l_state, r_state = _keeps(run, 0, theta, v, number), _keeps(run, 1, theta, v, number)
+        l_ground, r_ground = at_far_end(run, 0, at, middle), at_far_end(run, 1, at, middle)
+    l_state, r_state = _keeps(run, 0, at), _keeps(run, 1, at)
     return Monitors(r - l, (l_state, r_state), (l_ground, r_ground))
 
 
-def _keeps(run: Run, k: int, theta: float, v: float, number: float) -> float:
+def _keeps(run: Run, k: int, at: Motion) -> float:
     """Return a number that is positive as long as an edge may keep its state.
 
-    One that peels moves inward over the ground, but for the error of its polynomial: its p' has the right
+    It touches as long as the indenter presses faster than the free surface there rises. One that peels moves
+    inward over the ground, but for the error of its polynomial: its p' has the right
     sign then, but is lost in the terms of a stiff arm.
     """
     now, n, index = run.now, run.given.stages, run.now.steps
-    powers = run.polynomials.edges[index, :, k]
+    powers, theta = run.polynomials.edges[index, :, k], at.theta
     if now.sides[k].state == PEELING:
-        outward = SIDES[k] * (derivative(powers, theta) - run.steps[index].span * number)
+        outward = SIDES[k] * (derivative(powers, theta) - run.steps[index].lasts * at.number)
         error = n * (n + 1) * run.given.last_power * abs(powers[n])
         return error + _allowed(run) - outward
-    relaxing = 0.0
-    for i in over(run.given.arms):
-        relaxing += total(past_stress(run, index, i, k, theta) / run.arms.relaxation_time[i])
-    return _slack(run, TOUCHING, value(powers, theta), v, number, relaxing)
+    rise = value(run.polynomials.rise[index, :, k], theta)
+    rises, terms = _pressing(value(powers, theta), at.v, at.number, rise)
+    return rises / terms + _allowed(run)
 
 
 def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
@@ -301,6 +302,9 @@ def _advance(run: Run, until: float, longest: float) -> int:
         return DONE
     longer = max(_longer(run, span, size), SHARP * shortest)
     now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
+    if size > 1.0 and not flies(run):  # no polynomial follows what is that abrupt
+        l, r, edges = now.sides[0].xi, now.sides[1].xi, run.stages.edges
+        end_with(run, l, r, edges[run.given.stages - 1, 0], edges[run.given.stages - 1, 1])
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
 
@@ -372,9 +376,8 @@ def _fly(run: Run, until: float) -> int:
     theta, _ = _event(run)
     side, number, x, touches = 0, NEVER, 0.0, theta
     if theta <= 1.0:
-        s = now.s + theta * span
-        d, _, Y, _, _ = motion(run, now.steps, s)
-        _, side, number, x = least_gap(run, s, d, Y)
+        at = motion(run, now.steps, now.s + theta * span)
+        _, side, number, x = least_gap(run, at)
         touches = touches_at(run, theta, number, x)
     now.span = _longer(run, span, size)
     if touches * span > shortest:
@@ -417,7 +420,7 @@ def _one_interval(run: Run) -> bool:
     """
     now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
     least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
-    Y = b_.evaluate(run.pieces[now.piece], now.s)[0] - now.x
+    at, Y = present(run), present(run).Y
     at_present(run)
     for i in range(now.first, now.first + now.count):
         segment = run.segments[run.chain[i]]
@@ -426,11 +429,11 @@ def _one_interval(run: Run) -> bool:
             share = 0.5 * half
             if segment.step == NEVER:
                 x = low + share * (high - low) + Y
-                p, xi = pressed(run, now.s, now.d, Y, x, segment.edge, NEVER, 0.0)
+                p, xi = pressed(run, at, x, segment.edge, NEVER, 0.0)
             else:
                 x = low + share * (high - low)
                 index = step_of(run, segment.edge, segment.step, x)
-                p, xi = pressed(run, now.s, now.d, Y, 0.0, segment.edge, index, x)
+                p, xi = pressed(run, at, 0.0, segment.edge, index, x)
             if l < xi < r and p < least:
                 return False
     for k in range(2):
@@ -441,7 +444,7 @@ def _one_interval(run: Run) -> bool:
             for half in range(3 if segment.step != NEVER else 0):
                 x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
                 index = step_of(run, segment.edge, segment.step, x)
-                gap, xi = free(run, now.s, now.d, Y, segment.edge, index, x)
+                gap, xi = free(run, at, segment.edge, index, x)
                 if SIDES[k] * (xi - side.xi) > 0.0 and gap < least:
                     return False
             number, count = segment.next, count + 1
@@ -457,24 +460,29 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
     if whole:
         now.d, now.x = float(stages.depth[last]), float(stages.offset[last])
     else:
-        now.d += span * integral(rate, theta)
-        now.x += span * integral(along, theta)
+        now.d += run.steps[index].lasts * integral(rate, theta)
+        now.x += run.steps[index].lasts * integral(along, theta)
     now.v = stages.depth_rate[last] if whole else value(rate, theta)
     now.w = stages.offset_rate[last] if whole else value(along, theta)
     _commit_arms(run, theta)
-    Y, _, _ = b_.evaluate(run.pieces[now.piece], end)
+    at = motion(run, index, end)
     for k in range(2):
         side, before = now.sides[k], now.sides[k].sigma
         step, sigma = int(stages.entry_step[last, k]), float(stages.entry_time[last, k])
         edge = polynomials.edges[index, :, k]
         side.xi = stages.edges[last, k] if whole else value(edge, theta)
+        side.compression, side.rise = stages.compression[last, k], stages.rise[last, k]
+        if not whole:
+            side.compression = value(polynomials.compression[index, :, k], theta)
+            side.rise = value(polynomials.rise[index, :, k], theta)
         if not whole and side.segment != NEVER and side.state != FREE:
             at_present(run)
-            xi, step, sigma = edge_at(
-                run, k, end, now.d, Y - now.x, side.xi, step, before + theta * (sigma - before)
-            )
+            guess = before + theta * (sigma - before)
+            xi, step, sigma = edge_at(run, k, at, side.xi, step, guess)
             if abs(xi) < math.inf:
                 side.xi = xi
+                if side.state == TOUCHING:
+                    side.compression, side.rise = now.compression, now.rise
                 for i in over(run.given.arms):
                     run.state.stress_at_edge[i, k] = run.element.stress[i]
         side.index, side.sigma = step, sigma
