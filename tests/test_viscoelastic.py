@@ -273,6 +273,23 @@ def test_the_load_of_a_convolution_is_that_of_its_pressure(shape, memory):
     assert contact.load == pytest.approx(carried, rel=1e-13, abs=0.0)
 
 
+@pytest.mark.parametrize("shape", HEIGHTS)
+@np.errstate(all="ignore")
+def test_the_pressure_of_arms_follows_from_node_to_node(shape):
+    """As by the rule over the memory of each node, for arms much faster and much slower than the contact."""
+    arms = convolution.Arms(np.full(20, 2.0), np.logspace(-9.0, 6.0, 20) * 1e-3)
+    contact = convolution.Contact(shape, arms, 1e-4, 1)
+    rows, error = arms.at_nodes(contact)
+    expected, _ = contact.remembered(contact.x)
+    assert error < 1e-13
+    assert np.abs(rows - expected).max() < 1e-13 * np.abs(expected).max()
+    contact.x, contact.a = contact.x[::8], contact.a  # too few nodes for the series between them
+    rows, error = arms.at_nodes(contact)
+    off = np.abs(rows - expected[:, ::8]).sum(axis=0).max() / np.abs(expected).sum(axis=0).max()
+    assert off <= error + 1e-14
+    assert error < 1e-2
+
+
 @np.errstate(all="ignore")
 def test_a_strip_next_to_a_tip_takes_the_finer_rule():
     """There its flank bends within the distance of the strip, and the coarse rule errs by 1e-11."""
