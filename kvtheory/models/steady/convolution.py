@@ -119,10 +119,13 @@ class Arms:
         apart = np.abs(rows[0] - rows[1]).sum(axis=0).max()
         return rows[0], MARGIN * float(apart / max(np.abs(rows[0]).sum(axis=0).max(), TINY))
 
-    def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
-        """Return the work of the arms, and the part lost; `left` is their pressure at the trailing edge."""
-        lost, _ = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
-        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
+    def works(self, sliding: "Contact", left: Array) -> tuple[float, float, float]:
+        """Return the work of the arms, the part lost and the difference of both rules for it.
+
+        `left` is their pressure at the trailing edge.
+        """
+        lost, apart = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
+        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost, apart
 
 
 class Springpot:
@@ -149,16 +152,19 @@ class Springpot:
         rows, apart = sliding.remembered(sliding.x)
         return rows, sliding.error_of(apart)
 
-    def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
-        """Return the work, and the part lost: 1/2 int int G(s + s') u' u' ds ds' is stored at the end."""
-        work, _ = sliding.total(sliding.rate * sliding.rows.sum(axis=0))
+    def works(self, sliding: "Contact", left: Array) -> tuple[float, float, float]:
+        """Return the work, the part lost, and the difference of both rules.
+
+        1/2 int int G(s + s') u' u' ds ds' is stored at the end.
+        """
+        work, apart = sliding.total(sliding.rate * sliding.rows.sum(axis=0))
         if not self.rest:
-            return work, work
+            return work, work, apart
         s = sliding.ahead
         kernel = (s[:, None] + s[None, :]) ** (self.rest - 1.0) / gamma(self.rest)
         scale = self.scale * gamma(1.0 + self.rest)
         weighed = sliding.weights[0] * sliding.rate
-        return work, work - 0.5 * scale * float(weighed @ kernel @ weighed)
+        return work, work - 0.5 * scale * float(weighed @ kernel @ weighed), apart
 
 
 Memory = Arms | Springpot | None
@@ -232,10 +238,20 @@ class Contact:
         load, apart = self.total(pressure)
         return rows, error + max(self.error_of(apart / load), self.load_error)
 
+    @cached_property
+    def worked(self) -> tuple[float, float, float, float]:
+        """The rest of the pressure at the trailing edge, the work of the branches, what is lost, its error."""
+        if self.memory is None:
+            return 0.0, 0.0, 0.0, self.load_error
+        left, _ = self.remembered(np.array([self.x_te]))
+        work, lost, apart = self.memory.works(self, left)
+        error = max(self.passed[1], self.error_of(apart / max(lost, TINY)))
+        return -float(left.sum()), work, lost, error
+
     @property
     def finer(self) -> "Contact | None":
-        """The contact by the finer rule if pressures need it."""
-        if self.passed[1] < ENOUGH or self.rule + 1 == len(USED):
+        """The contact by the finer rule if pressures or work need it."""
+        if self.worked[3] < ENOUGH or self.rule + 1 == len(USED):
             return None
         return Contact(self.shape, self.memory, self.depth, self.rule + 1)
 
@@ -312,11 +328,9 @@ class Contact:
             return 0.0, 0.0, self.load_error
         if finer := self.finer:
             return finer.friction()
-        error = self.passed[1]
-        left, _ = self.remembered(np.array([self.x_te]))
-        work, lost = self.memory.works(self, left)
+        rest, work, lost, error = self.worked
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
-        rest, held = -float(left.sum()), self.depth - float(self.shape.height(self.x_te))
+        held = self.depth - float(self.shape.height(self.x_te))
         rest = held if abs(rest - held) > JUMP * self.depth else rest
         return work + 0.5 * rest * rest, lost, error + self.memory.noise
 
