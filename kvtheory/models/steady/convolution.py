@@ -240,7 +240,7 @@ class Contact:
 
     @cached_property
     def worked(self) -> tuple[float, float, float, float]:
-        """The rest of the pressure at the trailing edge, the work of the branches, its loss, and the error."""
+        """The rest of the pressure at the trailing edge, the work of the branches, its loss, the error."""
         if self.memory is None:
             return 0.0, 0.0, 0.0, self.load_error
         left, _ = self.remembered(np.array([self.x_te]))
