@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 import kvtheory as kv
 from kvtheory.ladder.series import never_steady
+from kvtheory.models.steady import revolved
 from kvtheory.models.steady.ball import (
     FRICTION_COEFFICIENT_ERROR,
     LOAD_ERROR,
@@ -283,3 +284,21 @@ def test_every_output_is_in_whole_units(tmp_path):
     assert (solved.model, solved.units["load"]) == ("asymptote", "N")  # it is the weight
     assert "load 9.80665 N" in repr(solved)
     assert set(state.as_dict()) == {*STEADY_UNITS, "stable", "notes", "model", "certificate"}
+
+
+@pytest.mark.parametrize("worst", ["load", "friction"])
+def test_the_sums_over_strips_are_as_wrong_as_the_worse_of_both(worst, monkeypatch):
+    strip, doubt = revolved.Strips._strip, {"load": 1e-12, "friction": 1e-12} | {worst: 1e-8}
+
+    def doubtful(*given):
+        rows = strip(*given)
+        for k, name in enumerate(doubt):
+            if len(rows) > 3 * k:
+                rows[3 * k + 2] = doubt[name] * rows[3 * k]
+        return rows
+
+    monkeypatch.setattr(revolved.Strips, "_strip", doubtful)
+    scene = kv.Scene(indenter=kv.Revolved(kv.Circle(0.01)), support=kv.Fixed(1e-4))
+    errors = kv.steady(scene, method="quadrature").certificate.relative_error
+    assert 1e-8 <= errors["friction_force"] < 2e-8
+    assert 1e-8 <= errors["load"] < 2e-8

@@ -462,6 +462,22 @@ def test_intervals_are_those_of_student_if_errors_are_elliptic_and_infinite_if_o
     assert slow.parameters[VOIGT[1]].interval == pytest.approx((0.1, 0.1), rel=0.03)
 
 
+def test_an_interval_has_no_end_where_another_unknown_leaves_the_range_of_the_search(monkeypatch):
+    """At the limit of one it may not fall, as it would beyond: the data allow more of the other."""
+    data = table(ZENER, 0.03, 1, CASES["one arm"][2]["velocity"])
+    problem, best = solved_problem(ZENER, ONE_ARM, data)
+    (whole,), *_ = confidence.intervals(problem, best)
+    low, high = problem.limits
+    apart = np.array([0.0, 0.5 * np.sqrt(best.covariance[1, 1]), 0.0])
+    with monkeypatch.context() as patch:
+        least = np.where(apart, best.point - apart, low)
+        most = np.where(apart, best.point + apart, high)
+        patch.setattr(friction.Problem, "limits", property(lambda _: (least, most)))
+        (cut,), *_ = confidence.intervals(problem, best)
+    assert np.isfinite(whole).all()
+    assert cut == (-np.inf, np.inf)
+
+
 RUN = "t [ms],F_x [N/m]\n0,5\n1,4\n2,3\n3,3\n"
 
 

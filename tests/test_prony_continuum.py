@@ -9,7 +9,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory import compilation
-from kvtheory.models.continuum.prony import solved_scene, trajectory
+from kvtheory.models.continuum.prony import contact, evaluation, solved_scene, trajectory, walk
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 
@@ -419,3 +419,23 @@ def test_a_history_of_many_points_has_steps_for_each(monkeypatch):
     )
     monkeypatch.setattr(solved_scene, "STEP_LIMIT", 0)
     assert kv.transient(scene, at=[1.2e-3], certify=False).steps > 0
+
+
+def test_a_history_of_many_points_costs_as_much_for_each_of_them(monkeypatch):
+    """The contact has a segment for each point: no step copies or looks at all of them, nor does a peak."""
+    corners = [(2e-4 * i, 0.05 + 0.02 * (i % 2)) for i in range(41)]
+    scene = sliding([(3e10, 0.01)], kv.Drive(history=corners), 8e-3, support=kv.Fixed(1e-4))
+
+    def solved():
+        return kv.transient(scene, at=[4e-3, 8e-3], rtol=1e-3, certify=False)
+
+    whole, looks = solved(), []
+    monkeypatch.setattr(walk, "INSIDE", 4)
+    monkeypatch.setattr(evaluation, "MANY", 8)
+    monkeypatch.setattr(walk, "pressed", lambda *each: looks.append(each) or contact.pressed(*each))
+    found = solved()
+    now = found.solution.motion.counts
+    assert now.count > 35
+    assert now.chain < 8 * now.count
+    assert len(looks) <= 3 * 5 * now.steps
+    assert apart(found, whole, scene) == 0.0

@@ -1,5 +1,6 @@
 """Text with units becomes the right float, or an error that teaches."""
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kvtheory.scene.units import EXAMPLES, to_si
+import kvtheory as kv
+from kvtheory.scene.units import EXAMPLES, expected, to_si
 from tests import REFUSALS
 
 FIVE_OVER_PI = 1.591549430918953357689
@@ -81,3 +83,18 @@ def test_takes_pint_quantities_and_plain_si_numbers():
 def test_the_examples_in_the_messages_work(unit):
     for example in EXAMPLES[unit]:
         assert to_si(example, unit) > 0
+
+
+@pytest.mark.parametrize(
+    ("made", "units"),
+    [
+        (lambda: kv.DeadWeight(load="150 g"), ("N/m", "N")),
+        (lambda: kv.DeadWeight(mass="1 N"), ("kg/m", "kg")),
+        (lambda: kv.Drive(velocity=1.0, stiffness=["3 kg"]), ("N/m^2", "N/m")),
+    ],
+)
+def test_a_part_without_a_shape_says_what_a_line_and_what_a_ball_expects(made, units):
+    per_width, total = map(expected, units)
+    words = f"expected {per_width}, of a line contact, or {total}, of a ball"
+    with pytest.raises(kv.SceneError, match=re.escape(words)):
+        made()

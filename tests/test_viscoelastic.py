@@ -274,6 +274,23 @@ def test_the_load_of_a_convolution_is_that_of_its_pressure(shape, memory):
     assert contact.load == pytest.approx(carried, rel=1e-13, abs=0.0)
 
 
+@pytest.mark.parametrize("shape", HEIGHTS)
+@np.errstate(all="ignore")
+def test_the_pressure_of_arms_follows_from_node_to_node(shape):
+    """As by the rule over the memory of each node, for arms much faster and much slower than the contact."""
+    arms = convolution.Arms(np.full(20, 2.0), np.logspace(-9.0, 6.0, 20) * 1e-3)
+    contact = convolution.Contact(shape, arms, 1e-4, 1)
+    rows, error = arms.at_nodes(contact)
+    expected, _ = contact.remembered(contact.x)
+    assert error < 1e-13
+    assert np.abs(rows - expected).max() < 1e-13 * np.abs(expected).max()
+    contact.x = contact.x[::8]  # too few nodes for the series between them
+    rows, error = arms.at_nodes(contact)
+    off = np.abs(rows - expected[:, ::8]).sum(axis=0).max() / np.abs(expected).sum(axis=0).max()
+    assert off <= error + 1e-14
+    assert error < 1e-2
+
+
 @np.errstate(all="ignore")
 def test_a_strip_next_to_a_tip_takes_the_finer_rule():
     """There its flank bends within the distance of the strip, and the coarse rule errs by 1e-11."""
@@ -293,3 +310,14 @@ def test_a_strip_next_to_a_tip_takes_the_finer_rule():
         assert contact.load == pytest.approx(fine.load, rel=1e-14, abs=0.0)
         assert contact.friction()[:2] == pytest.approx(fine.friction()[:2], rel=1e-13, abs=0.0)
     assert rules == {1e-9: 1, 3e-4: 0}
+
+
+@np.errstate(all="ignore")
+def test_the_error_of_friction_is_that_of_the_energy_lost():
+    """A blunt indenter loads a fast arm at the ends of its contact: the load is exact, friction is not."""
+    shape, arms = kv.PowerLaw(8e-3, 3.95), convolution.Arms([0.075, 0.04], [30.0, 3e-7])
+    coarse, fine = (convolution.Contact(shape, arms, 1e-5, rule) for rule in (0, 1))
+    _, lost, error = coarse.passed
+    assert coarse.load == pytest.approx(fine.load, rel=1e-14, abs=0.0)
+    assert 1e-13 < abs(lost / fine.passed.power - 1.0) <= error
+    assert coarse.friction() == fine.friction()

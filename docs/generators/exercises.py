@@ -1,4 +1,4 @@
-"""Exercises: a notebook for each row of `exercises.toml`, made from its record, and their table."""
+"""Exercises: a notebook for each row of `exercises.toml`, made from its record, and a list of them."""
 
 import tomllib
 from collections.abc import Iterator, Sequence
@@ -27,17 +27,24 @@ QUESTIONS = {
 
 
 def pages(derivations: Sequence[Derivation]) -> dict[str, str]:
-    """Return the notebooks, and a table of them for the page that links to them."""
-    records, texts = {each.label: each for each in derivations}, {}
-    table = "| topic | level | notebook | proof | task |\n|---|---|---|---|---|\n"
+    """Return the notebooks, and a list of links to them and to the proofs."""
+    records, texts, links = {each.label: each for each in derivations}, {}, ""
     for number, row in enumerate(TABLE, 1):
         record = records[row["record"]]
         name = f"exercises/exercise-{number:02}-{record.label}.ipynb"
         texts[name] = notebook.assembled(list(_cells(row, record)))
         link = f"{{download}}`{record.title} </generated/{name}>`"
-        proof = f"[{record.label}](#{anchor_of(record.label)})"
-        table += f"| {row['topic']} | {row['level']} | {link} | {proof} | {row['told']} |\n"
-    return {**texts, "exercises/table.inc": table}
+        links += f"{number}. {link}, proof [{record.label}](#{anchor_of(record.label)})\n"
+    return {**texts, "exercises/links.inc": links}
+
+
+def tasks() -> str:
+    """Return the table of the page `exercises.md`, which is read without building the site, too."""
+    rows = [
+        f"| {number} | {row['topic']} | {row['level']} | {row['told']} |\n"
+        for number, row in enumerate(TABLE, 1)
+    ]
+    return "| no. | topic | level | task |\n|---|---|---|---|\n" + "".join(rows)
 
 
 def steps_left(row: dict[str, Any], record: Derivation) -> Iterator[tuple[Step, str, str]]:

@@ -2,7 +2,8 @@
 
 Allowed are values at which the sum of squares, minimized over the other unknowns, is at most as much above
 its minimum as linear theory predicts at the standard errors that hold 95 % (Student's t). Each minimum that
-is low enough lies in an interval of them; intervals that overlap are one, the others are pieces apart.
+is low enough lies in an interval of them; intervals that overlap are one, the others are pieces apart. Where
+another unknown has left the range of the search before, the interval has no end.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,9 @@ Places = NDArray[np.int_]
 NEWTON, LONGEST, CLOSE, RIDGE = 60, 1.0, 0.01, 1e-9
 """Most steps to the limit of an interval, the longest step of ln of an unknown, the relative error of the
 rise of the sum of squares there, and the relative change of a diagonal that keeps equations solvable."""
+OPEN = 0.05
+"""Fall of the sum of squares over this rise, by a step of other unknowns out of the range of the search, from
+which on an interval has no end."""
 
 
 def intervals(problem: Problem, found: Fit) -> list[list[tuple[float, float]]]:
@@ -96,12 +100,9 @@ def _limits(
         rows = np.arange(at.size)
         H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
         stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))
+        others = np.stack([g, H[rows, :, i]], axis=-1)
         moves = ~stuck & (np.arange(size) != i[:, None])
-        rest = H * moves[:, :, None] * moves[:, None]
-        own_rise = np.einsum("sii->si", H)
-        rest += np.eye(size) * np.where(moves & (own_rise > 0.0), RIDGE * own_rise, 1.0)[:, None]
-        others = np.stack([g, H[rows, :, i]], axis=-1) * moves[..., None]
-        inner = np.linalg.solve(rest, others)  # of the other unknowns, at a given one
+        inner = _inner(H, others, moves)  # of the other unknowns, at a given one
         a = H[rows, i, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 1])
         b = g[rows, i] - np.einsum("sj,sj->s", others[..., 1], inner[..., 0])
         total = np.einsum("sn,sn->s", r, r)
@@ -112,7 +113,12 @@ def _limits(
         step[rows, i] = move
         off = np.maximum(np.abs(total - wanted[at]), np.abs(c + wanted[at] - total))
         closed = off < CLOSE * rise[i]
-        limits[at[closed]] = points[at, i][closed]
+        # By how much the sum would fall if the unknowns that are stuck went on.
+        beyond = _inner(H, g[..., None], np.arange(size) != i[:, None])[..., 0]
+        fall = np.einsum("sj,sj->s", g, beyond - inner[..., 0])
+        fall *= np.minimum(1.0, LONGEST / np.maximum(np.abs(beyond).max(axis=1), 1e-300))
+        ends = closed & (fall <= OPEN * rise[i])
+        limits[at[ends]] = points[at, i][ends]
         step *= np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, None]
         points[at] = np.clip(points[at] + step, low, high)
         out = (points[at, i] <= low[i]) | (points[at, i] >= high[i])
@@ -126,3 +132,11 @@ def standard_errors(found: Fit, limits: Sequence[Sequence[tuple[float, float]]])
     nearest = np.array([pieces[0] for pieces in limits])
     sides = np.abs(np.expm1(nearest - found.point[:, None])).max(axis=1) / student(found.freedom)
     return np.where(np.isfinite(sides), np.maximum(sides, linear), linear)
+
+
+def _inner(H: Array, right: Array, moves: Array) -> Array:
+    """Return H^-1 times the columns of `right` for the unknowns that move, and zero for the others."""
+    own = np.einsum("sii->si", H)
+    rest = H * moves[:, :, None] * moves[:, None]
+    rest += np.eye(own.shape[1]) * np.where(moves & (own > 0.0), RIDGE * own, 1.0)[:, None]
+    return np.linalg.solve(rest, right * moves[..., None])

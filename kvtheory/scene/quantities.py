@@ -355,7 +355,10 @@ def validate(instance: Any, section: str) -> None:
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
         except ValueError as error:
-            problems.add(f"{section}.{name}", value, str(error))
+            told = str(error)
+            if spec.per_width and told.endswith(expected(spec.unit)):  # the shape is not known here
+                told += f", of a line contact, or {expected(WHOLE[spec.unit])}, of a ball"
+            problems.add(f"{section}.{name}", value, told)
         if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:

@@ -20,6 +20,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import gamma
 
@@ -43,8 +44,17 @@ Shape = Convex | ConvexProfile
 
 USED = RULES[2:4]
 """Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
-ENOUGH = 1e-15
+ENOUGH = 2e-14
 """Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
+TERMS, FAR = 12, 12.0
+"""Terms of the series of u' between two nodes, the last two of which are its error; relaxation lengths from
+which on the recurrence of its moments is stable."""
+_AT, _GAUSS = legendre.leggauss(TERMS + 2)
+BEHIND = 0.5 - 0.5 * _AT
+"""Nodes of Gauss's rule between two nodes, as shares of the way back from the second one."""
+MOMENTS = 0.5 * _GAUSS[:, None] * legendre.legvander(_AT, TERMS - 1)
+TO_SERIES = MOMENTS * (2.0 * np.arange(TERMS) + 1.0)
+"""Matrices from values there to moments, and to coefficients of the series."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -87,6 +97,35 @@ class Arms:
         """Return the share of m that is reached at s."""
         return self._and_damper(np.expm1(-s / self.length) / np.expm1(-X / self.length), 1.0)
 
+    def at_nodes(self, sliding: "Contact") -> tuple[Array, float]:
+        """Return the pressure of each branch at the nodes, and its error.
+
+        An arm forgets at one rate: its pressure is what is left of that at the node before, and an integral
+        over u' between, a series of Legendre polynomials. Over z relaxation lengths their moments are
+        M_k = int_0^1 e^(-z s) P_k(1 - 2s) ds, and M_(k+1) = M_(k-1) - (2k + 1)(2/z) M_k.
+        """
+        width = np.maximum(np.diff(sliding.x, prepend=-sliding.a), 0.0)
+        x = np.maximum(sliding.x[:, None] - width[:, None] * BEHIND, -sliding.a)
+        series = -sliding.shape.slope(x) @ TO_SERIES
+        z = width / self.length
+        left, far, long = np.exp(-z), z > FAR, np.maximum(z, FAR)
+        near = np.exp(-np.minimum(z, FAR)[..., None] * BEHIND) @ MOMENTS
+        last, M = (1.0 + left) / long, (1.0 - left) / long
+        mean, fewer = 0.0 * z, 0.0 * z
+        for k in range(TERMS):
+            fewer = mean if k == TERMS - 2 else fewer
+            mean = mean + series[:, k] * np.where(far, M, near[..., k])
+            last, M = M, last - (2 * k + 1) * (2.0 / long) * M
+        added = self.stiffness * width * np.array([mean, fewer])
+        rows, pressure = np.empty_like(added), np.zeros(added.shape[:2])
+        for j in range(width.size):
+            pressure = pressure * left[:, j] + added[..., j]
+            rows[..., j] = pressure
+        fine, fewer = rows
+        apart = np.abs(fine - fewer).sum(axis=0).max() / max(np.abs(fine).sum(axis=0).max(), TINY)
+        damped = -self.damper * sliding.shape.slope(sliding.x)
+        return np.concatenate([fine, damped]), MARGIN * float(apart)
+
     def power(self, rows: Array, _rate: Array) -> Array:
         """Return what the branches lose per length, from their pressures."""
         return (rows**2 / self.impulse).sum(axis=0)
@@ -120,6 +159,11 @@ class Springpot:
     def share(self, s: Array, X: Array) -> Array:
         """Return (s/X)^(1 - alpha)."""
         return (s / X) ** self.rest if self.rest else np.ones_like(X)
+
+    def at_nodes(self, sliding: "Contact") -> tuple[Array, float]:
+        """Return the pressure at the nodes, a row, and its error."""
+        rows, apart = sliding.remembered(sliding.x)
+        return rows, sliding.error_of(apart)
 
     def power(self, rows: Array, rate: Array) -> Array:
         """Return what goes into the springpot per length, from its pressure."""
@@ -192,12 +236,12 @@ class Contact:
         self.rate = -shape.slope(self.x)
         impulse = self.ahead + (0.0 if memory is None else memory.amount(self.ahead).sum(axis=0))
         self.load, apart = self.total(self.rate * impulse)
-        self.load_error = self._error(apart / self.load)
+        self.load_error = self.error_of(apart / self.load)
         self.load_slope = self.a + x_te  # dW/d(delta) over K
         if memory is not None:
             self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
 
-    def _error(self, apart: float) -> float:
+    def error_of(self, apart: float) -> float:
         """Return the relative error from the difference of both rules."""
         apart = apart ** (1.0 if getattr(self.shape, "bent", False) else 1.5)
         error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
@@ -211,14 +255,16 @@ class Contact:
     @cached_property
     def passed(self) -> "Passed":
         """The pressure of each branch at the nodes, and integrals over it."""
-        rows, apart = self.remembered(self.x)
+        rows, error = np.zeros((1, self.x.size)), 0.0
+        if self.memory is not None:
+            rows, error = self.memory.at_nodes(self)
         pressure = self.depth - self.shape.height(self.x) + rows.sum(axis=0)
         load, load_apart = self.total(pressure)
         power, power_apart = 0.0, 0.0
         if self.memory is not None:
             power, power_apart = self.total(self.memory.power(rows, self.rate))
-        apart += load_apart / load + power_apart / max(power, TINY)
-        return Passed(rows, power, max(self._error(apart), self.load_error))
+        apart = load_apart / load + power_apart / max(power, TINY)
+        return Passed(rows, power, error + max(self.error_of(apart), self.load_error))
 
     @property
     def finer(self) -> "Contact | None":

@@ -432,9 +432,7 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
             min(np.flatnonzero(each.row == side), key=lambda i: abs(distance[i]), default=-1)
             for side in range(3)
         ]
-        if (
-            min(nearest) < 0
-        ):  # as where a very soft spring is first unstable, at the friction maximum
+        if min(nearest) < 0:  # a very soft spring is first unstable at the friction maximum
             return 10.0**onset, np.inf
         off = distance[nearest]
         rise = (off[2] - off[0]) / (2.0 * NEARBY)

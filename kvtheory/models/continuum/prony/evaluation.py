@@ -43,6 +43,8 @@ REFINED, BISECTIONS, SAMPLES, LAYER = 12, 60, 3, 0.25
 """Golden sections in the search for the peak between two samples, before a parabola; bisections for the
 instant at which an edge passed a place; samples in each step of the history, but in the layer where arms are
 loaded, at half of the age, down to this share of the shortest relaxation time."""
+MANY = 64
+"""Segments of a contact from which on the peak is sought among fewer of them first."""
 GOLDEN = 0.6180339887498949
 ROUNDING = 1e-12
 
@@ -98,7 +100,8 @@ def peak(run: Run, index: int, at: Contact) -> float:
     largest, step, fastest, s, Y = 0.0, run.steps[index], math.inf, at.motion.s, at.motion.Y
     for i in range(run.given.arms):
         fastest = min(fastest, LAYER * run.arms.relaxation_time[i])
-    for i in range(step.first, step.first + step.count):
+    first, end = about_peak(run, at, step.first, step.first + step.count)
+    for i in range(first, end):
         number = run.chain[i]
         segment = run.segments[number]
         at_rest = segment.step == NEVER
@@ -131,6 +134,27 @@ def peak(run: Run, index: int, at: Contact) -> float:
         if best > 0.0:
             largest = max(largest, golden(run, at, number, before, min(after, high)))
     return largest
+
+
+def about_peak(run: Run, at: Contact, first: int, end: int) -> tuple[int, int]:
+    """Return between which entries of the contact the pressure is largest, where it has many segments.
+
+    A drive with many kinks makes many. The pressure and its slope along the ground have no jump at a kink.
+    """
+    while end - first > MANY:
+        apart, top, largest = 2 + 2 * (end - first) // MANY, first, -math.inf
+        for i in range(first, end, apart):
+            number = run.chain[i]
+            segment = run.segments[number]
+            low, high = segment.a, min(segment.b, at.s)
+            if segment.step == NEVER:
+                low, high = segment.X_a, segment.X_b
+            for half in range(2):
+                p = pressure_of(run, at, number, low + 0.5 * half * (high - low))
+                if p > largest:
+                    top, largest = i, p
+        first, end = max(first, top - apart), min(end, top + apart + 1)
+    return first, end
 
 
 def inside(run: Run, at: Contact, number: int, low: float, high: float) -> tuple[float, float]:

@@ -27,7 +27,7 @@ from kvtheory.models.continuum.prony.contact import (
     value,
 )
 from kvtheory.models.continuum.prony.records import FREE, NEVER, SIDES, TOUCHING, Run
-from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, turn
+from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, lay, turn
 from kvtheory.models.continuum.prony.step import prepare, solve
 
 CLOSED = 0.03
@@ -283,7 +283,7 @@ def land(run: Run, side: int, number: int, x: float) -> None:
         now.sides[k].state = TOUCHING
         begin(run, k, NEVER)
         aim(run, k, outward if k == side else inward)
-    now.first, now.count, now.chain = now.chain + 1, 2, now.chain + 4
+    lay(run, 2)
     for k in range(2):
         run.chain[now.first + k] = now.sides[k].own
 

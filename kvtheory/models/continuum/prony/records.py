@@ -49,14 +49,16 @@ have a kink there; where the contact's segments are in `chain`, and their number
 last restart of the accumulators; both sides at its start."""
 NOW = record(
     s="f8", d="f8", v="f8", x="f8", w="f8", span="f8", limit="f8", piece="i8", steps="i8", segments="i8",
-    chain="i8", first="i8", count="i8", restart="i8", toggles="i8", rejected="i8", evaluations="i8",
+    chain="i8", block="i8", unused=("i8", (2,)), first="i8", count="i8", restart="i8", toggles="i8",
+    rejected="i8", evaluations="i8",
     kinked=("i8", (2,)), smooth="?", sides=(SIDE, (2,)), compression="f8", rise="f8",
 )  # fmt: skip
 """Clock, d, d', x, x', length of the next step, and its limit by an event, piece of the drive, numbers of
-steps, segments and entries in `chain`; the contact there; the first step since the last restart of the
-accumulators in `Run.element`; the changes at this instant, numbers of rejected steps and evaluations; whether
-the histories of the edges have a kink here, and whether the last step continues smoothly; both sides; u and
-u' of the free element that was evaluated last."""
+steps, segments and entries in `chain`; where the room for the contact begins there, and its next unused
+entries outward at both ends; the contact there; the first step since the last restart of the accumulators
+in `Run.element`; the changes at this instant, numbers of rejected steps and evaluations; whether the
+histories of the edges have a kink here, and whether the last step continues smoothly; both sides; u
+and u' of the free element that was evaluated last."""
 GIVEN = record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", damper="f8", glass="f8",
     last_power="f8", farthest="f8", first_step="f8", longest="f8", grow="f8", stages="i8", arms="i8",
@@ -270,7 +272,8 @@ def as_arrays(run: Run) -> Run:
 def _rest(run: Run) -> None:
     """Set the contact at rest: both edges touch, and write segments at both ends of it."""
     now = run.now
-    now.d, now.segments, now.chain, now.count = 1.0, 3, 3, 3
+    now.d, now.segments, now.chain, now.count, now.unused[1] = 1.0, 3, 3, 3, 3
+    now.unused[0] = -1
     now.span = now.limit = math.inf
     for k, edge, step, a, b in (
         (0, 0, 0, -1.0, -1.0),

@@ -52,20 +52,37 @@ def last(run: Run, k: int) -> int:
 
 
 def renew(run: Run) -> None:
-    """Copy the contact's sequence of segments, with room at both ends; earlier steps keep the old one."""
-    now = run.now
+    """Copy the contact's sequence of segments behind all entries; earlier steps keep the old one."""
+    now, old = run.now, run.now.first
+    lay(run, now.count)
     for i in range(now.count):
-        run.chain[now.chain + 1 + i] = run.chain[now.first + i]
-    now.first, now.chain = now.chain + 1, now.chain + now.count + 2
+        run.chain[now.first + i] = run.chain[old + i]
+
+
+def lay(run: Run, count: int) -> None:
+    """Let the contact's sequence have `count` entries behind all others.
+
+    The room at both ends is as long, so that a sequence that grows is copied a few times only.
+    """
+    now, room = run.now, count + 2
+    now.block, now.first, now.count = now.chain, now.chain + room, count
+    now.unused[0], now.unused[1] = now.first - 1, now.first + count
+    now.chain = now.first + count + room
 
 
 def push(run: Run, k: int) -> None:
-    """Add the segment that an edge writes to the contact."""
-    renew(run)
+    """Add the segment that an edge writes to the contact, in an entry that no earlier step has."""
     now = run.now
-    now.count += 1
     if k == 0:
+        if not now.block <= now.first - 1 <= now.unused[0]:
+            renew(run)
         now.first -= 1
+        now.unused[0] = now.first - 1
+    else:
+        if not now.unused[1] <= now.first + now.count < now.chain:
+            renew(run)
+        now.unused[1] = now.first + now.count + 1
+    now.count += 1
     run.chain[now.first + (now.count - 1 if k == 1 else 0)] = now.sides[k].own
 
 

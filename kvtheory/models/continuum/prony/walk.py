@@ -71,9 +71,12 @@ PROBES = 3
 TOGGLES = 12
 """Most changes at one instant; more than a few mean that no state of the edges is consistent."""
 
-DEEPEST, LEAST, WATCHED = 100.0, 1e-8, 8
+DEEPEST, LEAST, WATCHED, INSIDE = 100.0, 1e-8, 8, 24
 """Largest tension in the contact, or penetration outside, in units of the tolerance and G(0)/K; the least
-tolerance there, which allows for rounding; segments of free ground that are watched on each side."""
+tolerance there, which allows for rounding; segments of free ground that are watched on each side, and those
+of the contact that are watched after a step: of more, all in turn."""
+COPIES = 6
+"""Copies of the contact's sequence of segments that one step and a change of the drive may need."""
 
 APPROACH = 0.85
 """Largest share of the time until the contact closes that a step takes."""
@@ -126,7 +129,7 @@ def _has_room(run: Run) -> bool:
     now = run.now
     copied = now.segments if flies(run) else 0
     fits = now.steps + 2 < len(run.steps) and now.segments + copied + 8 < len(run.segments)
-    return fits and now.chain + 8 * (now.count + 8) < len(run.chain)
+    return fits and now.chain + COPIES * (3 * now.count + 8) < len(run.chain)
 
 
 def _first(run: Run) -> float:
@@ -422,7 +425,8 @@ def _one_interval(run: Run) -> bool:
     least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
     at, Y = present(run), present(run).Y
     at_present(run)
-    for i in range(now.first, now.first + now.count):
+    apart = 1 + now.count // INSIDE
+    for i in range(now.first + now.steps % apart, now.first + now.count, apart):
         segment = run.segments[run.chain[i]]
         low, high = in_contact(run, run.chain[i])
         for half in range(3):
