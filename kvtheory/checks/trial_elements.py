@@ -281,11 +281,11 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     damper = np.array([rule.damper for rule in rules]) * scene.foundation.damping
     damper *= static.load / (scene.foundation.stiffness * static.depth)
     drops = np.array([1.0 - rule.drops for rule in rules])
-    M_x, lifted, pulled = scene.drive_mass, np.zeros(len(rules)), np.zeros(len(rules))
+    M_x, (lifted, pulled) = scene.drive_mass, np.zeros((2, len(rules)))
 
-    def lift(sunk: Array, rate: Array, found: Pressed) -> Array:
+    def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
-        return scene.support.weight - spring - drops ** (rate < 0.0) * found.lift
+        return scene.support.weight - spring - kept * found.lift
 
     def pull(shift: Array, speed: Array, found: Pressed) -> Array:
         return found.friction - k_x * shift - drive.damping * speed
@@ -307,9 +307,14 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if h > 0.0 and (k_x or not held):
             sunk, shift, found = at(h)
             if not held:
-                a = IMPLICIT * lift(sunk, rate, found) + (1.0 - IMPLICIT) * lifted
                 slope = damper + IMPLICIT * h * k_s + found.slope
-                rate = rate + h * a / M / (1.0 + IMPLICIT * h * slope / M)
+                full, less = (
+                    rate + h * (IMPLICIT * lift(sunk, rate, found, kept) + (1.0 - IMPLICIT) * lifted)
+                    / M / (1.0 + IMPLICIT * h * slope / M)
+                    for kept in (1.0, drops)
+                )  # fmt: skip
+                # Where the whole force raises the indenter and what is left lowers it, it stays.
+                rate = np.where(full >= 0.0, full, np.minimum(less, 0.0))
             if k_x:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
@@ -317,7 +322,10 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         depth, along, found = at(h)
         elements.keep(now, near, found)
         if not held:
-            lifted = lift(depth, rate, found)
+            full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
+            lifted = np.where(
+                rate > 0.0, full, np.where(rate < 0.0, less, np.clip(0.0, full, less))
+            )
         if k_x:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
