@@ -42,7 +42,7 @@ class Rule(NamedTuple):
     start: float = 1.0  # initial depth over the static depth
     loaded: bool = False  # arms bear load at the start
     clears: bool = False  # the free surface is forgotten at the instant at which sliding reverses
-    freezes: bool = False  # arms do not relax once the indenter has left them
+    freezes: bool = False  # what the indenter has left, where p < 0, does not relax
     damper: float = 0.0  # a damper on the indenter, in units of C times the contact
 
 
@@ -90,6 +90,7 @@ class Pressed(NamedTuple):
     peak: Array
     surface: Array
     stress: Array
+    on: Array
 
 
 @dataclass
@@ -107,6 +108,7 @@ class Elements:
     length: float
     surface: Array
     stress: Array
+    on: Array
     seen: Array
 
     @classmethod
@@ -126,7 +128,9 @@ class Elements:
         surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
         stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
-        return cls(scene, rule, places, heights, areas, length, surface, stress, seen)
+        return cls(
+            scene, rule, places, heights, areas, length, surface, stress, surface > 0.0, seen
+        )
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
@@ -163,7 +167,17 @@ class Elements:
         drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
         drag = (held * drag * slope * slope).sum(axis=(1, 2))
         return Pressed(
-            normal, lift, friction, stiff, drag, left, right, p.max(axis=(1, 2)), surface, stress
+            normal,
+            lift,
+            friction,
+            stiff,
+            drag,
+            left,
+            right,
+            p.max(axis=(1, 2)),
+            surface,
+            stress,
+            on,
         )
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
@@ -177,6 +191,8 @@ class Elements:
         size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
         damping = foundation.damping * size
         p = foundation.stiffness * g + damping * rise
+        flagged = (g > 0.0) & np.where(self.on[:, :, near], p >= 0.0, g >= old)
+        on, free = (np.where(rule.freezes > 0.0, *each) for each in ((flagged, on), (old, free)))
         surface = np.where(on, np.maximum(g, 0.0), free)
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
@@ -207,6 +223,7 @@ class Elements:
     def keep(self, time: float, near: slice, found: Pressed) -> None:
         """Accept the state at the end of a step."""
         self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
+        self.on[:, :, near] = found.on
         self.seen[near] = time
 
     def direction(self, forward: Any, speed: Array, depth: Array, moved: Array) -> Array:
@@ -223,7 +240,8 @@ class Elements:
     def relax(self, time: float, near: slice) -> None:
         """Relax the columns near the indenter from the time they were last in use to this one."""
         late = np.flatnonzero(self.seen[near] < time) + near.start
-        K, decay = self.scene.foundation.stiffness, np.minimum(self.rule.decay, 1e9)
+        K, freezes = self.scene.foundation.stiffness, self.rule.freezes > 0.0
+        decay = np.where(freezes, 0.0, np.minimum(self.rule.decay, 1e9))
         for k in late[self.surface[:, :, late].any(axis=(0, 1))]:
             gap = time - self.seen[k]
             if self.scene.foundation.arms:
