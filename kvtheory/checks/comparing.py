@@ -134,8 +134,8 @@ def compare(
 def _undecided(case: Case, checks: tuple[Check, ...]) -> tuple[Case, tuple[Check, ...]]:
     """Return what longer steps allow, and that they are not known, if nothing tells these from a fault."""
     failed = [each for each in checks if each.ok is False and each.name not in INCONCLUSIVE]
-    ratios = [each.measured / each.allowed for each in failed if each.measured and each.allowed]
-    longer = case_of.with_longer_steps(case) if ratios and max(ratios) <= case_of.LONGER else None
+    worst = max(float((case.excess(name) / case.limit(name)).max()) for name in case.names)
+    longer = case_of.with_longer_steps(case) if failed and worst <= case_of.LONGER else None
     if longer is None or verdict(found := judge(longer)) == "disagrees":
         return case, checks
     unit = "time step, over the one assumed, with which all other checks pass"

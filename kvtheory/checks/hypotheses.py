@@ -26,8 +26,8 @@ SHARE_OF_VALUES = 0.98
 """Share of the values that a fault must bring within their allowance; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Factor on the allowance for a fault, which reproduces the method's own errors only roughly."""
-PRECISION, STEP = 1e-4, 1e-3
-"""Precision of a fitted unknown, and its step for slopes."""
+PRECISION, STEP, FITTED = 1e-4, 1e-3, 1e-3
+"""Precision of a fitted unknown, its step for slopes, and the part of a difference that a fit may leave."""
 FAR, WALKS = 0.7, 4
 """Largest change of a parameter in a descent, as a logarithm, for theory is slow far away; and most descents,
 each from where the one before reached that bound."""
@@ -165,7 +165,8 @@ class Bench(Case):
         kept = beyond[:, : math.ceil(SHARE_OF_VALUES * beyond.shape[1])]
         left = np.sqrt(np.mean(kept * kept, axis=1))
         limits = [self.rms_limit(name) * self.theory.scales[name] for name in self.names]
-        return bool((left <= LEFT_OVER * np.array(limits)).all())
+        fitted = [FITTED * rms(gap) for gap in self._gaps((self.columns, self.now))]
+        return bool((left <= LEFT_OVER * np.array(limits) + fitted).all())
 
     def shows(self, pair: Pair | None) -> bool:
         """Whether another theory differs from the right one by more than is allowed, anywhere."""
