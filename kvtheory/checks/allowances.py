@@ -26,6 +26,8 @@ from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Fixed, Scene
 
+Mask = NDArray[np.bool_]
+
 STANDARD = 200e3
 FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
 """Elements per m assumed if none are given: the paper's 200 /mm, within these numbers of elements per static
@@ -137,9 +139,9 @@ def allowance(
     if moves:
         lagging += _entering(theory, now, (before, after), 2.0 * force / fine.spacing)
         stiff = h * C * contact_extent(theory, now) > support.mass
-        jumps = beside_jumps(theory, time, h) & theory.scene.drive.rigid
+        known = beside_jumps(theory, time, h) & theory.scene.drive.rigid
         order = stiff, first_order
-        lagging += C * _unfollowed(theory, (now, before, after), (low, high), jumps, order)
+        lagging += C * _unfollowed(theory, (now, before, after), (low, high), known, order)
     smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), (drift, late), fine)
     if not theory.scene.drive.rigid:
         step = fine.time_step if first_order else 0.0
@@ -179,7 +181,7 @@ def _smear(time: Array, step: float) -> Array:
     return STEPS_SMEARED * step + time_rounding(time)
 
 
-def beside_jumps(theory: Theory, time: Array, step: float) -> NDArray[np.bool_]:
+def beside_jumps(theory: Theory, time: Array, step: float) -> Mask:
     """Return which times are so near a jump of the drive that the data may be of its other side."""
     off = np.abs(time[:, None] - np.array([*theory.scene.drive.jumps]))
     return np.asarray((off <= _smear(time, step)[:, None]).any(axis=1))
@@ -284,8 +286,8 @@ def _unfollowed(
     theory: Theory,
     parts: Sequence[Curves],
     ends: Sequence[Curves],
-    known: Array,
-    order: tuple[Array, bool],
+    known: Mask,
+    order: tuple[Mask, bool],
 ) -> Array:
     """Return the force over C by which delta' and V change in a step without its motion knowing.
 
