@@ -361,6 +361,52 @@ def test_noise_on_a_known_discretization_is_no_fault_unless_it_is_that_of_elemen
     assert "discretization noise" in failed(kv.compare(data={**data, **alike}, **how))
 
 
+def test_a_row_at_a_reversal_is_not_taken_for_few_elements():
+    """It may be of either side of the jump; theory is just after it."""
+    scene = confusion.SCENES["reversal"]
+    data, at = exact(scene, 16), np.linspace(0.0, 0.15, 16)
+    before = kv.transient(scene, at=[0.05 - 1e-9], rtol=1e-9, certify=False)
+    row = int(np.argmin(np.abs(at - 0.05)))
+    for name in ("depth", "normal_force", "friction_force"):
+        data[name] = np.where(np.arange(16) == row, getattr(before, name), data[name])
+    assert at[row] == pytest.approx(0.05)
+    assert "elements enough" not in failed(kv.compare(scene, data))
+
+
+@pytest.mark.parametrize("scheme", ["exponential", "semi-implicit", "edge-corrected"])
+def test_steps_that_do_not_resolve_the_swing_on_a_spring_agree(scheme):
+    """The base speeds up within a step whose motion does not know it, which costs a force of C dV."""
+    scene = kv.Scene(
+        kv.Parabola(0.0195), kv.Foundation(1.91e10, 0.435), kv.DeadWeight(430.0),
+        kv.Drive(0.00272, stiffness=2.82e7, damping=3.3e4), kv.Run(1.79),
+    )  # fmt: skip
+    how = {"per_length": 154e3, "scheme": scheme}
+    at = np.linspace(0.0, 1.79, 290)
+    found = kv.elements(scene, at=at, time_step=4.77e-3, certify=False, **how)
+    assert failed(kv.compare(scene, disturbed(found, 0, 1e-6), **how)) == []
+
+
+OSCILLATING = kv.Scene(
+    kv.Parabola(0.011), kv.GeneralizedMaxwell(1e10, [(5e10, 0.05)]), kv.DeadWeight(350.0),
+    kv.Drive(0.012), kv.Run(0.1),
+)  # fmt: skip
+
+
+def test_the_rates_of_an_indenter_on_arms_are_nearly_those_of_its_stability():
+    (decay, frequency), *_ = kv.stability(OSCILLATING, quantity="rates").rates
+    pace = 1.0 / Theory(OSCILLATING, METHODS).rates.oscillation
+    assert abs(pace.imag) == pytest.approx(abs(frequency), rel=1e-2)
+    assert pace.real == pytest.approx(-decay, rel=0.1)
+
+
+@pytest.mark.parametrize("scheme", ["explicit-euler", "semi-implicit", "exponential"])
+def test_an_oscillation_on_arms_may_drift_by_the_steps_of_a_sound_scheme(scheme):
+    at = np.linspace(0.0, 0.1, 121)
+    found = kv.elements(OSCILLATING, at=at, per_length=100e3, scheme=scheme, certify=False)
+    assert not found.warning
+    assert failed(kv.compare(OSCILLATING, disturbed(found, 0, 1e-6), scheme=scheme)) == []
+
+
 def test_a_rigid_drive_slides_at_its_velocity_and_holds_the_friction():
     data = kv.transient(at=np.linspace(0.0, 0.2, 200).tolist(), rtol=1e-9)
     columns = {

@@ -10,6 +10,7 @@ import pytest
 import kvtheory as kv
 from figures.engines import RUNS, hunt_crossley
 from kvtheory.api._compare import METHODS
+from kvtheory.checks import comparing
 from kvtheory.checks.comparing import _ranked
 from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.faults import time_units
@@ -525,6 +526,48 @@ def test_the_step_of_a_ball_that_nobody_gave_is_not_told_from_a_fault():
     assert (found.verdict, failed(found)) == ("cannot tell", ["known time step"])
     assert "may be the error of a sound method, not a fault" in found.diagnosis
     assert not found.explanations
+
+
+def test_a_wrong_radius_of_five_percent_shows_in_noise_of_one_percent():
+    """The values of a curve are judged together by their noise, without the large allowances of the start."""
+    scene = kv.Scene(
+        kv.Parabola(0.00533), kv.Foundation(1.24e10, 0.0351), kv.DeadWeight(1971.0), kv.Drive(0.0587),
+        kv.Run(0.111),
+    )  # fmt: skip
+    wrong = exact(scaled_scene(scene, {"indenter.radius": 1.0}, 0.95), 241)
+    rng = np.random.default_rng(2)
+    noisy = {n: wrong[n] * (1.0 + 1e-2 * rng.standard_normal(241)) for n in MEASURED[1:]}
+    first = first_of(kv.compare(scene, {"time": wrong["time"], **noisy}), "wrong R")
+    assert first.enough
+    assert first.factor == pytest.approx(0.95, abs=0.01)
+
+
+@pytest.mark.parametrize("delay", [0.7e-3, 1.05e-3, 2.3e-3])
+def test_a_delay_of_both_forces_is_found_wherever_the_force_jumps(delay):
+    """A force that jumps fits a delay only next to the right one: the guesses must be dense."""
+    at = np.linspace(0.0, 0.1, 201)
+    found = kv.transient(TABLE_1, at=at, rtol=1e-9, certify=False)
+    behind = kv.transient(TABLE_1, at=np.maximum(at - delay, 0.0), rtol=1e-9, certify=False)
+    at_rest = at < delay
+    late = {FORCES[0]: np.where(at_rest, TABLE_1.support.weight, behind.normal_force),
+            FORCES[1]: np.where(at_rest, 0.0, behind.friction_force)}  # fmt: skip
+    data = {"time": at, "depth": found.depth, **late}
+    first = first_of(kv.compare(TABLE_1, data), "delay of both forces")
+    assert first.factor == pytest.approx(delay, rel=2e-2)
+
+
+def test_contact_lost_while_rising_holds_a_light_indenter_where_it_is():
+    """The whole force raises it and what is left lowers it: it stays, whatever part is lost."""
+    light = kv.Scene(support=kv.DeadWeight(mass=100.0), drive=kv.Drive(0.05), run=kv.Run(0.02))
+    data = series(light, {}, rule="dropped", time_step=2e-5)
+    first_of(kv.compare(light, data), "contact lost while rising")
+
+
+def test_the_work_of_a_diagnosis_is_counted_not_timed(monkeypatch):
+    data = exact(scaled_scene(TABLE_1, {"support.mass": 1.0}, 1.2), 101)
+    assert "Not tried" not in kv.compare(TABLE_1, data).diagnosis
+    monkeypatch.setattr(comparing, "MOST_SOLVED", 0)
+    assert "Not tried, after 0 scenes: " in kv.compare(TABLE_1, data).diagnosis
 
 
 def test_faults_in_random_scenes_are_named_and_none_is_asserted_wrongly():

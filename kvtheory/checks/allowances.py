@@ -18,12 +18,15 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kvtheory.checks.noise import SEVERAL, extreme, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Fixed, Scene
+
+Mask = NDArray[np.bool_]
 
 STANDARD = 200e3
 FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
@@ -43,6 +46,8 @@ BALL_EDGE = 0.02
 """Element of a ball assumed for its edges, in half lengths: its forces need few elements."""
 LARGEST_NOISE = 0.1
 """Largest noise that is allowed for, as a fraction of the curve or of its scale."""
+RATES = "depth_rate", "sliding_velocity"
+"""The curves to which the dampers answer."""
 WHOLE_EDGE = 2.0
 """Largest error of an edge (one element) over the mean error (half an element)."""
 FIRST_ORDER_LAG, LAG = 0.25 / math.e, 0.25
@@ -113,22 +118,30 @@ def allowance(
     first_order = scheme is None or scheme.order_in_time <= 1
     now, before, after, low, high = _bands(theory, time, fine.time_step, rtol)
     share, lagging, late, drift = (np.zeros_like(time) for _ in range(4))
-    if not theory.scene.held:
+    h, moves = fine.time_step, not theory.scene.held
+    if moves:
         late = _lag(theory, now, time, high["depth_rate"] - low["depth_rate"])
-    if first_order and not theory.scene.held:
-        for part in (now, before, after):
-            sunk = part["depth"] - theory.static.depth
-            unbalanced = support.weight - support.spring * sunk - part["normal_force"]
-            z = np.minimum(fine.time_step * C * contact_extent(theory, part) / support.mass, 1.0)
-            share, lagging = np.fmax(share, z), np.fmax(lagging, z * np.abs(unbalanced))
+    unbalanced = np.array([_unbalanced(theory, part) for part in (now, before, after)])
+    if first_order and moves:
+        for part, off in zip((now, before, after), unbalanced, strict=True):
+            z = np.minimum(h * C * contact_extent(theory, part) / support.mass, 1.0)
+            share, lagging = np.fmax(share, z), np.fmax(lagging, z * off)
         lagging += FIRST_ORDER_LAG / LAG * C * contact_extent(theory, now) * late
-        if theory.scene.drive.rigid and theory.rates is not None and theory.rates.oscillates:
-            drift, pace = _drift(theory, now, time, fine.time_step), 1.0 / abs(theory.rates.slow)
-            lagging += support.mass * pace**2 * drift
-            late = late + pace * drift
+    oscillation = theory.rates.oscillation if theory.rates else None
+    if moves and theory.scene.drive.rigid and oscillation:
+        pace = 1.0 / abs(oscillation)
+        growth = 0.5 * h * pace**2 if first_order else h * h * pace**3 / 12.0
+        drift = _drift(np.fmax.reduce(unbalanced), time, oscillation, growth)
+        lagging += drift
+        late = late + drift / (support.mass * pace)
+        drift = drift / (support.mass * pace**2)
     force = np.fmax.reduce([_edge_force(theory, c, fine.spacing) for c in (now, before, after)])
-    if not theory.scene.held:
+    if moves:
         lagging += _entering(theory, now, (before, after), 2.0 * force / fine.spacing)
+        stiff = h * C * contact_extent(theory, now) > support.mass
+        known = beside_jumps(theory, time, h) & theory.scene.drive.rigid
+        order = stiff, first_order
+        lagging += C * _unfollowed(theory, (now, before, after), (low, high), known, order)
     smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), (drift, late), fine)
     if not theory.scene.drive.rigid:
         step = fine.time_step if first_order else 0.0
@@ -137,6 +150,7 @@ def allowance(
     few = (
         np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL
     )  # those of the drive
+    calm = ~beside_jumps(theory, time, fine.time_step)
     bands, given = {}, ("velocity", "sliding_velocity")[: 1 + (few or theory.scene.drive.rigid)]
     for name in CURVES:
         rounding = sigma = np.zeros_like(time)
@@ -148,7 +162,7 @@ def allowance(
             sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
             if name in EDGES and not fine.spacing_known:
                 most = COARSEST_EDGE * theory.static.half_length
-                jumps = min(edge_jumps(values - now[name]), most) - fine.spacing
+                jumps = min(edge_jumps((values - now[name])[calm]), most) - fine.spacing
                 if not theory.scene.indenter.per_width:
                     jumps = max(jumps, BALL_EDGE * theory.static.half_length)
                 smooth[name] = smooth[name] + ELEMENTS_AT_AN_EDGE * max(jumps, 0.0)
@@ -162,9 +176,20 @@ def edge_jumps(residual: Array) -> float:
     return float(np.quantile(changes, NEARLY_ALL)) if changes.size else 0.0
 
 
+def _smear(time: Array, step: float) -> Array:
+    """Return by how much the data may lead or lag, in s."""
+    return STEPS_SMEARED * step + time_rounding(time)
+
+
+def beside_jumps(theory: Theory, time: Array, step: float) -> Mask:
+    """Return which times are so near a jump of the drive that the data may be of its other side."""
+    off = np.abs(time[:, None] - np.array([*theory.scene.drive.jumps]))
+    return np.asarray((off <= _smear(time, step)[:, None]).any(axis=1))
+
+
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
     """Return theory at the times, a few steps before and after, and its least and greatest values between."""
-    smear = STEPS_SMEARED * step + time_rounding(time)
+    smear = _smear(time, step)
     jumps = [t for t in theory.scene.drive.jumps if t < time[-1]]
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
     found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)
@@ -191,19 +216,26 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     return np.asarray(LAG * np.exp(left))
 
 
-def _drift(theory: Theory, curves: Curves, time: Array, step: float) -> Array:
-    """Return the error of the depth (m) by a first-order scheme whose oscillation decays too slowly or fast.
+def _unbalanced(theory: Theory, curves: Curves) -> Array:
+    """Return the magnitude of the force that accelerates the indenter, zero if it is fixed."""
+    if theory.scene.held:
+        return np.zeros_like(curves["depth"])
+    support, sunk = theory.scene.support, curves["depth"] - theory.static.depth
+    return np.asarray(np.abs(support.weight - support.spring * sunk - curves["normal_force"]))
 
-    A step h changes the decay of a motion exp(-t/T) by the rate h/(2 |T|^2). After a time t its amplitude
-    D, by |delta'| |T| of theory, is off by D t h/(2 |T|^2).
+
+def _drift(unbalanced: Array, time: Array, oscillation: complex, growth: float) -> Array:
+    """Return the error of the force by a scheme whose oscillation gains or loses `growth` per second.
+
+    A step h changes a motion exp(-t/T) by the rate h/(2 |T|^2) if the scheme is of first order, else by
+    h^2/(12 |T|^3). Its amplitude is that of the unbalanced force of theory; where the phase is lost the error
+    is twice that.
     """
-    rates = theory.rates
-    assert rates is not None
-    ages = np.maximum(time, 0.0) / rates.settling
-    rate = np.abs(np.nan_to_num(curves["depth_rate"]))
+    ages = np.maximum(time, 0.0)
+    decay = ages * (1.0 / oscillation).real
     with np.errstate(divide="ignore"):
-        left = np.maximum.accumulate(np.log(rate) + ages) - ages
-    return np.asarray(0.5 * step * np.maximum(time, 0.0) / abs(rates.slow) * np.exp(left))
+        left = np.maximum.accumulate(np.log(unbalanced) + decay) - decay
+    return np.asarray(np.exp(left) * np.minimum(growth * ages, OVERSHOOT))
 
 
 def _contact_length(curves: Mapping[str, Array]) -> Array:
@@ -250,6 +282,33 @@ def _entering(theory: Theory, now: Curves, others: Sequence[Curves], pressure: A
     return np.asarray(pressure * np.fmax.reduce(shifts) / STEPS_SMEARED)
 
 
+def _unfollowed(
+    theory: Theory,
+    parts: Sequence[Curves],
+    ends: Sequence[Curves],
+    known: Mask,
+    order: tuple[Mask, bool],
+) -> Array:
+    """Return the force over C by which delta' and V change in a step without its motion knowing.
+
+    The motion of a step balances the forces at one rate delta' and velocity V; at its end the elements feel
+    both as they are then. In a step that is long beside M/(C L), which makes any scheme one of first order,
+    C L d(delta') is more than the unbalanced force. V adds C times the integral of -h' dV, unless it is
+    `known` to jump; dV is that of a step, a part of the width of its band, or by a higher order its second
+    difference.
+    """
+    now, before, after = parts
+    low, high = ends
+    stiff, first = order
+    width = {name: (high[name] - low[name]) / (2.0 * STEPS_SMEARED) for name in RATES}
+    V = "sliding_velocity"
+    bend = np.abs(before[V] - 2.0 * now[V] + after[V]) / STEPS_SMEARED**2
+    changed = np.where(known, 0.0, np.where(stiff | first, width[V], np.minimum(bend, width[V])))
+    slant = np.abs(now["leading_edge"] ** 2 - now["trailing_edge"] ** 2) / (2.0 * theory.radius)
+    found = contact_extent(theory, now) * np.where(stiff, width["depth_rate"], 0.0)
+    return np.asarray(np.nan_to_num(found + theory.width(now["depth"]) * slant * changed))
+
+
 def _systematic(
     theory: Theory, curves: Curves, time: Array, forces: tuple[Array, Array],
     lags: tuple[Array, Array], fine: Resolution,
@@ -273,7 +332,8 @@ def _systematic(
     carried = 1.5 * depth * 2.0 * R / (a * a) * np.abs(curves["friction_force"])
     slope = K * (a + np.abs(l_r)) / R
     given = np.full_like(force, INPUT * theory.scales["velocity"])
-    friction = (WHOLE_EDGE * force + lagging) * a / R + carried
+    pressed = WHOLE_EDGE * force * a / R + carried
+    friction = pressed + lagging * a / R
     return {
         "velocity": given,
         "sliding_velocity": given,
@@ -281,7 +341,7 @@ def _systematic(
         "depth_rate": depth_rate + INPUT * theory.scales["depth_rate"],
         "normal_force": WHOLE_EDGE * force + lagging,
         "friction_force": friction,
-        "spring_force": friction,
+        "spring_force": friction if theory.scene.drive.rigid else pressed,  # a mass evens out a lag
         "leading_edge": edge,
         "trailing_edge": edge + np.nan_to_num(R * both / slant),
         "peak_pressure": slope * (edge + dx) + K * both,

@@ -173,8 +173,8 @@ def largest(case: Case, name: str) -> Measured:
 
 
 def root_mean_square(case: Case, name: str) -> Measured:
-    """Compare all values of a curve together."""
-    return rms(case.excess(name)), case.rms_limit(name), ""
+    """Compare all values of a curve together: what its noise alone may leave beyond the smooth allowance."""
+    return rms(case.beyond(name)), case.rms_limit(name), ""
 
 
 def steady_limit(case: Case) -> Measured:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from time import process_time
 
 import numpy as np
 
@@ -32,8 +31,9 @@ FAMILIES: Families = (
 """The faults that are tried, in their order."""
 OF_TIME = {"delays and filters", "units of the time"}
 """The families that show in a series alone."""
-EXACT, BUDGET = 0.999, 8.0
-"""Part of the difference that ends the search; and processor time in s after which no family is begun."""
+EXACT, MOST_SOLVED = 0.999, 300
+"""Part of the difference that ends the search; and scenes that are solved before no family is begun and no
+distant guess tried: counted, not timed, so that a diagnosis is the same on any machine."""
 REFINED, FLEXIBLE = 3, 0.1
 """Number of distant guesses tried; and the part by which a fault with an unknown must fit better than
 one without. A parameter must fit the better, the further it is from its value."""
@@ -134,8 +134,8 @@ def compare(
 def _undecided(case: Case, checks: tuple[Check, ...]) -> tuple[Case, tuple[Check, ...]]:
     """Return what longer steps allow, and that they are not known, if nothing tells these from a fault."""
     failed = [each for each in checks if each.ok is False and each.name not in INCONCLUSIVE]
-    ratios = [each.measured / each.allowed for each in failed if each.measured and each.allowed]
-    longer = case_of.with_longer_steps(case) if ratios and max(ratios) <= case_of.LONGER else None
+    worst = max(float((case.excess(name) / case.limit(name)).max()) for name in case.names)
+    longer = case_of.with_longer_steps(case) if failed and worst <= case_of.LONGER else None
     if longer is None or verdict(found := judge(longer)) == "disagrees":
         return case, checks
     unit = "time step, over the one assumed, with which all other checks pass"
@@ -205,9 +205,9 @@ def diagnose(
     tried, skipped = explanations(case, families)
     seen = case_of.symptoms(case, failed) if families is FAMILIES else ()
     found = sorted([*seen, *tried], key=_order)
-    named = [each for each in found if each.rank >= NAMED]
+    named = [each for each in found if each.rank >= NAMED or each.enough]
     text = _words(case, failed, named)
-    text += f" Not tried for want of time: {', '.join(skipped)}." if skipped else ""
+    text += f" Not tried, after {MOST_SOLVED} scenes: {', '.join(skipped)}." if skipped else ""
     return text, tuple((named or found)[:SHOWN])
 
 
@@ -219,7 +219,7 @@ def _order(each: Explanation) -> float:
 
 def explanations(case: Case, families: Families = FAMILIES) -> tuple[list[Explanation], list[str]]:
     """Try every fault and order them by the remaining difference; name the families that were not tried."""
-    rows, clock = bench(case), process_time()
+    rows = bench(case)
     trials: list[Trial] = []
     skipped = []
 
@@ -230,7 +230,7 @@ def explanations(case: Case, families: Families = FAMILIES) -> tuple[list[Explan
         best = min((trial.score for trial in trials), default=math.inf)
         if family is not faults.signs_and_units and best <= (1.0 - EXACT) * rows.start:
             break
-        if process_time() - clock > BUDGET:
+        if len(rows.solved) > MOST_SOLVED:
             skipped.append(words)
             continue
         for hypothesis in family(rows):
@@ -239,7 +239,7 @@ def explanations(case: Case, families: Families = FAMILIES) -> tuple[list[Explan
     if not any(trial.enough for trial in trials):
         remote = []
         for each, x in ((trial.hypothesis, x) for trial in trials for x in trial.hypothesis.remote):
-            if process_time() - clock < BUDGET:
+            if len(rows.solved) <= MOST_SOLVED:
                 remote.append(rows.rated(each, each.make(x), x))
         for found in sorted(remote, key=lambda trial: trial.score)[:REFINED]:
             trials.append(rows.tried(found.hypothesis, [found.value]))
@@ -261,12 +261,17 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
     after = min(others, default=0.0)
     trials = sorted(trials, key=lambda trial: trial.hypothesis.last)  # that of others goes first
     ordered, found = sorted(trials, key=unlikely), dict[str, Explanation]()
+    least = min((rows.quiet, rows.start, *(trial.score for trial in trials)))
+    whole = math.sqrt(rows.start**2 - least**2)
+
+    def part(left: float) -> float:
+        """Return the part of the difference, beyond noise, that is explained where a score is left."""
+        return 1.0 - math.sqrt(max(left**2 - least**2, 0.0)) / whole if whole else 0.0
+
     best = next((trial for trial in ordered if trial.hypothesis.powers), None)
     for trial in ordered:
         fault, score, enough, x = trial
-        explained, rank = (
-            1.0 - left / rows.start if rows.start else 0.0 for left in (score, unlikely(trial))
-        )
+        explained, rank = part(score), part(unlikely(trial))
         alike = rows.indistinguishable(best, ordered) if trial is best and enough else ()
         found.setdefault(fault.name, Explanation(
             fault.name, fault.words(x), rank, enough and max(rank, explained) >= NAMED, fault.number(x),

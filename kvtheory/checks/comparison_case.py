@@ -11,6 +11,7 @@ from kvtheory.checks.allowances import (
     Band,
     Resolution,
     allowance,
+    beside_jumps,
     contact_extent,
     edge_jumps,
     resolution,
@@ -36,6 +37,8 @@ EVEN = 0.6
 """Part of the expected ratio of both below which some samples are in step with the elements."""
 FINEST = 0.1
 """Part of the assumed spacing below which a sawtooth is due to samples in step, or to rounding."""
+OTHER = 4.0
+"""Smooth error of the normal force, in b, beyond which elements, at most 2 b, are the smaller part of it."""
 ROUNDED = 1.64
 """Gap due to rounding, by `gaps`, in units of half the last digit."""
 COMMON, CERTAIN = 0.5, 0.9
@@ -45,7 +48,7 @@ QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
-FEW_ROWS, LONGER = 32, 8.0
+FEW_ROWS, LONGER = 32, 16.0
 """Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
 assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
 one."""
@@ -112,11 +115,15 @@ class Case:
         """Return the limit in the unit of the curve."""
         return np.asarray(self.limit(name) * self.theory.scales[name])
 
+    def beyond(self, name: str) -> Array:
+        """Return how far the data lie beyond the smooth error too, which leaves their noise, as `excess`."""
+        smooth = np.nan_to_num(self.bands[name].systematic) / self.theory.scales[name]
+        return np.asarray(np.maximum(self.excess(name) - self.tolerance * smooth, 0.0))
+
     def rms_limit(self, name: str) -> float:
-        """Return the largest root mean square of a curve that is allowed, relative to the scale."""
-        band, scale = self.bands[name], self.theory.scales[name]
-        random = rms(band.noise) / scale * (1.0 + SURE * math.sqrt(2.0 / self.time.size))
-        return self.tolerance * (rms(band.systematic) / scale + random + SMALLEST)
+        """Return the largest root mean square of `beyond` that is allowed, relative to the scale."""
+        random = rms(self.bands[name].noise) / self.theory.scales[name]
+        return self.tolerance * (random * (1.0 + SURE * math.sqrt(2.0 / self.time.size)) + SMALLEST)
 
 
 def make_case(
@@ -135,8 +142,9 @@ def make_case(
         return case
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
     seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
+    calm = ~beside_jumps(theory, series.time, fine.time_step)
     edges = [
-        (edge_jumps(case.columns[n] - case.now[n]) - 2.0 * float(case.bands[n].rounding.max()),
+        (edge_jumps((case.columns[n] - case.now[n])[calm]) - 2.0 * float(case.bands[n].rounding.max()),
          rms(case.bands[n].noise)) for n in EDGES if n in names
     ]  # fmt: skip
     (jump, loud), read = max(edges, default=(0.0, 0.0)), SAWTOOTH if seen != MARGIN else ""
@@ -160,8 +168,14 @@ def with_longer_steps(case: Case) -> Case | None:
 def _coarser(case: Case) -> float:
     """Return the spacing over the assumed one by the sawtooth +-b of the normal force (F15)."""
     force = "normal_force"
-    gap, rows = gaps(case.time, case.columns[force] - case.now[force])
-    b, digits = case.edge_force[rows], case.bands[force].rounding[rows]
+    band, b = case.bands[force], case.edge_force
+    other = band.systematic - band.rounding > OTHER * b  # than elements is what these may show
+    other |= beside_jumps(case.theory, case.time, case.resolution.time_step)
+    off = np.where(other, np.nan, case.columns[force] - case.now[force])
+    gap, rows = gaps(case.time, off)
+    b, digits = b[rows], band.rounding[rows]
+    if not (b > 0.0).any():
+        return MARGIN
     gap = np.maximum(gap - ROUNDED * digits, 0.0)
     median, large = np.quantile(gap[b > 0.0] / b[b > 0.0], [0.5, QUANTILE])
     median, large = float(median) / MEDIAN_GAP, float(large) / LARGE_GAP

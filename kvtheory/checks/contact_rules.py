@@ -42,6 +42,8 @@ FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
 TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
 STARTS, LOSSES = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95)
 """Simulated strengths: factors of damping, of a time and of the depth; parts of a force and of a length."""
+BETWEEN = 5
+"""Starts of a fit for each simulated strength: beyond some strength there may be no slope."""
 HUGE, BEYOND = 1e100, 0.02
 """Largest change that is interpolated, as a wrong rule may diverge, and how far strengths may go beyond."""
 MISTAKES = (
@@ -156,4 +158,6 @@ def _fitted(
             return None
         return changed(dict(zip(names, between(x), strict=True)))
 
-    return Hypothesis(mistake.name, mistake.text, make, strengths.tolist())
+    places = np.linspace(0.0, strengths.size - 1.0, BETWEEN * (strengths.size - 1) + 1)
+    starts = np.interp(places, np.arange(strengths.size), strengths)
+    return Hypothesis(mistake.name, mistake.text, make, starts.tolist())

@@ -125,8 +125,10 @@ FORCES = "normal_force", "friction_force"
 """Columns that may be late or filtered, together or alone."""
 SIGNED = "friction_coefficient", "friction_force", "spring_force", "velocity", "sliding_velocity"
 """Columns whose sign follows that of the velocity."""
-DELAYS, SMALL = (0.05, 0.2, 0.5, 1.2, 3.0, 8.0, 20.0), 1e-6
-"""Initial guesses for a delay or time constant, in hundredths of the span; and a step, relative to it."""
+DELAYS, TIME_CONSTANTS = np.geomspace(0.02, 50.0, 60), (0.05, 0.2, 0.5, 1.2, 3.0, 8.0, 20.0)
+"""Initial guesses for a delay, dense as a force may jump; and for a time constant; in 1/100 of the span."""
+SMALL = 1e-6
+"""A step relative to a time constant, below which it is expanded."""
 ONSET = 0.1
 """Change of a force, relative to its range, from which the drive has started."""
 
@@ -342,15 +344,16 @@ def delays(bench: Bench) -> Iterator[Hypothesis]:
         return lambda time: make(time, names) if time <= span else None  # no longer one shows
 
     kinds: Any = (
-        ("delay", "late by {1:.4g} ms, while the rest agrees", bench.late),
-        ("low pass", "filtered by a low pass, its time constant {1:.4g} ms", partial(_filtered, bench)),
+        ("delay", "late by {1:.4g} ms, while the rest agrees", bench.late, DELAYS),
+        ("low pass", "filtered by a low pass, its time constant {1:.4g} ms", partial(_filtered, bench),
+         TIME_CONSTANTS),
     )  # fmt: skip
     for title, names in (("both forces", FORCES), *((name, (name,)) for name in FORCES)):
-        for kind, words, make in kinds if set(names) <= set(bench.names) else ():
+        for kind, words, make, guesses in kinds if set(names) <= set(bench.names) else ():
             if kind != "delay" or len(bench.names) > len(names):  # else it is an offset of the time
                 yield Hypothesis(
                     f"{kind} of {title}", f"{title.replace('_', ' ')}: {words}", shorter(make, names),
-                    np.log(DELAYS).tolist(), unit, log=True, last=True,
+                    np.log(guesses).tolist(), unit, log=True, last=True,
                 )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kvtheory.checks.allowances import Band
-from kvtheory.checks.comparison_case import Case
+from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.theory import CURVES, TRIAL_RTOL, Array, Curves
 from kvtheory.fitting.least_squares import covariance, descend
 from kvtheory.scene import Scene
@@ -26,8 +26,8 @@ SHARE_OF_VALUES = 0.98
 """Share of the values that a fault must bring within their allowance; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Factor on the allowance for a fault, which reproduces the method's own errors only roughly."""
-PRECISION, STEP = 1e-4, 1e-3
-"""Precision of a fitted unknown, and its step for slopes."""
+PRECISION, STEP, FITTED = 1e-4, 1e-3, 1e-3
+"""Precision of a fitted unknown, its step for slopes, and the part of a difference that a fit may leave."""
 FAR, WALKS = 0.7, 4
 """Largest change of a parameter in a descent, as a logarithm, for theory is slow far away; and most descents,
 each from where the one before reached that bound."""
@@ -131,6 +131,16 @@ class Bench(Case):
         return np.clip(self._gaps(pair) / (band + limit), -self.largest, self.largest)
 
     @cached_property
+    def _noise(self) -> Array:
+        """Sigma of the noise, by curve."""
+        return np.nan_to_num(np.array([self.bands[name].noise for name in self.names]))
+
+    @cached_property
+    def quiet(self) -> float:
+        """The score of data that differ from theory by their noise alone."""
+        return rms(self._noise / sum(self._units))
+
+    @cached_property
     def start(self) -> float:
         """The score of the data as they are."""
         return self.rated(fixed("", "", None), (self.columns, self.now)).score
@@ -144,7 +154,19 @@ class Bench(Case):
         largest = np.quantile(outside, SHARE_OF_VALUES, axis=1).max()
         ratios = self.ratios(pair)
         score = math.sqrt(float(np.mean(ratios * ratios)))
-        return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
+        return Trial(
+            hypothesis, score, bool(largest <= LEFT_OVER) and self._of_noise(outside * limit), x
+        )
+
+    def _of_noise(self, outside: Array) -> bool:
+        """Whether noise explains what lies outside the band and the smooth error, all values together."""
+        smooth = np.nan_to_num(np.array([self.bands[name].systematic for name in self.names]))
+        beyond = np.sort(np.maximum(outside - LEFT_OVER * self.tolerance * smooth, 0.0), axis=1)
+        kept = beyond[:, : math.ceil(SHARE_OF_VALUES * beyond.shape[1])]
+        left = np.sqrt(np.mean(kept * kept, axis=1))
+        limits = [self.rms_limit(name) * self.theory.scales[name] for name in self.names]
+        fitted = [FITTED * rms(gap) for gap in self._gaps((self.columns, self.now))]
+        return bool((left <= LEFT_OVER * np.array(limits) + fitted).all())
 
     def shows(self, pair: Pair | None) -> bool:
         """Whether another theory differs from the right one by more than is allowed, anywhere."""
@@ -177,8 +199,14 @@ class Bench(Case):
                 break
         return min((trial for trial, _ in trials.values()), key=lambda trial: trial.score)
 
+    @cached_property
+    def solved(self) -> list[Scene]:
+        """The scenes whose theory was computed, which is nearly all of the work of a diagnosis."""
+        return []
+
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
         """Return the data and the theory of another scene, or None where it has none."""
+        self.solved.append(scene)
         try:
             theory = type(self.theory)(scene, self.theory.methods)
             found = theory.at(self.time if times is None else times, TRIAL_RTOL)

@@ -57,23 +57,29 @@ class Methods(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """Shortest and longest time constant (s) near steady sliding (F12, F22); that of the last decay."""
+    """Shortest and longest time constant (s) near steady sliding (F12, F22); that of the last decay.
+
+    `oscillation` is the complex time constant of the fastest oscillation, or None.
+    """
 
     fast: complex
     slow: complex
     settling: float
+    oscillation: complex | None
 
     @classmethod
     def of(cls, time_constants: Sequence[complex]) -> "Rates":
         """Return those of all time constants T, of motions in proportion to exp(-t/T)."""
         fast, *_, slow = sorted(time_constants, key=abs)
         slowest = min((1.0 / T).real for T in time_constants)
-        return cls(fast, slow, 1.0 / slowest if slowest > 0.0 else math.inf)
+        turning = [T for T in time_constants if T.imag]
+        settling = 1.0 / slowest if slowest > 0.0 else math.inf
+        return cls(fast, slow, settling, min(turning, key=abs, default=None))
 
     @property
     def oscillates(self) -> bool:
         """Whether the indenter oscillates about its steady state."""
-        return self.slow.imag != 0.0
+        return self.oscillation is not None
 
 
 class Theory:
@@ -142,8 +148,9 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        Those of F22, or with a rigid drive of M s^2 + C B s + K A + k_s = 0, B = x_TE + a (F12). On arms and
-        for a ball they are approximate; they only set windows and allowances.
+        Those of F22, or with a rigid drive of M s^2 + C B s + K A + k_s = 0, B = x_TE + a (F12). On arms
+        the contact, of length L, acts on M as if it kept its elements, M s^2 + k_s + L (K + sum K_i tau_i s/
+        (1 + tau_i s)) = 0. These and those of a ball are approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
         if not self.scene.drive.rigid:
@@ -153,6 +160,15 @@ class Theory:
         if self.scene.held:
             return None
         state = self.steady_state
+        if arms := self.scene.foundation.arms:
+            extent = float(self.width(state.depth)) * abs(state.trailing_edge - state.leading_edge)
+            K, k_s = self.scene.foundation.stiffness, self.scene.support.spring
+            terms, product = np.poly1d([M, 0.0, k_s + extent * K]), np.poly1d([1.0])
+            for arm in arms:
+                relaxes = np.poly1d([arm.relaxation_time, 1.0])
+                damps = np.poly1d([extent * arm.stiffness * arm.relaxation_time, 0.0])
+                terms, product = terms * relaxes + product * damps, product * relaxes
+            return Rates.of((-1.0 / terms.roots.astype(complex)).tolist())
         a, l_r = state.half_length, state.retardation_length
         stiffness = float(self.stiffness(state.depth, a, l_r))
         extent = float(self.width(state.depth)) * a * (trailing_edge_ratio(l_r / a) + 1.0)

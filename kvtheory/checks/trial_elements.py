@@ -42,7 +42,7 @@ class Rule(NamedTuple):
     start: float = 1.0  # initial depth over the static depth
     loaded: bool = False  # arms bear load at the start
     clears: bool = False  # the free surface is forgotten at the instant at which sliding reverses
-    freezes: bool = False  # arms do not relax once the indenter has left them
+    freezes: bool = False  # what the indenter has left, where p < 0, does not relax
     damper: float = 0.0  # a damper on the indenter, in units of C times the contact
 
 
@@ -90,6 +90,7 @@ class Pressed(NamedTuple):
     peak: Array
     surface: Array
     stress: Array
+    on: Array
 
 
 @dataclass
@@ -107,6 +108,7 @@ class Elements:
     length: float
     surface: Array
     stress: Array
+    on: Array
     seen: Array
 
     @classmethod
@@ -126,7 +128,9 @@ class Elements:
         surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
         stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
-        return cls(scene, rule, places, heights, areas, length, surface, stress, seen)
+        return cls(
+            scene, rule, places, heights, areas, length, surface, stress, surface > 0.0, seen
+        )
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
@@ -163,7 +167,17 @@ class Elements:
         drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
         drag = (held * drag * slope * slope).sum(axis=(1, 2))
         return Pressed(
-            normal, lift, friction, stiff, drag, left, right, p.max(axis=(1, 2)), surface, stress
+            normal,
+            lift,
+            friction,
+            stiff,
+            drag,
+            left,
+            right,
+            p.max(axis=(1, 2)),
+            surface,
+            stress,
+            on,
         )
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
@@ -177,6 +191,8 @@ class Elements:
         size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
         damping = foundation.damping * size
         p = foundation.stiffness * g + damping * rise
+        flagged = (g > 0.0) & np.where(self.on[:, :, near], p >= 0.0, g >= old)
+        on, free = (np.where(rule.freezes > 0.0, *each) for each in ((flagged, on), (old, free)))
         surface = np.where(on, np.maximum(g, 0.0), free)
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
@@ -212,6 +228,7 @@ class Elements:
     def keep(self, time: float, near: slice, found: Pressed) -> None:
         """Accept the state at the end of a step."""
         self.surface[:, :, near], self.stress[:, :, :, near] = found.surface, found.stress
+        self.on[:, :, near] = found.on
         self.seen[near] = time
 
     def direction(self, forward: Any, speed: Array, depth: Array, moved: Array) -> Array:
@@ -228,7 +245,7 @@ class Elements:
     def relax(self, time: float, near: slice) -> None:
         """Relax the columns near the indenter from the time they were last in use to this one."""
         late = np.flatnonzero(self.seen[near] < time) + near.start
-        decay = np.minimum(self.rule.decay, 1e9)
+        decay = np.where(self.rule.freezes > 0.0, 0.0, np.minimum(self.rule.decay, 1e9))
         for k in late[self.surface[:, :, late].any(axis=(0, 1))]:
             gap = time - self.seen[k]
             if self.scene.foundation.arms:
@@ -292,11 +309,11 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     damper = np.array([rule.damper for rule in rules]) * scene.foundation.slow_damping
     damper *= static.load / (scene.foundation.stiffness * static.depth)
     drops = np.array([1.0 - rule.drops for rule in rules])
-    M_x, lifted, pulled = scene.drive_mass, np.zeros(len(rules)), np.zeros(len(rules))
+    M_x, (lifted, pulled) = scene.drive_mass, np.zeros((2, len(rules)))
 
-    def lift(sunk: Array, rate: Array, found: Pressed) -> Array:
+    def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
-        return scene.support.weight - spring - drops ** (rate < 0.0) * found.lift
+        return scene.support.weight - spring - kept * found.lift
 
     def pull(shift: Array, speed: Array, found: Pressed) -> Array:
         return found.friction - k_x * shift - drive.damping * speed
@@ -318,9 +335,14 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if h > 0.0 and (k_x or not held):
             sunk, shift, found = at(h)
             if not held:
-                a = IMPLICIT * lift(sunk, rate, found) + (1.0 - IMPLICIT) * lifted
                 slope = damper + IMPLICIT * h * k_s + found.slope
-                rate = rate + h * a / M / (1.0 + IMPLICIT * h * slope / M)
+                full, less = (
+                    rate + h * (IMPLICIT * lift(sunk, rate, found, kept) + (1.0 - IMPLICIT) * lifted)
+                    / M / (1.0 + IMPLICIT * h * slope / M)
+                    for kept in (1.0, drops)
+                )  # fmt: skip
+                # Where the whole force raises the indenter and what is left lowers it, it stays.
+                rate = np.where(full >= 0.0, full, np.minimum(less, 0.0))
             if k_x:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
@@ -328,7 +350,10 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         depth, along, found = at(h)
         elements.keep(now, near, found)
         if not held:
-            lifted = lift(depth, rate, found)
+            full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
+            lifted = np.where(
+                rate > 0.0, full, np.where(rate < 0.0, less, np.clip(0.0, full, less))
+            )
         if k_x:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate

@@ -31,11 +31,11 @@ class Explanation:
     """A fault that would explain a disagreement.
 
     `rank` orders them, up to 1. `explained` is the part of the difference (root mean square, relative to the
-    allowance) that the fault removes; the rank is a little lower for a fault with an unknown, and more so for
-    a parameter far from its value. For a fault inferred from a symptom the rank is an assumed strength of the
-    evidence, and `explained` is None. `enough` says whether the remaining difference is allowed; `factor` is
-    the fitted factor or shift, if any. `alike` are the parameters that the data cannot distinguish from this
-    one.
+    allowance, beyond the noise) that the fault removes; the rank is a little lower for a fault with an
+    unknown, and more so for a parameter far from its value. For a fault inferred from a symptom the rank is
+    an assumed strength of the evidence, and `explained` is None. `enough` says whether the remaining
+    difference is allowed; `factor` is the fitted factor or shift, if any. `alike` are the parameters that the
+    data cannot distinguish from this one.
     """
 
     name: str

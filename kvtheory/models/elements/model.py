@@ -166,17 +166,18 @@ def contact(c: Constants, depth: float, V: float = 0.0) -> Contact:
 def sunk_depth(c: Constants, V: float = 0.0) -> float:
     """Return the depth at which this contact carries the load: to the last digit at rest.
 
-    By Newton's method: the force is convex at rest, so that the steps never turn back; they stall where it
-    jumps with the number of elements.
+    By Newton's method for ln(force) over ln(depth), which is nearly straight: for a power law it needs one
+    step from anywhere. The steps stall where the force jumps with the number of elements.
     """
-    depth, step, width = c.depth, math.inf, 1.0
+    depth, step, width, law = c.depth, math.inf, 1.0, c.law
     while True:
         before, found = step, contact(c, depth, V)
         if c.surface.ball:
             width = 2.0 * c.surface.stretch * span(c.surface, depth)[1]
-        excess = found.force + c.spring * (depth - c.depth) - c.weight
-        step = excess / (c.law.stiffness * found.extent + c.law.damping * abs(V) * width + c.spring)
-        depth -= step
+        force, wanted = found.force + c.spring * depth, c.weight + c.spring * c.depth
+        slope = law.stiffness * found.extent + law.damping * abs(V) * width + c.spring
+        step = depth * math.expm1(math.log(wanted / force) * force / (slope * depth))
+        depth += step
         if not DEPTH_RTOL * depth < abs(step) < STALLED * abs(before):
             return depth
 

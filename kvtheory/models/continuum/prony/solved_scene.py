@@ -232,16 +232,16 @@ def certificate(
 
     Where only one of them flies, the contact of the other is narrow: its width is the error of an edge.
     """
-    here = fine.scaled_series(fine.motion.states(s), s)
+    own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
     if other is None:
-        errors = dict.fromkeys([*here, *ANYWHERE], math.inf)
-        return Certificate("estimated", why, {"time": 0.0, **errors}, AT_REST)
+        errors = dict.fromkeys([*own, *ANYWHERE], math.inf)
+        return Certificate("estimated", why, {**errors, "time": 0.0}, AT_REST)
+    here = fine.scaled_series(fine.motion.states(s), s)
     there = fine.scaled_series(other.states(s), s)
     run = other.run
     depths = together(run.memory, ARM_STATE)["accumulated_depth"][: other.counts.steps, :, 0]
     stiffness, deepest = together(run.arms, ARM)["stiffness"], np.abs(depths).max(axis=0)
     rounding = ROUNDING * float(np.sum(stiffness * deepest * (1.0 + deepest)))
-    own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
     errors, widths = {"time": 0.0}, np.zeros_like(s)
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
