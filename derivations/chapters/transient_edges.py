@@ -4,20 +4,30 @@ An edge at xi = X + Y peels while it moves inward through the foundation and tou
 outward: onto undisturbed ground, or onto ground that it left before and that has not yet recovered.
 """
 
+from typing import Any
+
 import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .contact_interval import E
+from .model import u_i
+from .tables import delta_0
 from .theorems import lam
 from .transient_memory import (
+    CLEAR,
     OF_TIME,
     SECTION,
     SURFACE,
+    compression,
     depth,
+    earlier,
     eta,
+    indenter,
+    margin_of,
     material,
+    pushed_by,
     sigma,
     time,
     travel,
@@ -51,8 +61,12 @@ LEFT_AT_ONCE, RIGHT_AT_ONCE = -E * drift - _radius, -E * drift + _radius
 """Edges on ground that was left at one instant."""
 
 _MOVING = {**OF_TIME, lam: sp.Derivative(travel, time)}
+_PRESSED_NOW = PRESSURE.subs(_MOVING).subs(xi, material + travel)
+_RADIUS = sp.sqrt(RADICAND).subs(_MOVING)
 _d_0, _moved = sp.symbols("d_0 m", real=True)
 _h, _ahead = sp.symbols("h k", positive=True)
+MEETS = sp.exp(time) * (indenter(time) - compression(time))
+"""Vanishes where the indenter meets the free surface."""
 edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
@@ -67,25 +81,14 @@ def _peeling(proof: Proof) -> None:
     An edge peels where the pressure vanishes: Eq. (33) in scaled form. If $d + d' + \lambda^2 < 0$ no element
     can be pressed: the indenter has left the foundation.
     """
-    pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
-    radius = sp.sqrt(RADICAND).subs(_MOVING)
-    proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
+    falls = (material + travel) ** 2 + 2 * (material + travel) * travel.diff(time) - depth
+    proof.root(_PRESSED_NOW, depth.diff(time), falls, "of an element that has no pressure")
+    proof.where(sp.Gt(RADICAND.subs(_MOVING), 0), "else no element can be pressed")
     for sign, edge in ((-1, r"\ell"), (1, "r")):
-        position = sign * radius - sp.Derivative(travel, time) - travel
-        loss = sp.diff(pressure, time).subs(material, position)
-        moving = sign * radius - sp.Derivative(travel, time)
-        proof.notation |= {
-            edge: sp.Lambda(time, moving),
-            r"\hat p": pressure,
-            "Y": travel,
-            "X": material,
-        }
-        proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
-        proof.equal(
-            *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
-            left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
-            right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
-        )
+        loss, gains, position = peels(sign)
+        proof.notation |= _peeling(edge, position)
+        proof.equal(loss, gains, _LEAVES, left=_lost(edge),
+                    right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)")  # fmt: skip
     proof.recall("scaled-pressure")
     proof.define(rho, sp.sqrt(RADICAND))
     proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
@@ -95,48 +98,65 @@ def _peeling(proof: Proof) -> None:
         proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
 
 
+def peels(sign: int) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Return the rate of the pressure at an edge that peels, its value, and the element at the edge."""
+    position = sign * _RADIUS - sp.Derivative(travel, time) - travel
+    loss = sp.diff(_PRESSED_NOW, time).subs(material, position)
+    return loss, 2 * sign * _RADIUS * sp.Derivative(position, time), position
+
+
+def _peeling(edge: str, position: sp.Expr) -> dict[str, Any]:
+    """Return what the letters of these displays mean."""
+    return {edge: sp.Lambda(time, position + travel), r"\hat p": _PRESSED_NOW, "Y": travel, "X": material,
+            r"\rho": _RADIUS, r"\lambda": sp.Derivative(travel, time)}  # fmt: skip
+
+
+def _lost(edge: str) -> str:
+    return rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}"
+
+
 _LEAVES = "the element there loses its pressure while the edge moves inward"
 
 
-@result("F10-touch", uses=("F8", "F9", "eq32"))
+@result("F10-touch")
 def _touching(proof: Proof) -> None:
     r"""Edges that touch.
 
     An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi =
-    \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
+    \mp\sqrt{d}$ (compare Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
     g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity $X_{\mathrm{e}}'$ of the
     edge through the foundation, and positive while it moves outward, because $\xi - E \eta$ has the sign of
     the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$ does not matter: either
     all of the ground was left at once, or each element when its pressure, and with it $\partial(e^{\sigma}
     g)/\partial\sigma$, vanished.
     """
+    proof.recall("scaled-pressure", u_i / delta_0)
     for sign, called, words in ((-1, left, "left"), (1, right, "right")):
         side = (xi, -sp.oo, 0) if sign < 0 else (xi, 0, sp.oo)
         ground = f"{words} edge on undisturbed ground"
-        proof.root(d - xi**2, xi, sign * sp.sqrt(d), ground, over=side, name=called)
+        proof.root(u_i / delta_0, xi, sign * sp.sqrt(d), ground, over=side, name=called)
     now = depth - (material + travel) ** 2
-    proof.notation |= {r"\hat p": PRESSURE.subs(_MOVING)}
     meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
     along = -2 * sp.exp(time) * (xi - E * eta)
-    in_time = sp.exp(time) * PRESSURE.subs(_MOVING)
-    proof.define(xi, material + travel)
-    proof.define(eta, material + travel.subs(time, sigma), r"where the element was at $\sigma$")
-    proof.define(E, sp.exp(sigma - time))
+    proof.define(xi, material + travel, "where the element is")
+    proof.define(eta, material + travel.subs(time, sigma), r"and where it was at $\sigma$")
+    proof.define(E, sp.exp(sigma - time), "the decay since then")
     proof.equal(
         *(sp.Derivative(meeting, material), along, "along the foundation"),
         left=rf"\frac{{\partial}}{{\partial X}} {condition}",
     )
-    proof.equal(
-        *(sp.Derivative(meeting, time), in_time, "in time"),
-        left=rf"\frac{{\partial}}{{\partial s}} {condition}", right=r"e^{s} \hat p",
-    )  # fmt: skip
-    speed = sp.Derivative(edge_path, time)
-    reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
-    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason)
+    for place in (time, sigma):
+        proof.define(indenter(place), now.subs(time, place), "the indenter at the element")
+    proof.recall("F8")
+    proof.equal(MEETS, meeting, "it vanishes where the surfaces meet")
+    in_time, speed = sp.Derivative(sp.exp(time) * now, time), sp.Derivative(edge_path, time)
+    proof.recall("F8-update", in_time, reason="in time")
+    reason = r"the edge $X_{\mathrm{e}}(s)$ keeps it at zero"
+    proof.root(in_time + along * speed, P, TOUCHING_PRESSURE, reason)
 
 
-@result("F10-signs", uses=("F9", "F10-peel"))
+@result("F10-signs")
 def _signs(proof: Proof) -> None:
     r"""Inward an edge peels, outward it touches.
 
@@ -144,34 +164,35 @@ def _signs(proof: Proof) -> None:
     0$: the elements there must lose their pressure, which vanishes. One that touches moves outward, for its
     pressure is not negative. A left edge is the mirror image.
     """
-    now, speed = depth - (material + travel) ** 2, sp.Derivative(edge_path, time)
-    margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
-    other = margin.subs(material, material - b)
+    speed, at_left = sp.Derivative(edge_path, time), {material: material - b, earlier: sigma}
+    margin = margin_of(material).subs(earlier, sigma)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
+    loss, gains, position = peels(1)
+    proof.notation |= _peeling("r", position)
+    proof.recall("F10-peel", (loss, gains))
+    proof.equal(loss / (2 * _RADIUS), sp.Derivative(position, time), "a right edge that peels moves inward",
+                left=rf"\frac{{1}}{{2 \rho}} {_lost('r')}", right=r"r' - \lambda")  # fmt: skip
     proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
-    proof.recall("F10-touch")
-    proof.holds(2 * rho * speed, "<", 0,
-                "F10-peel: an element that detaches on the right loses its pressure",
-                cases=(sp.Lt(speed, 0),))  # fmt: skip
-    proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
     inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
-    proof.define(
-        inside, other, r"at the left edge, not negative: it is in contact", right="D(X - b)"
-    )
+    proof.define(inside, margin_of(material).subs(at_left), "at the left edge", right="D(X - b)")
     proof.equal(
         *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D(X) = 0$"),
         left=r"2 e^{s} b \left(\xi - E \eta\right)",
         right=r"D_2 - D(X) + \left(e^{s} - e^{\sigma}\right) b^2",
     )
+    proof.recall("F9", margin_of(material), at=at_left)
+    pressed = (pushed_by()[0] - CLEAR).subs(earlier, sigma)
+    proof.equal(inside, pressed, "not negative: there is contact, $\\bar c(s) = 0$")
     proof.where(time > sigma, "an earlier instant")
     proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
+    proof.recall("F10-touch")
     proof.define(xi, E * eta + _ahead, "with $k > 0$")
     proof.equivalent(
         P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
     )
 
 
-@result("F10-instant", uses=("F10-touch",))
+@result("F10-instant")
 def _at_once(proof: Proof) -> None:
     r"""Ground left at one instant.
 
@@ -198,10 +219,15 @@ def _at_once(proof: Proof) -> None:
     proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
     proof.where(drift > 0, "the foundation has moved on")
     proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
+    proof.recall("F10-touch", MEETS, at={sigma: start})
+    for name, value in ((d, depth), (_d_0, depth.subs(time, start)), (_moved, travel - travel.subs(time, start)),
+                        (xi, material + travel), (E, sp.exp(start - time))):  # fmt: skip
+        proof.define(name, value, "at the element")
+    proof.equal(MEETS, sp.exp(time) * left_then, "the quadratic that vanishes at the edges")
     proof.done(right, RIGHT_AT_ONCE)
 
 
-@result("F10-instant-limits", uses=("F10-instant", "F10-peel", "F10-touch"))
+@result("F10-instant-limits")
 def _soon_and_late(proof: Proof) -> None:
     r"""Ground left at one instant: early and late.
 
@@ -209,7 +235,6 @@ def _soon_and_late(proof: Proof) -> None:
     $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after it
     $E$ vanishes, and $m$ is what the way has been.
     """
-    proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
     proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
     proof.equal(
@@ -217,18 +242,17 @@ def _soon_and_late(proof: Proof) -> None:
     )
     proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
     proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
-    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
-    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
+    proof.recall("F10-instant")
+    proof.recall("F10-peel", rho)
     means = E, lift, drift
-    for ends, edge, shown, words in (
-        ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
-        ((0, d, _moved), sp.sqrt(d), "0, d, m", "late: undisturbed ground"),
+    for ends, edge, words in (
+        ((1, d + d_s, lam), rho - lam, "soon: it peels, as in F10-peel"),
+        ((0, d, _moved), sp.sqrt(d), "late: as on undisturbed ground"),
     ):
-        place = sp.Subs(RIGHT_AT_ONCE, means, ends)
-        proof.equal(place, edge, words, left=f"r({shown})")
+        proof.equal(sp.Subs(right, means, ends), edge, words)
 
 
-@result("F10-gradual", uses=("F10-peel", "F10-touch"))
+@result("F10-gradual", uses=("F10-touch",))
 def _gradually(proof: Proof) -> None:
     r"""Ground left element by element.
 
@@ -243,11 +267,11 @@ def _gradually(proof: Proof) -> None:
     now, then = depth - (element + travel) ** 2, was_depth - (element + moved) ** 2
     meeting = sp.exp(time) * now - sp.exp(sigma) * then
     slope = -2 * sp.exp(time) * (xi - E * eta) * sp.Derivative(element, sigma)
-    peeling = eta**2 + 2 * eta * sp.Derivative(moved, sigma) - was_depth
     proof.define(xi, element + travel, "where the element is now")
     proof.define(eta, element + moved, r"and where it was at $\sigma$")
     proof.define(E, sp.exp(sigma - time))
-    proof.define(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$")
+    reason = r"no pressure there at $\sigma$"
+    proof.recall("F10-peel", depth.diff(time), reason=reason, at={time: sigma, material: element})
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
         left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "

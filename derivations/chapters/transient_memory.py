@@ -118,16 +118,17 @@ def _memory(proof: Proof) -> None:
     at_last = {earlier: sigma}
     proof.define(pushed.subs(at_last), sp.S.Zero, r"no pressure since $\sigma$, the last contact")
     proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
-    proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(sp.Gt(time, sigma), "that contact is over")
-    proof.greatest(
-        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
-        surplus=pushed + sp.exp(earlier) * _clear(earlier),
-    )  # fmt: skip
     value = sp.exp(sigma - time) * g(sigma)
     proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
     since = kept - sp.exp(sigma) * u(sigma)
     proof.root(*(since, u(time), value, r"the free element since $\sigma$"))
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.greatest(
+        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
+        surplus=pushed + sp.exp(earlier) * _clear(earlier),
+    )  # fmt: skip
+    proof.done(u(time), value)
 
 
 def pushed_by() -> tuple[sp.Expr, sp.Expr]:
@@ -216,7 +217,7 @@ def _remainder(proof: Proof) -> None:
     proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
 
 
-def _margin(position: sp.Expr) -> sp.Expr:
+def margin_of(position: sp.Expr) -> sp.Expr:
     """Return e**s g now minus e**s_1 g at an earlier instant, for the element X = position."""
     now = depth - (position + travel) ** 2
     return sp.exp(time) * now - sp.exp(earlier) * now.subs(time, earlier)
@@ -224,9 +225,9 @@ def _margin(position: sp.Expr) -> sp.Expr:
 
 _one, _other = sp.symbols("X_1 X_2", real=True)
 _first, _second = sp.symbols("D_1 D_2", real=True)
-_BETWEEN, _CHORD = _margin(mix * _one + (1 - mix) * _other), mix * _first + (1 - mix) * _second
+_BETWEEN, _CHORD = margin_of(mix * _one + (1 - mix) * _other), mix * _first + (1 - mix) * _second
 _BULGE = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (_one - _other) ** 2
-_MARGIN = sp.Lambda(material, _margin(material))
+_MARGIN = sp.Lambda(material, margin_of(material))
 """e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
 
 
@@ -242,7 +243,7 @@ def _interval(proof: Proof) -> None:
     the contact, for any drive $\lambda(s)$ and depth $d(s)$. That the differences are concave needs the
     parabola, whose curvature is the same everywhere; that the contact is one interval does not.
     """
-    margin = _margin(material)
+    margin = margin_of(material)
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")
     proof.define(eta, sp.exp(time - earlier))
@@ -250,14 +251,14 @@ def _interval(proof: Proof) -> None:
         *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
         left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
     )
+    contact_condition(proof, _HEIGHT, _HEIGHT.subs(time, earlier), margin, "D(X)")
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements in contact")
     for name, place, shown in ((_first, _one, "X_1"), (_second, _other, "X_2")):
-        proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
+        proof.define(name, margin_of(place), f"at ${shown}$, not negative", right=f"D({shown})")
     reason = "its chord, and how far it bulges above"
     proof.equal(_BETWEEN, _CHORD + _BULGE, reason, left=r"D(\theta X_1 + (1 - \theta) X_2)")
     proof.holds(_BULGE, ">=", 0, _CONVEX)
-    contact_condition(proof, _HEIGHT, _HEIGHT.subs(time, earlier), margin, "D(X)")
     proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
 
