@@ -4,8 +4,6 @@ An edge at xi = X + Y peels while it moves inward through the foundation and tou
 outward: onto undisturbed ground, or onto ground that it left before and that has not yet recovered.
 """
 
-from typing import Any
-
 import sympy as sp
 
 from ..engine.chapter import Chapter
@@ -62,7 +60,6 @@ LEFT_AT_ONCE, RIGHT_AT_ONCE = -E * drift - _radius, -E * drift + _radius
 
 _MOVING = {**OF_TIME, lam: sp.Derivative(travel, time)}
 _PRESSED_NOW = PRESSURE.subs(_MOVING).subs(xi, material + travel)
-_RADIUS = sp.sqrt(RADICAND).subs(_MOVING)
 _d_0, _moved = sp.symbols("d_0 m", real=True)
 _h, _ahead = sp.symbols("h k", positive=True)
 MEETS = sp.exp(time) * (indenter(time) - compression(time))
@@ -83,12 +80,6 @@ def _peeling(proof: Proof) -> None:
     """
     falls = (material + travel) ** 2 + 2 * (material + travel) * travel.diff(time) - depth
     proof.root(_PRESSED_NOW, depth.diff(time), falls, "of an element that has no pressure")
-    proof.where(sp.Gt(RADICAND.subs(_MOVING), 0), "else no element can be pressed")
-    for sign, edge in ((-1, r"\ell"), (1, "r")):
-        loss, gains, position = peels(sign)
-        proof.notation |= _peeling(edge, position)
-        proof.equal(loss, gains, _LEAVES, left=_lost(edge),
-                    right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)")  # fmt: skip
     proof.recall("scaled-pressure")
     proof.define(rho, sp.sqrt(RADICAND))
     proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
@@ -98,24 +89,25 @@ def _peeling(proof: Proof) -> None:
         proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
 
 
-def peels(sign: int) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Return the rate of the pressure at an edge that peels, its value, and the element at the edge."""
-    position = sign * _RADIUS - sp.Derivative(travel, time) - travel
-    loss = sp.diff(_PRESSED_NOW, time).subs(material, position)
-    return loss, 2 * sign * _RADIUS * sp.Derivative(position, time), position
+@result("F10-inward")
+def _inward(proof: Proof) -> None:
+    r"""An edge that peels moves inward.
 
-
-def _peeling(edge: str, position: sp.Expr) -> dict[str, Any]:
-    """Return what the letters of these displays mean."""
-    return {edge: sp.Lambda(time, position + travel), r"\hat p": _PRESSED_NOW, "Y": travel, "X": material,
-            r"\rho": _RADIUS, r"\lambda": sp.Derivative(travel, time)}  # fmt: skip
-
-
-def _lost(edge: str) -> str:
-    return rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}"
-
-
-_LEAVES = "the element there loses its pressure while the edge moves inward"
+    The elements there must lose their pressure, which vanishes. A left edge is the mirror image.
+    """
+    for name, value in _MOVING.items():
+        proof.define(name, value, "at every instant")
+    proof.recall("F10-peel", rho, right)
+    proof.where(sp.Gt(RADICAND, 0), "else no element can be pressed")
+    proof.notation |= {r"\hat p": _PRESSED_NOW, "X": material, "Y": travel}
+    proof.equal(
+        *(sp.Subs(sp.Derivative(_PRESSED_NOW, time), material, right - travel),),
+        *(
+            2 * rho * sp.Derivative(right - travel, time),
+            "negative while a right edge moves inward",
+        ),
+        left=r"\left.\frac{d\hat p}{ds}\right|_{X = r - Y}",
+    )
 
 
 @result("F10-touch")
@@ -123,12 +115,12 @@ def _touching(proof: Proof) -> None:
     r"""Edges that touch.
 
     An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi =
-    \mp\sqrt{d}$ (compare Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
-    g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity $X_{\mathrm{e}}'$ of the
-    edge through the foundation, and positive while it moves outward, because $\xi - E \eta$ has the sign of
-    the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$ does not matter: either
-    all of the ground was left at once, or each element when its pressure, and with it $\partial(e^{\sigma}
-    g)/\partial\sigma$, vanished.
+    \mp\sqrt{d}$ (compare Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) =
+    e^{\sigma} g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity
+    $X_{\mathrm{e}}'$ of the edge through the foundation, and positive while it moves outward, because $\xi -
+    E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$
+    does not matter: either all of the ground was left at once, or each element when its pressure, and with it
+    $\partial(e^{\sigma} g)/\partial\sigma$, vanished.
     """
     proof.recall("scaled-pressure", u_i / delta_0)
     for sign, called, words in ((-1, left, "left"), (1, right, "right")):
@@ -136,20 +128,19 @@ def _touching(proof: Proof) -> None:
         ground = f"{words} edge on undisturbed ground"
         proof.root(u_i / delta_0, xi, sign * sp.sqrt(d), ground, over=side, name=called)
     now = depth - (material + travel) ** 2
-    meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
-    condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
     along = -2 * sp.exp(time) * (xi - E * eta)
+    proof.define(E, sp.exp(sigma - time), r"the decay since $\sigma$")
     proof.define(xi, material + travel, "where the element is")
-    proof.define(eta, material + travel.subs(time, sigma), r"and where it was at $\sigma$")
-    proof.define(E, sp.exp(sigma - time), "the decay since then")
-    proof.equal(
-        *(sp.Derivative(meeting, material), along, "along the foundation"),
-        left=rf"\frac{{\partial}}{{\partial X}} {condition}",
-    )
+    proof.define(_moved, travel - travel.subs(time, sigma), "how far it has moved")
+    proof.define(d, depth, "the depth now")
+    proof.define(_d_0, depth.subs(time, sigma), "and then")
     for place in (time, sigma):
         proof.define(indenter(place), now.subs(time, place), "the indenter at the element")
     proof.recall("F8")
-    proof.equal(MEETS, meeting, "it vanishes where the surfaces meet")
+    reason = "it vanishes where the surfaces meet"
+    proof.equal(MEETS, sp.exp(time) * (d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)), reason)
+    proof.define(eta, material + travel.subs(time, sigma), r"and where it was at $\sigma$")
+    proof.equal(sp.Derivative(MEETS, material), along, "along the foundation")
     in_time, speed = sp.Derivative(sp.exp(time) * now, time), sp.Derivative(edge_path, time)
     proof.recall("F8-update", in_time, reason="in time")
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps it at zero"
@@ -158,20 +149,14 @@ def _touching(proof: Proof) -> None:
 
 @result("F10-signs")
 def _signs(proof: Proof) -> None:
-    r"""Inward an edge peels, outward it touches.
+    r"""An edge that touches moves outward.
 
-    In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, $X_{\mathrm{e}}' <
-    0$: the elements there must lose their pressure, which vanishes. One that touches moves outward, for its
-    pressure is not negative. A left edge is the mirror image.
+    In the foundation a right edge is at $X_{\mathrm{e}}$. Where it touches it moves outward, for its pressure
+    is not negative. A left edge is the mirror image.
     """
     speed, at_left = sp.Derivative(edge_path, time), {material: material - b, earlier: sigma}
     margin = margin_of(material).subs(earlier, sigma)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
-    loss, gains, position = peels(1)
-    proof.notation |= _peeling("r", position)
-    proof.recall("F10-peel", (loss, gains))
-    proof.equal(loss / (2 * _RADIUS), sp.Derivative(position, time), "a right edge that peels moves inward",
-                left=rf"\frac{{1}}{{2 \rho}} {_lost('r')}", right=r"r' - \lambda")  # fmt: skip
     proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
     inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
     proof.define(inside, margin_of(material).subs(at_left), "at the left edge", right="D(X - b)")
@@ -199,7 +184,6 @@ def _at_once(proof: Proof) -> None:
     A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. With $E =
     e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in $\xi$.
     """
-    left_then = d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)
     quotient = (lift + E * (1 - E) * drift**2) / (E * drift + _radius)
     whole = (zeta, start, time)
     inner = depth.subs(time, zeta)
@@ -212,18 +196,14 @@ def _at_once(proof: Proof) -> None:
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
     proof.define(drift, _moved / (1 - E), "$m = Y(s) - Y(s_0)$")
+    proof.recall("F10-touch", MEETS, at={sigma: start})
     middle = -E * drift
     proof.where(E < 1, "time has passed")
     proof.where(sp.Gt(lift + E * drift**2, 0), "else the indenter is above all of this ground")
-    proof.root(left_then, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
-    proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
+    proof.root(MEETS, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
+    proof.root(MEETS, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
     proof.where(drift > 0, "the foundation has moved on")
     proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
-    proof.recall("F10-touch", MEETS, at={sigma: start})
-    for name, value in ((d, depth), (_d_0, depth.subs(time, start)), (_moved, travel - travel.subs(time, start)),
-                        (xi, material + travel), (E, sp.exp(start - time))):  # fmt: skip
-        proof.define(name, value, "at the element")
-    proof.equal(MEETS, sp.exp(time) * left_then, "the quadratic that vanishes at the edges")
     proof.done(right, RIGHT_AT_ONCE)
 
 
