@@ -78,10 +78,10 @@ result = Chapter(SECTION)
 def _runge_kutta(proof: Proof) -> None:
     r"""Stability limit of the paper's scheme.
 
-    The fast mode, $d'' = -(b/\varepsilon) d'$ (compare F12), is the damping of the mass $M$ by the damping $C L$ of
-    all elements in contact. A step of length $\Delta t$ of the classical Runge-Kutta method multiplies the
-    velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = 2 \Delta x/V$ the paper's simulation becomes
-    unstable below $V = 2 \Delta x\, C L/(2.785 M)$.
+    The fast mode, $d'' = -(b/\varepsilon) d'$ (compare F12), is the damping of the mass $M$ by the damping $C
+    L$ of all elements in contact. A step of length $\Delta t$ of the classical Runge-Kutta method multiplies
+    the velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = 2 \Delta x/V$ the paper's simulation
+    becomes unstable below $V = 2 \Delta x\, C L/(2.785 M)$.
     """
     proof.recall("F12-linear", quadratic)
     proof.define(b, DAMPING, "of the length of the contact")
@@ -122,7 +122,8 @@ def _mean_force(proof: Proof) -> None:
     """Mean force on an element.
 
     The memory of F8 gives the pressure on an element, averaged over a step with the weight $e^{s}$, from the
-    compressions at its ends alone. It is never negative, and differs from the plain mean by $h^2/12$ times the rate of the pressure.
+    compressions at its ends alone. It is never negative, and differs from the plain mean by $h^2/12$ times
+    the rate of the pressure.
     """
     u = compression
     over = (zeta, time, time + _h)

@@ -42,13 +42,13 @@ START = _v**POWER / 2 - 2 * _v ** sp.Rational(5, 2) / 5 - sp.sqrt(_v) / 8
 def _rim(proof: Proof) -> None:
     r"""Strips at the rim of a ball.
 
-    The strip at the distance $\psi^2$ from the rim, in units of the half width, carries this load, in the units $K \delta a$
-    of the middle strip (compare F20-load). It begins in proportion to the distance, at rest with its power
-    $\frac{3}{2}$, and goes on in powers of $\psi$.
+    The strip at the distance $\psi^2$ from the rim, in units of the half width, carries this load, in the
+    units $K \delta a$ of the middle strip (compare F20-load). It begins in proportion to the distance, at
+    rest with its power $\frac{3}{2}$, and goes on in powers of $\psi$.
 
     Argued: Its contact is as long as an element where $\psi$ is of the order of $\Delta$ over the half
-    length: strips nearer to the rim carry the order of $\Delta^4$, and by element-bent all others are
-    wrong by the order of $\Delta^2$. So is a ball, whatever the spacing of its strips.
+    length: strips nearer to the rim carry the order of $\Delta^4$, and by element-bent all others are wrong
+    by the order of $\Delta^2$. So is a ball, whatever the spacing of its strips.
     """
     width = _root**2 * (2 - _root**2)
     proof.where(2 - _root**2 > 0, "on this side of the opposite rim")
