@@ -42,7 +42,7 @@ place = sp.Symbol("xi", real=True)
 _h, (_now, _then) = sp.Function("h", real=True), sp.symbols("d d_1", real=True)
 DIFFERENCE = sp.exp(time) * (_now - _h(place)) - sp.exp(earlier) * (_then - _h(place - m))
 """What decides about the contact of an element, for a shape h."""
-_gain = sp.Symbol("J", real=True)
+_gain, _ahead = sp.symbols("J D", real=True)
 _CASE = "It meets the condition of (F9-shapes): its contact is one interval."
 result = Chapter(SECTION)
 
@@ -243,21 +243,19 @@ def _two_slopes(proof: Proof) -> None:
     def height(place: sp.Expr) -> sp.Expr:
         return sp.Abs(place) + 3 * sp.Max(0, sp.Abs(place) - 1)
 
-    def lead(spot: sp.Expr, surface: sp.Expr) -> sp.Expr:
-        """Return how far the indenter is below the surface that has relaxed since."""
-        return (sp.Rational(15, 8) - height(spot)) - surface
-
     later = sp.log(2)
-    proof.notation["D"] = sp.Lambda(place, lead(place, half * (4 - height(place - half))))
     proof.define(indenter(sp.S.Zero), 4 - height(place - half), "at rest")
     proof.recall("F8", at={sigma: sp.S.Zero, time: later})
+    proof.define(
+        _ahead,
+        sp.Rational(15, 8) - height(place) - compression(later),
+        "how far it is below the surface",
+    )
     for spot, value, what in (
         (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
         (0, "1/8", "in contact again"),
         ("-19/16", 0, "left edge of one contact"), ("-5/8", 0, "its right edge"),
         ("-1/4", 0, "left edge of the other"), ("1/12", 0, "its right edge"),
     ):  # fmt: skip
-        there, found = lead(place, compression(later)), sp.Rational(value)
-        proof.equal(sp.Subs(there, place, sp.Rational(spot)), found, what,
-                    left=rf"D({sp.latex(sp.Rational(spot))})")  # fmt: skip
-    proof.done(sp.Subs(there, place, -half), -sp.Rational(1, 8))
+        proof.equal(sp.Subs(_ahead, place, sp.Rational(spot)), sp.Rational(value), what)
+    proof.done(sp.Subs(_ahead, place, -half), -sp.Rational(1, 8))
