@@ -23,7 +23,7 @@ CHAPTERS: tuple[ModuleType, ...] = tuple(
         "viscoelastic_ball",
         *("transient_scaling", "transient_memory", "contact_interval", "transient_edges"),
         *("transient_motion", "transient_rates", "transient_balance"),
-        *("spring_drive", "spring_stability", "spring_limits", "spring_ringing"),
+        *("spring_drive", "spring_stability", "spring_limits"),
         *("rubber_drive", "rubber_transient"),
         *("drop", "layer", "body"),
         *("element_schemes", "element_edges", "element_strips", "element_arms"),

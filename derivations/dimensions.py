@@ -41,14 +41,14 @@ _ALIKE = (sp.Abs, sp.Max, sp.Min, sp.UnevaluatedExpr)
 """Expressions of the dimension of their arguments."""
 
 _FALL = {r"\breve H": "N/m³"}
+_SHAPE = {"h": "1"}
+_LENGTHS = {r"\hat y": "m", r"\bar m": "m", r"\chi": "1/m", "J": "1/m"}
 OWN: dict[str, dict[str, str]] = {
     "F17-parts": dict.fromkeys((r"\breve P", r"\breve D", r"\breve E"), "N/m³"),
     **dict.fromkeys(("F17-sign", "F18-glass", "F27-steepest", "F27-close"), _FALL),
-    "F8": {"p": "1"},
-    "F9-difference": {"h": "1"},
-    **{each: {r"\hat y": "m"} for each in ("F9-power", "F9-catenary")},
+    **dict.fromkeys(("F9-difference", "F9-shapes"), _SHAPE),
+    **dict.fromkeys(("F9-power", "F9-catenary"), _LENGTHS),
     "F9-circle": {"R": "1"},
-    "F22-ringing": {"d_r": "1"},
     "eq14": {"f_z": "N/m"},
     "eq15": {"f_x": "N/m"},
     "dense-row": {"f_z": "N/m", "f_x": "N/m"},

@@ -12,7 +12,6 @@ import sympy as sp
 from . import symbols as sym
 from .catalogue import catalogue
 from .chapters.transient_edges import RIGHT_AT_ONCE
-from .chapters.transient_motion import NORMAL_FORCE, START
 from .code_printer import CodePrinter
 from .emit import FORMS, HALF, OF_ARM, Form, number, parts, replace, sentence
 from .symbols import E, a, b, d, d_s, kappa, l, lam, q, rho, right
@@ -56,9 +55,9 @@ TRANSIENT = (
          "p/(K delta) at x = y a; with -l for l, at x = -y a"),
     Form("peeling_edge", "F10-instant", RIGHT_AT_ONCE, (d, d_s, lam), "the right edge while it peels", _now),
     Form("peeling_normal_force", "F11-peel", sym.f_normal, (b, rho), "f_z from the width b and rho"),
-    Form("force_per_depth", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d), (a, right, lam, d_s),
+    Form("force_per_depth", "F11-start", sp.Derivative(sym.f_normal, d), (a, right, lam, d_s),
          "df_z/dd after a start"),
-    Form("force_per_rate", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d_s), (a, right),
+    Form("force_per_rate", "F11-start", sp.Derivative(sym.f_normal, d_s), (a, right),
          "df_z/dd' after a start"),
 )  # fmt: skip
 

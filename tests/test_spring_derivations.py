@@ -6,12 +6,7 @@ import mpmath as mp
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.chapters import (
-    rubber_drive,
-    spring_drive,
-    spring_ringing,
-    spring_stability,
-)
+from kvtheory.derivations.chapters import rubber_drive, spring_drive, spring_stability
 
 import kvtheory as kv
 from tests import reference_stability as reference
@@ -79,21 +74,6 @@ def test_falling_friction_is_the_slope_of_the_steady_curve(scene):
     found = value(spring_stability.RISE, {s.q: q, s.own_rise: own, **shares})
     stiffness = (mp.mpf(3) / 4 * known[s.per_depth] + kappa) / across
     assert abs(found - stiffness * slope / (along + damper)) <= abs(found) * mp.mpf(10) ** -15
-
-
-@pytest.mark.parametrize(("left", "right"), [("-1.2", "0.1"), ("0.3", "0.9"), ("-1", "1")])
-def test_the_dampers_of_a_contact_take_no_less_than_those_of_a_depth_that_follows(left, right):
-    """The power by quadrature of the squared rates of compression, the least one by search."""
-    low, high, slides = mp.mpf(left), mp.mpf(right), mp.mpf("0.7")
-
-    def power(sinks):
-        return mp.quad(lambda xi: 0.75 * (sinks - 2 * xi * slides) ** 2, [low, high])
-
-    least = value(spring_ringing.RESISTANCE, {s.length: high - low}) * slides**2
-    follows = mp.findroot(lambda sinks: mp.diff(power, sinks), 0)
-    assert abs(follows - (low + high) * slides) < mp.mpf(10) ** -15
-    assert abs(power(follows) - least) < mp.mpf(10) ** -25
-    assert min(power(follows + step) for step in (-1, -0.01, 0.01, 1)) > least
 
 
 def kernel(n, m):

@@ -11,7 +11,16 @@ from ..engine.nomenclature import function, letter, symbol
 from ..engine.step import Proof, tex
 from .model import R
 from .power_law import L, excess
-from .transient_memory import SECTION, earlier, time, zeta
+from .transient_memory import (
+    SECTION,
+    compression,
+    contact_condition,
+    earlier,
+    indenter,
+    sigma,
+    time,
+    zeta,
+)
 from .wedge import inclination
 
 letter(r"\bar k", r"relaxed depth less the present one, $E \bar d_1 - d$")
@@ -29,6 +38,12 @@ ratio_near = symbol("rho_1", "ratio of slopes at one position")
 ratio_now = symbol("rho_2", "ratio of slopes at another position")
 
 m = travelled
+place = sp.Symbol("xi", real=True)
+_h, (_now, _then) = sp.Function("h", real=True), sp.symbols("d d_1", real=True)
+DIFFERENCE = sp.exp(time) * (_now - _h(place)) - sp.exp(earlier) * (_then - _h(place - m))
+"""What decides about the contact of an element, for a shape h."""
+_gain, _ahead = sp.symbols("J D", real=True)
+_CASE = "It meets the condition of (F9-shapes): its contact is one interval."
 result = Chapter(SECTION)
 
 
@@ -42,32 +57,31 @@ def _height(place: sp.Expr) -> sp.Expr:
     return sp.Integral(_slope(zeta), (zeta, 0, place))
 
 
-@result("F9-difference", uses=("F8",))
+TURNING = sp.diff(_height(y) - E * _height(y + m), y)
+"""f' ahead of the tip."""
+
+
+@result("F9-difference")
 def _condition(proof: Proof) -> None:
     r"""Contact condition from one past instant.
 
     An element is now at $\xi$, where the indenter is at $d - h(\xi)$; at $s_1 < s$ it was at $\xi - m$, and
-    the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ may be scaled arbitrarily. By F8 the element
-    is in contact if and only if $D_1 \ge 0$ for every past instant and $e^{s} (d - h) \ge u_0$, which is zero
-    or the same difference for $s_1 = 0$; and $d \ge h(\xi)$ on one interval, because $h$ is even and convex.
+    the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ may be scaled arbitrarily. As in (F9) the
+    element is in contact if and only if $D_1 \ge 0$ for every past instant and $e^{s} (d - h) \ge u_0$, which
+    is zero or the same difference for $s_1 = 0$; and $d \ge h(\xi)$ on one interval, because $h$ is even and
+    convex.
     """
-    h = sp.Function("h", real=True)
-    now, then = sp.symbols("d d_1", real=True)
-    place = sp.Symbol("xi", real=True)
-    margin = sp.exp(time) * (now - h(place)) - sp.exp(earlier) * (then - h(place - m))
-    form = sp.exp(time) * ((now - E * then) + (-h(place) + E * h(place - m)))
-    proof.notation |= {"D_1": margin, "f": sp.Lambda(place, E * h(place - m) - h(place))}
+    E_then = E * _h(place - m)
+    proof.notation |= {"D_1": DIFFERENCE, "f": sp.Lambda(place, E_then - _h(place))}
     proof.define(E, sp.exp(earlier - time), "less than 1")
-    proof.equal(
-        margin,
-        form,
-        r"a constant, and $f(\xi) = E h(\xi - m) - h(\xi)$",
-        left="D_1",
-        right=r"e^{s} \left[(d - E d_1) + f(\xi)\right]",
-    )
+    form = sp.exp(time) * ((_now - E * _then) + (E_then - _h(place)))
+    proof.equal(DIFFERENCE, form, r"a constant, and $f(\xi) = E h(\xi - m) - h(\xi)$", left="D_1",
+                right=r"e^{s} \left[(d - E d_1) + f(\xi)\right]")  # fmt: skip
+    contact_condition(proof, _now - _h(place), _then - _h(place - m), DIFFERENCE, "D_1")
+    proof.done(DIFFERENCE, form)
 
 
-@result("F9-shapes", uses=("F8", "F9-difference"))
+@result("F9-shapes")
 def _interval(proof: Proof) -> None:
     r"""The contact is one interval, for many shapes.
 
@@ -82,16 +96,21 @@ def _interval(proof: Proof) -> None:
     has a kink, concavity itself, $\rho(y_2) \le \rho(y_1)$ for $y_2 > y_1$, takes the place of the
     integral.
     """
-    ahead = -_height(y) + E * _height(y + m)
+    relaxed = E * _h(place - m) - _h(place)
+    proof.notation |= {"D_1": DIFFERENCE, "f": relaxed}
+    proof.recall("F9-difference")
+    proof.equal(sp.Derivative(DIFFERENCE, place), sp.exp(time) * sp.Derivative(relaxed, place),
+                "$D_1$ rises and falls with $f$", left=r"\frac{\partial D_1}{\partial \xi}",
+                right=r"e^{s} \frac{\partial f}{\partial \xi}")  # fmt: skip
     between = -_height(y) + E * _height(m - y)
     behind = -_height(y) + E * _height(y - m)
     ratio = sp.exp(logarithm(y + m) - logarithm(y))
     turning = _slope(y) * (1 - E * ratio)
     proof.notation |= {
         "h'(y)": _slope(y), "h'(m - y)": _slope(m - y), "h'(y - m)": _slope(y - m),
-        r"\rho(y)": ratio, "f'(-y)": -sp.diff(ahead, y), "f'(y)": sp.diff(between, y),
+        r"\rho(y)": ratio, "f'(-y)": TURNING, "f'(y)": sp.diff(between, y),
     }  # fmt: skip
-    proof.equal(-sp.diff(ahead, y), turning, r"ahead of the tip, with $\rho = h'(y + m)/h'(y)$",
+    proof.equal(TURNING, turning, r"ahead of the tip, with $\rho = h'(y + m)/h'(y)$",
                 left=r"f'(-y)", right=r"h'(y) \left[1 - E \rho(y)\right]")  # fmt: skip
     falling = _slope(y) + E * _slope(m - y)
     proof.equal(-sp.diff(between, y), falling, r"at $0 < \xi = y < m$", left="-f'(y)",
@@ -102,38 +121,42 @@ def _interval(proof: Proof) -> None:
     proof.equal(-sp.diff(behind, y), convex, r"at $\xi = y > m$: the first term is positive, the second not "
                 "negative, because $h'$ does not fall", left="-f'(y)",
                 right=r"(1 - E) h'(y) + E \left[h'(y) - h'(y - m)\right]")  # fmt: skip
-    gain = sp.Symbol("J", real=True)
     rate = sp.Derivative(slope_rate(zeta), zeta)
     proof.integral(
-        *(gain, rate, (zeta, y, y + m), slope_rate(zeta)),
+        *(_gain, rate, (zeta, y, y + m), slope_rate(zeta)),
         r"$J$ is the slope of $\ln \rho$, with $\chi = (\ln h')'$: not positive, as $\ln h'$ is concave",
     )  # fmt: skip
-    proof.done(-sp.diff(ahead, y), turning)
+    proof.done(TURNING, turning)
 
 
-def _shape(proof: Proof, slope: sp.Expr, form: sp.Expr) -> None:
-    curvature = -sp.Derivative(sp.log(slope), (y, 2))
-    proof.notation[r"(\ln h')''"] = -curvature
-    proof.equal(curvature, form, f"with $h' = {tex(slope)}$", left=r"-(\ln h')''")
-    if form != 0:
-        proof.holds(form, ">", 0, r"$\ln h'$ is concave")
-    proof.done(curvature, form)
+def _shape(proof: Proof, slope: sp.Expr, rate: sp.Expr, gain: sp.Expr) -> None:
+    """Prove that the slope of ln h' falls, and with it the ratio of slopes of F9-shapes."""
+    proof.equal(sp.Derivative(sp.log(slope), y), rate, r"slope of $\ln h'$")
+    for place in (y, y + m):
+        proof.define(slope_rate(place), rate.subs(y, place), r"$\chi$ of F9-shapes")
+    proof.recall("F9-shapes", _gain)
+    proof.equal(_gain, gain, r"slope of $\ln \rho$")
+    if gain != 0:
+        proof.holds(gain, "<", 0, r"$\rho$ falls: $\ln h'$ is concave")
+    proof.done(_gain, gain)
 
 
-for _label, _name, _text, _rise, _form in (
+for _label, _name, _text, _rise, _rate, _form in (
     (
         "power",
         "every power law",
         r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
         (y / L) ** excess,
-        excess / y**2,
+        excess / y,
+        -excess * m / (y * (y + m)),
     ),
     (
         "catenary",
         "a catenary",
         r"$h = L (\cosh(x/L) - 1)$.",
         sp.sinh(y / L),
-        1 / (L**2 * sp.sinh(y / L) ** 2),
+        sp.cosh(y / L) / (L * sp.sinh(y / L)),
+        -sp.sinh(m / L) / (L * sp.sinh(y / L) * sp.sinh((y + m) / L)),
     ),
     (
         "wedge",
@@ -142,18 +165,19 @@ for _label, _name, _text, _rise, _form in (
         "changes nothing: $f$ rises, or falls, on either side as before.",
         inclination,
         sp.S.Zero,
+        sp.S.Zero,
     ),
 ):
-    result(f"F9-{_label}", title=f"The contact is one interval: {_name}", text=_text, uses=("F9-shapes",),
-           slope=_rise, form=_form)(_shape)  # fmt: skip
+    result(f"F9-{_label}", title=f"Concave logarithm of the slope: {_name}", text=f"{_text} {_CASE}",
+           slope=_rise, rate=_rate, gain=_form)(_shape)  # fmt: skip
 
 
-@result("F9-circle", uses=("F9-shapes",))
+@result("F9-circle")
 def _circle(proof: Proof) -> None:
-    r"""The contact is one interval: a circle.
+    r"""Concave logarithm of the slope: a circle.
 
-    $h = R - \sqrt{R^2 - x^2}$ meets the condition for $|x| < R/\sqrt{3}$: the theorem holds as long as no
-    element is touched farther out, that is, up to a depth of $0.18 R$.
+    $h = R - \sqrt{R^2 - x^2}$ meets the condition of (F9-shapes) for $|x| < R/\sqrt{3}$: the contact is one
+    interval as long as no element is touched farther out, that is, up to a depth of $0.18 R$.
     """
     slope = y / sp.sqrt(R**2 - y**2)
     form = R**2 * (R**2 - 3 * y**2) / (y**2 * (R**2 - y**2) ** 2)
@@ -167,7 +191,7 @@ def _circle(proof: Proof) -> None:
     proof.done(curvature, form)
 
 
-@result("F9-converse", uses=("F9-shapes",))
+@result("F9-converse")
 def _converse(proof: Proof) -> None:
     r"""Necessary condition for a single contact.
 
@@ -180,23 +204,30 @@ def _converse(proof: Proof) -> None:
     these elements were compressed, the contact consists of two parts, one on each side of the valley.
     """
     middle = 2 / (ratio_near + ratio_now)
+    gain = ratio_gain / (2 * ratio_near + ratio_gain)
     proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}
     proof.define(
         ratio_now, ratio_near + ratio_gain, r"$\rho(y_2) > \rho(y_1)$ for some $y_2 > y_1$ and $m$"
     )
     proof.define(E, middle, "a time that has passed; less than 1, because $h'$ does not fall")
-    for sign, ratio, name, what in (
+    for sign, ratio, spot, what in (
         (1, ratio_near, "y_1", r"$f$ rises at $-y_1$"),
         (-1, ratio_now, "y_2", r"it falls at $-y_2$, farther out"),
     ):  # fmt: skip
-        form = ratio_gain / (2 * ratio_near + ratio_gain)
-        proof.equal(sign * (1 - E * ratio), form, what,
-                    left=rf"{'-' if sign < 0 else ''}\left[1 - E \rho({name})\right]")  # fmt: skip
-    proof.holds(form, ">", 0, "so that between them $f$ has a valley")
+        there = sp.Symbol(spot, positive=True)
+        proof.define(
+            logarithm(there + m), logarithm(there) + sp.log(ratio), rf"$\rho({spot})$ in logarithms"
+        )
+        proof.recall("F9-shapes", at={y: there})
+        turns, slope = TURNING.subs(y, there), _slope(there)
+        proof.notation |= {f"f'(-{spot})": turns, f"h'({spot})": slope}
+        proof.equal(sign * turns, slope * gain, what, left=f"{'-' if sign < 0 else ''}f'(-{spot})",
+                    right=rf"h'({spot}) {tex(gain)}")  # fmt: skip
+    proof.holds(gain, ">", 0, "so that between them $f$ has a valley")
     proof.done(E, middle)
 
 
-@result("F9-two-slopes", uses=("F8", "F9-converse"))
+@result("F9-two-slopes")
 def _two_slopes(proof: Proof) -> None:
     r"""Two contacts: a wedge of two slopes.
 
@@ -212,18 +243,19 @@ def _two_slopes(proof: Proof) -> None:
     def height(place: sp.Expr) -> sp.Expr:
         return sp.Abs(place) + 3 * sp.Max(0, sp.Abs(place) - 1)
 
-    def lead(place: sp.Expr) -> sp.Expr:
-        """Return how far the indenter is below the surface that has relaxed since."""
-        return (sp.Rational(15, 8) - height(place)) - half * (4 - height(place - half))
-
-    spot = sp.Symbol("xi", real=True)
-    proof.notation["D"] = sp.Lambda(spot, lead(spot))
-    for place, value, what in (
+    later = sp.log(2)
+    proof.define(indenter(sp.S.Zero), 4 - height(place - half), "at rest")
+    proof.recall("F8", at={sigma: sp.S.Zero, time: later})
+    proof.define(
+        _ahead,
+        sp.Rational(15, 8) - height(place) - compression(later),
+        "how far it is below the surface",
+    )
+    for spot, value, what in (
         (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
         (0, "1/8", "in contact again"),
         ("-19/16", 0, "left edge of one contact"), ("-5/8", 0, "its right edge"),
         ("-1/4", 0, "left edge of the other"), ("1/12", 0, "its right edge"),
     ):  # fmt: skip
-        where, found = sp.Rational(place), sp.Rational(value)
-        proof.equal(lead(where), found, what, left=rf"D({sp.latex(where)})")
-    proof.done(lead(-half), -sp.Rational(1, 8))
+        proof.equal(sp.Subs(_ahead, place, sp.Rational(spot)), sp.Rational(value), what)
+    proof.done(sp.Subs(_ahead, place, -half), -sp.Rational(1, 8))

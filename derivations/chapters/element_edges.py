@@ -7,7 +7,7 @@ and `END` at each edge to the area of the compression; forces are reported by tr
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter
+from ..engine.nomenclature import letter, symbols
 from ..engine.step import Proof
 from .element_schemes import SECTION
 from .model import C, V, x
@@ -30,6 +30,11 @@ _inside, _outside = sp.Symbol("w_1", positive=True), sp.Symbol("w_0", negative=T
 _surplus, _bend = sp.symbols("f_Delta w_2", real=True)
 _end, _rise = sp.symbols("p_e p_s", real=True)
 _u = sp.Function("u", real=True)
+added, begins, lacks = symbols(r"""
+    a_s  a_{\mathrm{s}}  m²  what the scheme adds at an edge  real
+    m_t  m_{\mathrm{t}}  1   slope of the compression where trapezoids begin  real
+    e_t  e_{\mathrm{t}}  m²  what trapezoids lack because of the slope where they begin  real
+""")
 result = Chapter(SECTION)
 
 KINK = _spacing * _inside * _outside / (2 * (_inside - _outside))
@@ -85,7 +90,9 @@ def _trapezoids(proof: Proof) -> None:
         for order, inner in enumerate([*derivatives[1:], _u(x)])
     )
     slopes = [sp.Subs(derivatives[-1], x, place) for place in (0, _spacing)]
-    value = _spacing**2 / 12 * (slopes[1] - slopes[0]) - _spacing * (_u(0) + _u(_spacing)) / 2
+    proof.define(slopes[0], begins, "the slope at the beginning")
+    proof.define(lacks, _spacing**2 / 12 * begins, "what is lacking because of it")
+    value = _spacing**2 / 12 * slopes[1] - lacks - _spacing * (_u(0) + _u(_spacing)) / 2
     integrand = kernel * derivatives[0] - _u(x)
     proof.integral(
         sp.Integral(integrand, over), integrand, over, parts, "by parts, four times", value=value
@@ -99,7 +106,7 @@ def _trapezoids(proof: Proof) -> None:
     proof.done(sp.Integral(integrand, over), value)
 
 
-@result("element-kink", uses=("F15-sawtooth", "element-trapezoids"))
+@result("element-kink")
 def _kink(proof: Proof) -> None:
     r"""Part of an element at an edge.
 
@@ -118,10 +125,11 @@ def _kink(proof: Proof) -> None:
     )  # fmt: skip
     trapezoid = _spacing * _inside / 2
     proof.equal(area - trapezoid, KINK, r"without the trapezoid of the elements, $\Delta w_1/2$")
-    left_out = area - trapezoid + _spacing**2 / 12 * sp.Derivative(line, x)
-    proof.equal(
-        left_out, KINK + END, "with the slope at which the trapezoids begin: what the scheme adds"
-    )
+    proof.define(begins, sp.diff(line, x), "where the trapezoids begin")
+    proof.recall("element-trapezoids", lacks)
+    proof.define(added, KINK + END, "what the scheme adds")
+    exact = area - trapezoid + lacks
+    proof.equal(exact, added, "all that is left out, for straight surfaces")
     inside, outside = _slope * _spacing * (1 - _share), -_slope * _spacing * _share
     in_cell = -_slope * _spacing**2 * _share * (1 - _share) / 2
     proof.define(_inside, inside, r"surfaces at the angle $m$ that meet at $\vartheta \Delta$")
@@ -132,14 +140,14 @@ def _kink(proof: Proof) -> None:
     proof.define(
         _end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$"
     )
-    proof.equal(
-        *(C * sp.Derivative(in_cell, _share) * -V / _spacing, _end * _spacing * (1 - 2 * _share) / 2,
-          r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),
-    )  # fmt: skip
-    proof.done(left_out, KINK + END)
+    proof.define(_rise, sp.S.Zero, "to first order")
+    proof.recall("F15-sawtooth", _surplus)
+    reason = r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth"
+    proof.equal(C * sp.Derivative(in_cell, _share) * -V / _spacing, _surplus, reason)
+    proof.done(exact, added)
 
 
-@result("element-bent", uses=("element-kink", "element-trapezoids"))
+@result("element-bent")
 def _bent(proof: Proof) -> None:
     r"""Error of the part of an element.
 
@@ -159,20 +167,20 @@ def _bent(proof: Proof) -> None:
     )
     proof.define(_inside, overlap.subs(x, _spacing), "at the first element inside")
     proof.define(_outside, overlap.subs(x, 0), "at the last one outside")
-    end = sp.Subs(sp.Derivative(overlap, x), x, _spacing)
-    due = area - _spacing * _inside / 2 + _spacing**2 / 12 * end - KINK - END
+    end = sp.diff(overlap, x).subs(x, _spacing)
+    proof.define(begins, end, "where the trapezoids begin")
+    proof.recall("element-trapezoids", lacks)
+    proof.recall("element-kink", (added, KINK + END))
+    due = area - _spacing * _inside / 2 + lacks - added
     rest = 2 * _slope * (4 * _share**3 - 6 * _share**2 + 1)
     rest -= _spacing * _bend * (2 * _share**4 - 4 * _share**3 + 2 * _share - 1)
-    slope = 2 * _slope + _spacing * _bend * (1 - 2 * _share)
-    proof.where(slope > 0, "the overlap grows inward")
-    result = -(_spacing**3) * _bend * rest / (24 * slope)
+    rises = 2 * _slope + _spacing * _bend * (1 - 2 * _share)
+    proof.where(rises > 0, "the overlap grows inward")
+    result = -(_spacing**3) * _bend * rest / (24 * rises)
     proof.equal(due, result, "the exact value less that of the scheme", left=_DUE, right=_LEFT)
 
 
-_DUE = (
-    r"\int_{\vartheta \Delta}^{\Delta} w(x) \, dx - \frac{\Delta w_1}{2} + \frac{\Delta^2}{12} w'(\Delta) "
-    r"- \frac{\Delta w_1 w_0}{2 (w_1 - w_0)} - \frac{\Delta (w_1 - w_0)}{12}"
-)
+_DUE = r"\int_{\vartheta \Delta}^{\Delta} w(x) \, dx - \frac{\Delta w_1}{2} + e_{\mathrm{t}} - a_{\mathrm{s}}"
 _LEFT = (
     r"-\frac{\Delta^3 w_2}{24} \cdot \frac{2 m (1 - 6 \vartheta^2 + 4 \vartheta^3) + \Delta w_2 (1 - 2 "
     r"\vartheta + 4 \vartheta^3 - 2 \vartheta^4)}{2 m + \Delta w_2 (1 - 2 \vartheta)}"

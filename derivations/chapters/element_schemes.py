@@ -11,8 +11,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter, symbol
 from ..engine.step import Proof
 from .theorems import kappa
-from .transient_memory import compression, time, zeta
-from .transient_rates import sigma
+from .transient_memory import PUSH, compression, earlier, pushed_by, time, zeta
+from .transient_rates import DAMPING, STIFFNESS, quadratic, sigma
 from .transient_scaling import eps
 
 letter("d_1", "depth at the end of a step")
@@ -30,7 +30,9 @@ letter(r"\theta_{+}", r"$\theta - \frac{1}{2}$")
 eta = symbol("eta", "weight of the end of a step in the mean force", printed=r"\hat \eta")
 letter(r"\hat D", "relative change in a step")
 b = symbol("b", "damping of the contact in the elements' motion, scaled", printed=r"b_{\mathrm{e}}")
-letter(r"\hat m", r"characteristic polynomial of a step, in $\hat D$")
+polynomial = symbol(
+    "m_e", r"characteristic polynomial of a step, in $\hat D$", latex=r"\hat m", real=True
+)
 letter(r"\varpi", r"variable of the half plane, $\hat D = 2 \varpi/(1 - \varpi)$")
 letter("v_0", "scaled velocity at the beginning of a step")
 letter("v_1", "scaled velocity at the end of a step")
@@ -64,23 +66,31 @@ RUNGE_KUTTA = 1 - _z + _z**2 / 2 - _z**3 / 6 + _z**4 / 24
 THETA_STEP = (1 - (1 - _theta) * _z) / (1 + _theta * _z)
 FIT = 1 / (1 - sp.exp(-_z)) - 1 / _z
 """theta of the exponential scheme."""
+MOTION = eps * _D**2 / _h**2 + (1 + _theta * _D) * (b + kappa + (b * eta + kappa * _theta) * _D)
+"""Vanishes for the relative change D of the depth in a step of an implicit scheme."""
 WEIGHT = 1 / (1 - sp.exp(-_h))
 """eta: the weight of a change of the depth within the step in the mean force of F8."""
 
 result = Chapter(SECTION)
 
 
-@result("F15-runge-kutta", uses=("F12",))
+@result("F15-runge-kutta")
 def _runge_kutta(proof: Proof) -> None:
     r"""Stability limit of the paper's scheme.
 
-    The fast mode of F12, $d'' = -(b/\varepsilon) d'$, is the damping of the mass $M$ by the damping $C L$ of
-    all elements in contact. A step of length $\Delta t$ of the classical Runge-Kutta method multiplies the
-    velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = 2 \Delta x/V$ the paper's simulation becomes
-    unstable below $V = 2 \Delta x\, C L/(2.785 M)$.
+    The fast mode, $d'' = -(b/\varepsilon) d'$ (compare F12), is the damping of the mass $M$ by the damping $C
+    L$ of all elements in contact. A step of length $\Delta t$ of the classical Runge-Kutta method multiplies
+    the velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = 2 \Delta x/V$ the paper's simulation
+    becomes unstable below $V = 2 \Delta x\, C L/(2.785 M)$.
     """
+    proof.recall("F12-linear", quadratic)
+    proof.define(b, DAMPING, "of the length of the contact")
+    fast = (quadratic - STIFFNESS) / sigma
+    proof.root(
+        fast, sigma, -b / eps, "the fast mode: the mass is stopped before the spring is felt"
+    )
     for stage, at in ((_k1, 0), (_k2, _k1 / 2), (_k3, _k2 / 2), (_k4, _k3)):
-        proof.define(stage, -_z * (1 + at))
+        proof.define(stage, -_z * (1 + at), "slope of the velocity")
     proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
     proof.equal(_R, RUNGE_KUTTA, "the Taylor series of $e^{-z}$ to the fourth order")
     proof.equal(1 - _R, _z * CUBIC / 24, r"so that $R \le 1$ as long as the cubic is positive")
@@ -93,47 +103,48 @@ def _runge_kutta(proof: Proof) -> None:
     proof.done(_R, RUNGE_KUTTA)
 
 
-@result("F15-euler", uses=("F15-runge-kutta",))
+@result("F15-euler")
 def _euler(proof: Proof) -> None:
     """Stability limit of Euler's method.
 
     The same mode by explicit Euler steps.
     """
-    proof.define(_R, 1 - _z, "after one step")
+    proof.recall("F15-runge-kutta", _k1)
+    proof.define(_R, 1 + _k1, "after one step")
     proof.equal(1 - _R**2, _z * (2 - _z), r"positive exactly for $z < 2$")
     proof.sign(_z * (2 - _z), ">", 0, (_z, 0, 2), "stable")
     proof.sign(_z * (2 - _z), "<", 0, (_z, 2, sp.oo), "unstable")
     proof.done(1 - _R**2, _z * (2 - _z))
 
 
-@result("element-mean-force", uses=("F8-update",))
+@result("element-mean-force")
 def _mean_force(proof: Proof) -> None:
     """Mean force on an element.
 
     The memory of F8 gives the pressure on an element, averaged over a step with the weight $e^{s}$, from the
-    compressions at its ends alone. Where F8 is used for the end of the step, it is never negative. It differs
-    from the plain mean by $h^2/12$ times the rate of the pressure.
+    compressions at its ends alone. It is never negative, and differs from the plain mean by $h^2/12$ times
+    the rate of the pressure.
     """
     u = compression
     over = (zeta, time, time + _h)
-    push = u(zeta) + sp.Derivative(u(zeta), zeta)
-    integrand = sp.exp(zeta) * push
-    impulse = sp.exp(time + _h) * u(time + _h) - sp.exp(time) * u(time)
-    proof.notation[r"\hat p"] = sp.Lambda(zeta, push)
-    proof.integral(
-        *(sp.Integral(integrand, over), integrand, over, sp.exp(zeta) * u(zeta)),
-        r"the pressure is $u + u'$, in contact or not", value=impulse,
-        left=r"\int_{s}^{s+h} e^{\zeta} \hat p(\zeta) \, d\zeta",
-    )  # fmt: skip
+    pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), over)
+    proof.holds(pushed, ">=", 0, "no element pulls")
+    proof.recall("F8", pushed_by(), at={earlier: time, time: time + _h})
+    weights = sp.Integral(sp.exp(zeta), over)
     whole = sp.exp(time + _h) - sp.exp(time)
     proof.integral(
-        *(sp.Integral(sp.exp(zeta), over), sp.exp(zeta), over, sp.exp(zeta)),
-        "the weights", value=whole,
+        *(weights, sp.exp(zeta), over, sp.exp(zeta), "the weights"), value=whole,
     )  # fmt: skip
     mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
-    proof.equal(impulse / whole, mean, "their ratio, which is zero for an element without contact")
+    proof.equal(pushed / weights, mean, "the mean, which is zero for an element without contact")
     _centre(proof)
-    proof.done(impulse / whole, mean)
+    proof.done(pushed / weights, mean)
+
+
+def mean_push() -> sp.Expr:
+    """Return the mean pressure over a step, as element-mean-force has it."""
+    over = (zeta, time, time + _h)
+    return sp.Integral(sp.exp(zeta) * PUSH(zeta), over) / sp.Integral(sp.exp(zeta), over)
 
 
 def _centre(proof: Proof) -> None:
@@ -168,7 +179,7 @@ def _centre(proof: Proof) -> None:
     )  # fmt: skip
 
 
-@result("element-fit", uses=("element-mean-force",))
+@result("element-fit")
 def _fitted(proof: Proof) -> None:
     r"""Exponential fit of the damping.
 
@@ -181,20 +192,24 @@ def _fitted(proof: Proof) -> None:
         *(THETA_STEP.subs(_theta, FIT), sp.exp(-_z), "the exact decay of the velocity"),
         left=r"\frac{1 - (1 - \theta) z}{1 + \theta z}",
     )
-    gap = _z * (1 + sp.exp(-_z)) / 2 - (1 - sp.exp(-_z))
-    proof.equal(FIT - sp.Rational(1, 2), gap / (_z * (1 - sp.exp(-_z))), "to compare with 1/2",
-                left=r"\theta - \frac{1}{2}")  # fmt: skip
-    at_rest = sp.Subs(gap, _z, 0)
-    proof.equal(at_rest, sp.S.Zero, "the numerator vanishes at zero")
-    proof.equal(sp.Subs(sp.Derivative(gap, _z), _z, 0), sp.S.Zero, "and its derivative")
-    proof.equal(sp.Derivative(gap, (_z, 2)), _z * sp.exp(-_z) / 2,
-                r"it is convex: $\theta > \frac{1}{2}$ for $z > 0$")  # fmt: skip
+    below = _z * (1 + sp.exp(-_z)) / 2 - (1 - sp.exp(-_z))
+    above = 1 - (1 + _z) * sp.exp(-_z)
+    for end, gap, shown in (
+        (sp.S.Half, below, r"\theta - \frac{1}{2}"),
+        (sp.S.One, above, r"1 - \theta"),
+    ):
+        sign = 1 if gap is below else -1
+        proof.equal(sign * (FIT - end), gap / (_z * (1 - sp.exp(-_z))), "to compare", left=shown)
+        proof.holds(gap, ">", 0, "it begins at 0 and rises")
     proof.leading_order(FIT, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z,
                         left=r"\theta")  # fmt: skip
+    proof.recall("F15-runge-kutta", sigma)
+    proof.define(_z, _h * b / eps, "the step of that mode")
+    proof.equal(sp.exp(-_z), sp.exp(sigma * _h), "its exact decay")
     proof.done(THETA_STEP.subs(_theta, FIT), sp.exp(-_z))
 
 
-@result("element-stability", uses=("element-mean-force", "element-fit"))
+@result("element-stability")
 def _unconditional(proof: Proof) -> None:
     r"""Stability at any step.
 
@@ -206,29 +221,31 @@ def _unconditional(proof: Proof) -> None:
     second = eps / _h**2 + _theta * (b * eta + kappa * _theta)
     first = _theta * (b + kappa) + b * eta + kappa * _theta
     zeroth = b + kappa
-    motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * (b + kappa + (b * eta + kappa * _theta) * _D)
-    proof.equal(
-        motion, second * _D**2 + first * _D + zeroth, "a step multiplies the depth by $1 + D$"
-    )
+    form = second * _D**2 + first * _D + zeroth
+    proof.define(polynomial, MOTION, "a step multiplies the depth by $1 + D$ where it vanishes")
+    proof.equal(polynomial, form, "by powers of this change")
     lead = 4 * eps / _h**2 + b * (2 * _theta - 1) * (2 * eta - 1) + kappa * (2 * _theta - 1) ** 2
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
-    proof.notation |= {"m": sp.Lambda(_D, motion), "c_2": lead, "c_1": middle, "c_0": zeroth}
+    proof.notation |= {"m": sp.Lambda(_D, MOTION), "c_2": lead, "c_1": middle, "c_0": zeroth}
     proof.equal(
-        motion.subs(_D, 2 * _w / (1 - _w)),
+        MOTION.subs(_D, 2 * _w / (1 - _w)),
         (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
         r"with $m(D)$ the equation of a step: the outside of the unit circle becomes a half plane",
         left=r"m\left(\frac{2 w}{1 - w}\right)",
         right=r"\frac{c_2 w^2 + c_1 w + c_0}{(1 - w)^2}",
     )  # fmt: skip
+    u, change = compression(time), compression(time + _h) - compression(time)
+    proof.recall("element-mean-force")
+    proof.equal(mean_push(), u + WEIGHT * change, r"the mean force, with $\eta = 1/(1 - e^{-h})$")
     half = sp.Rational(1, 2)
     proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $E = e^{-h}$")
-    proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$ by the exponential fit")
+    proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$, as by (element-fit)")
     proof.define(eta, half + _beyond, r"and $\eta_{+} > 0$")
     proof.holds(lead, ">", 0, "the coefficient $c_2$")
     proof.holds(middle, ">", 0, "$c_1$")
     proof.holds(zeroth, ">", 0, "and $c_0$")
     _routh(proof)
-    proof.done(motion, second * _D**2 + first * _D + zeroth)
+    proof.done(polynomial, form)
 
 
 def _routh(proof: Proof) -> None:
@@ -252,7 +269,7 @@ def _routh(proof: Proof) -> None:
     proof.holds(shown.subs(imaginary, 0), ">", 0, "which is positive there: no root has $x \\ge 0$")
 
 
-@result("element-orders", uses=("element-stability",))
+@result("element-orders")
 def _orders(proof: Proof) -> None:
     r"""Order in time.
 
@@ -272,8 +289,8 @@ def _orders(proof: Proof) -> None:
     proof.define(_D, D, r"with a bounded $r_1$")
     proof.define(eta, weight, r"with a bounded $r_2$")
     proof.define(kappa, -eps * sigma**2 - b * sigma - b, "the exact rates")
-    whole = b + kappa + (b * eta + kappa * _theta) * _D
-    motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * whole
+    proof.recall("element-stability")
+    proof.where(sp.Gt(fit, 0), "a short step")
     first = -_h * sigma * (b * sigma + b + 2 * eps * sigma**2) / 2
     second = (
         -(_h**2)
@@ -285,11 +302,5 @@ def _orders(proof: Proof) -> None:
         (sp.S.One, first, r"order one, $\theta = 1$"),
         (fit, second, r"order two, fitted $\theta$ with a bounded $r_3$"),
     ):
-        proof.notation |= {"D": _D, r"\eta": eta, r"\theta": theta}
-        left = motion.subs(_theta, theta)
-        proof.leading_order(left, leading, _h, 0, why, eps=_h, short=True, left=_RESIDUAL)
-
-
-_RESIDUAL = (
-    r"\frac{\varepsilon D^2}{h^2} + (1 + \theta D) [b + \kappa + (b \eta + \kappa \theta) D]"
-)
+        step = sp.Subs(polynomial, _theta, theta)
+        proof.leading_order(step, leading, _h, 0, why, eps=_h, short=True)

@@ -7,10 +7,12 @@ rim. The force of a strip at the distance y from the rim begins as p_1 y + p_2 y
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter
+from ..engine.nomenclature import letter, symbol
 from ..engine.step import Proof, tex
 from .element_schemes import SECTION
-from .steady import l
+from .friction_identity import r
+from .model import K, delta
+from .steady import W, a, l, l_r
 
 letter(r"\Delta y", "spacing of the strips of a ball, in units of its half width")
 letter(r"y_{\mathrm{s}}", "distance from the rim of a ball, in units of its half width")
@@ -22,6 +24,7 @@ letter(r"\zeta_{\mathrm{H}}", "zeta function of Hurwitz")
 letter(r"\breve p_1", r"slope of a strip's load over $y_{\mathrm{s}}$ at the rim")
 letter(r"\breve p_2", r"coefficient of $y_{\mathrm{s}}^{3/2}$ in the load near the rim")
 
+middle = symbol("a_m", "half length of the contact of a ball", "m", r"a_{\mathrm{m}}")
 _spacing, _share, _y, _v, _x, _root = sp.symbols("Delta vartheta y v x psi", positive=True)
 _rest = sp.Symbol("Q", real=True)
 result = Chapter(SECTION)
@@ -35,21 +38,27 @@ START = _v**POWER / 2 - 2 * _v ** sp.Rational(5, 2) / 5 - sp.sqrt(_v) / 8
 """Half of the first strip, without what lies before it and with the slope at which trapezoids begin."""
 
 
-@result("strips-rim", uses=("F21-load", "F20-load"))
+@result("strips-rim")
 def _rim(proof: Proof) -> None:
     r"""Strips at the rim of a ball.
 
-    By F21-load the strip at the distance $\psi^2$ from the rim, in units of the half width, carries this
-    load, in units of $K \delta a$. It begins in proportion to the distance, at rest with its power
-    $\frac{3}{2}$, and goes on in powers of $\psi$.
+    The strip at the distance $\psi^2$ from the rim, in units of the half width, carries this load, in the
+    units $K \delta a$ of the middle strip (compare F20-load). It begins in proportion to the distance, at
+    rest with its power $\frac{3}{2}$, and goes on in powers of $\psi$.
 
     Argued: Its contact is as long as an element where $\psi$ is of the order of $\Delta$ over the half
-    length: strips nearer to the rim carry the order of $\Delta^4$, and by element-bent all others are
-    wrong by the order of $\Delta^2$. So is a ball, whatever the spacing of its strips.
+    length: strips nearer to the rim carry the order of $\Delta^4$, and by element-bent all others are wrong
+    by the order of $\Delta^2$. So is a ball, whatever the spacing of its strips.
     """
     width = _root**2 * (2 - _root**2)
     proof.where(2 - _root**2 > 0, "on this side of the opposite rim")
     load = sp.Rational(2, 3) * (width**POWER + (width + l**2) ** POWER - l**3)
+    proof.recall("F21-load", r, W)
+    proof.define(a, middle * sp.sqrt(width), "half length of the strip")
+    proof.define(l_r, middle * l, "the same for all strips")
+    proof.recall("eq28", delta)
+    own = W / (K * delta * a)
+    proof.equal(own * width**POWER, load, r"F21-load; $\delta$ and $a$ are those of the strip")
     proof.leading_order(load, 2 * l * _root**2, _root, 0, "in sliding", eps=_root)
     at_rest, begun = sp.Rational(4, 3) * width**POWER, 8 * sp.sqrt(2) / 3 * _root**3
     proof.leading_order(at_rest, begun, _root, 0, "at rest, $l = 0$", eps=_root)

@@ -16,8 +16,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter, symbol
 from ..engine.rules import Computed
 from ..engine.step import Proof, tex
-from .model import K, M, R, V, delta, tau, x
-from .steady import W, mu
+from .model import K, M, R, V, delta, delta_t, depth_rate, h, tau, x
+from .steady import W, mu, p
 
 letter(r"\mathbf{D}", "matrix of the dimensions")
 letter(r"\mathbf{E}", "matrix of the exponents of the groups")
@@ -94,7 +94,7 @@ def isotropic(matrix: sp.Matrix) -> sp.Matrix:
     return sp.Matrix.vstack(force, along + up, time)
 
 
-@result("groups-lengths", uses=("eq3", "eq7", "eq12"))
+@result("groups-lengths")
 def _lengths(proof: Proof) -> None:
     """Two lengths.
 
@@ -107,22 +107,24 @@ def _lengths(proof: Proof) -> None:
     units = DIMENSIONS | {depth_rate_now: _Z / _T, x: _X}
     sag = x**2 / (2 * R)
     pressure = K * (delta - sag) + K * tau * (depth_rate_now - V * x / R)
-    for name, law, unit, reason in (
-        ("h", sag, _Z, "the shape, Eq. (3)"),
-        ("h'", sp.Derivative(sag, x), _Z / _X, "its slope, by which a load becomes friction"),
+    proof.recall("eq3")
+    for law, unit, reason in (
+        (h(x), _Z, "the shape keeps its form"),
+        (h(x).diff(x), _Z / _X, "and its slope, by which a load becomes friction"),
     ):
-        proof.notation["h"] = sp.Lambda((R, x), sag)
-        proof.equal(
-            *(sp.Subs(law, (R, x), (R * units[R], x * units[x])), unit * law, reason),
-            left=rf"{name}\left(\frac{{X^2}}{{Z}} R, X x\right)", right=rf"{tex(unit)} {name}(R, x)",
-        )  # fmt: skip
+        changed = sp.Subs(law, (R, x), (R * units[R], x * units[x]))
+        proof.equal(changed, unit * law, reason)
     proof.notation |= {"h": sag, "h'": sp.diff(sag, x)}
     given = [each for each in units if pressure.has(each)]
     changed = sp.Subs(pressure, given, [each * units[each] for each in given])
     proof.equal(
-        *(changed, _N / _X * pressure, "the pressure, Eqs. (6), (7) and (12)"),
+        *(changed, _N / _X * pressure, "the pressure keeps its form"),
         left=_CHANGED, right=r"\frac{N}{X} [K (\delta - h) + K \tau (\dot\delta - V h')]",
     )  # fmt: skip
+    proof.recall("pressure-moving", p)
+    proof.recall("eq22", tau)
+    moving = {delta: delta_t, depth_rate_now: depth_rate}
+    proof.equal(p, pressure.subs(moving), "which is that of a dense row")
     _circle(proof)
     proof.done(changed, _N / _X * pressure)
 

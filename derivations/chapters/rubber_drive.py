@@ -11,9 +11,15 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .groups import k_s
-from .model import M, R, V, delta, t, x
+from .model import F_x, F_z, M, R, V, delta, t, x
 from .relaxation import behind, edge_distance
-from .spring_drive import C_x, M_x, k_x, small
+from .spring_drive import C_x, M_x, k_x, small, x_a
+from .steady import F, W
+from .theorems import lam
+from .transient_edges import left, rho, right
+from .transient_motion import f_friction
+from .transient_rates import at_motion
+from .transient_scaling import d, d_s, f_normal, z_a
 from .viscoelastic import arm_number, contact_length, excess_share, half_share, place, springpot
 
 strained = function("x_u", real=True)
@@ -31,7 +37,7 @@ kernels_still = tuple(
     for n in range(1, 5)
 )  # fmt: skip
 (
-    swing_rate, time_back, delta_swing, x_swing, rate_number, shifted_number, age, fading_depth,
+    swing_rate, time_back, delta_swing, x_swing, swing_u, rate_number, shifted_number, age, fading_depth,
     fading_drag, normal_per_depth, rubbing_per_depth, normal_per_drag, rubbing_per_drag,
     total_normal_per_depth, total_rubbing_per_depth, total_normal_per_drag, total_rubbing_per_drag,
     shift_factor, stiffer,
@@ -40,6 +46,7 @@ kernels_still = tuple(
     t_r      \tilde t       s     time back
     delta_r  \tilde \delta  m     change of the depth, at the time 0  real
     X_r      \tilde X       m     displacement of the indenter, at the time 0  real
+    u_r      \tilde u       m     change of the compression of an element  real
     sigma_r  \tilde \sigma  1     $\tilde s \breve c/V$
     z_r      \tilde z       1     $\breve z + \tilde \sigma$
     v_r      \tilde v       1     time back, in units of $\breve c/V$
@@ -102,10 +109,11 @@ def _compression(proof: Proof) -> None:
     """
     place_then = x - V * time_back + small * x_swing * (sp.exp(s * t) - sp.exp(s * (t - time_back)))
     then = delta + small * delta_swing * sp.exp(s * (t - time_back)) - place_then**2 / (2 * R)
-    first = sp.Subs(sp.Derivative(then, small), small, 0)
     fall = sp.exp(-s * time_back)
-    result = delta_swing * fall - (x - V * time_back) / R * x_swing * (1 - fall)
-    proof.equal(first, result * sp.exp(s * t), r"the terms of first order in $\check \theta$")
+    value = delta_swing * fall - (x - V * time_back) / R * x_swing * (1 - fall)
+    first = sp.Subs(sp.Derivative(then, small), small, 0)
+    proof.define(swing_u, first, r"the terms of first order in $\check \theta$")
+    proof.equal(swing_u, value * sp.exp(s * t), "due to both motions")
 
 
 def _numbers(proof: Proof) -> None:
@@ -114,7 +122,7 @@ def _numbers(proof: Proof) -> None:
     )
 
 
-@result("F24-arm", uses=("F24-compression",))
+@result("F24-arm")
 def _arm(proof: Proof) -> None:
     r"""Rubber: pressure of an arm in small motions.
 
@@ -124,6 +132,14 @@ def _arm(proof: Proof) -> None:
     $K_i (\tilde \alpha \tilde \delta + \tilde \beta \tilde X \breve c/R) e^{\tilde s t}$.
     """
     _numbers(proof)
+    units = {time_back: v * c / V, s: sigma * V / c, x: c * (y - b)}
+    proof.recall("F24-compression")
+    for name, value in units.items():
+        proof.define(name, value, "in units of the contact")
+    changes = delta_swing * sp.exp(-sigma * v) - x_swing * c / R * (y - b - v) * (
+        1 - sp.exp(-sigma * v)
+    )
+    proof.equal(swing_u * sp.exp(-s * t), changes, r"compression at the time $\tilde v$ back")
     followed = z * sp.exp(-z * v) * sp.exp(-sigma * v)
     lost = proof.integral(sp.Integral(followed, (v, 0, y)), followed, (v, 0, y),
                           -z * sp.exp(-m * v) / m, "what the arm has forgotten of it",
@@ -198,13 +214,13 @@ def _forces(proof: Proof) -> None:
                        value=FORCES[name])  # fmt: skip
 
 
-@result("F24", uses=("F24-forces", "eq17", "F22-scaled"))
+@result("F24")
 def _rates(proof: Proof) -> None:
     r"""Rates and critical stiffness on rubber.
 
-    With the sums over the spring and all arms the forces change by $F_{z\delta} \tilde \delta + F_{zX} \tilde
-    X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$, times $e^{\tilde s t}$. On the imaginary axis $k_x$
-    is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} F_{x\delta}/(M \tilde s^2 + k_s +
+    With the sums of (F24-forces) over the spring and all arms the forces change by $F_{z\delta} \tilde \delta
+    + F_{zX} \tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$. On the imaginary axis $k_x$ is
+    explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} F_{x\delta}/(M \tilde s^2 + k_s +
     F_{z\delta})$, and the critical stiffness is the largest real value that it takes there.
     """
     A, B, C, D = (
@@ -214,6 +230,24 @@ def _rates(proof: Proof) -> None:
     along = M_x * s**2 + C_x * s + k_x - D
     across, lengthwise = up * delta_swing + B * x_swing, along * x_swing - C * delta_swing
     both = (up * along + B * C) * delta_swing
+    sinks, drags = (sp.Function(name, real=True)(t) for name in (r"\tilde \delta", r"\tilde X"))
+    proof.recall("scaled-form", z_a.diff(t, 2))
+    proof.recall("F22-scaled", x_a.diff(t, 2))
+    for name, steady, change in (
+        (z_a, -delta, -sinks), (x_a, F / k_x, drags),
+        (F_z, W, A * sinks + B * drags), (F_x, F, C * sinks + D * drags),
+    ):  # fmt: skip
+        proof.define(name, steady + small * change, "steady sliding, and a small change")
+    proof.define(sinks.diff(t, 2), s**2 * sinks, r"as $e^{\tilde s t}$")
+    for order in (1, 2):
+        proof.define(drags.diff(t, order), s**order * drags, r"as $e^{\tilde s t}$")
+    for mass, name, motion in (
+        (M, z_a, -up * sinks - B * drags),
+        (M_x, x_a, along * drags - C * sinks),
+    ):
+        moved = sp.Derivative(small * {z_a: -sinks, x_a: drags}[name], (t, 2))
+        first = sp.Subs(sp.Derivative(mass * (moved - name.diff(t, 2)), small), small, 0)
+        proof.equal(first, motion, "the equation of motion, to first order")
     proof.equal(along * across - B * lengthwise, both,
                 r"both equations of motion hold: $\tilde X$ is eliminated")  # fmt: skip
     value = D - M_x * s**2 - C_x * s - B * C / up
@@ -222,13 +256,13 @@ def _rates(proof: Proof) -> None:
     proof.done(along * across - B * lengthwise, both)
 
 
-@result("F24-kelvin-voigt", uses=("F24-forces", "F22-forces"))
+@result("F24-kelvin-voigt")
 def _kelvin_voigt(proof: Proof) -> None:
     r"""Rubber: a fast arm is a damper.
 
-    For $\breve z \to \infty$ with $K_i \tau_i = C$ the arm and the spring $K$ give the derivatives of F22,
-    lengths in units of $\breve c$ and forces in those of $K \breve c^3/R$: $\hat a = \frac{1}{2} + \breve
-    \eta$, $r = \frac{1}{2} - \breve \eta$, $\lambda = \breve \zeta$. They are approached at first order in
+    For $\breve z \to \infty$ with $K_i \tau_i = C$ the arm and the spring $K$ give the derivatives of F11,
+    lengths in units of $\breve c$ and forces in those of $K \breve c^3/R$: half the length of the contact at
+    rest is $\frac{1}{2} + \breve \eta$, and $\lambda = \breve \zeta$. They are approached at first order in
     $\tau_i$.
     """
     _recalled(proof)
@@ -244,23 +278,27 @@ def _kelvin_voigt(proof: Proof) -> None:
         proof.leading_order(
             name, limit / z, **far, reason=r"times $K_i \breve z = C V/\breve c$: a damper"
         )
-    lam = springpot
-    proof.define(
-        e, lam / (2 * (1 + lam)), r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
-    )
-    proof.equal(1 + lam, (HALF - e) + lam + (HALF + e),
-                r"$F_{z\delta}$ at $\tilde s = 0$: $r + \lambda + \hat a$ of F22",
-                right=r"\left(\frac{1}{2} - \breve \eta\right) + \breve \zeta "
-                r"+ \left(\frac{1}{2} + \breve \eta\right)")  # fmt: skip
-    proof.equal(
-        e + lam * (HALF + e), lam, r"$F_{x\delta}$ at $\tilde s = 0$: $\lambda (r + \hat a)$"
-    )
-    proof.equal(lam * e, lam * (HALF - (HALF - e)),
-                r"$-F_{zX}/\tilde s$ and $F_{x\delta}/\tilde s$",
-                right=r"\breve \zeta \left(\frac{1}{2} - \left(\frac{1}{2} "
-                r"- \breve \eta\right)\right)")  # fmt: skip
-    proof.equal(3 * (sp.Rational(1, 12) + e**2), (HALF - e) ** 3 + (HALF + e) ** 3,
-                r"$-F_{xX}/\tilde s$: $r^3 + \hat a^3$")  # fmt: skip
+    zeta = springpot
+    shown = r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
+    proof.define(e, zeta / (2 * (1 + zeta)), shown)
+    proof.define(lam, zeta, "the drive number in units of the contact")
+    proof.recall("F11-start", rho, right, left)
+    proof.recall("F11", f_normal, f_friction)
+    steady = {d: (HALF + e) ** 2, d_s: 0}
+    for factor, force, variable, form, reason in (
+        (sp.Rational(4, 3), f_normal, d, 1 + zeta, r"$F_{z\delta}$ at $\tilde s = 0$"),
+        (
+            sp.Rational(2, 3),
+            f_friction,
+            d,
+            e + zeta * (HALF + e),
+            r"$F_{x\delta}$ at $\tilde s = 0$",
+        ),
+        (sp.Rational(2, 3), f_normal, lam, e, r"$-F_{zX}$ over $\tilde \sigma \breve \zeta$"),
+        (sp.Rational(1, 3), f_friction, lam, sp.Rational(1, 12) + e**2, "$-F_{xX}$ over the same"),
+    ):
+        change = at_motion(sp.Derivative(force, variable), steady)
+        proof.equal(factor * change, form, reason)
 
 
 @result("F25")
@@ -285,13 +323,13 @@ def _temperature(proof: Proof) -> None:
     proof.equal(warm, cold, r"the pressure at $V$ is $b_T$ times that at the velocity $V a_T$")
 
 
-@result("F25-activation", uses=("F25",))
+@result("F25-activation")
 def _wlf(proof: Proof) -> None:
     r"""Two laws of the shift factor.
 
     Williams, Landel and Ferry: $\log_{10} a_T = -C_1 (T - T_{\mathrm{r}})/(C_2 + T - T_{\mathrm{r}})$.
     Arrhenius: $\ln a_T = (E_{\mathrm{A}}/R_{\mathrm{g}})(1/T - 1/T_{\mathrm{r}})$. Both fall where the
-    temperature rises, so that the velocity of the friction maximum rises by $1/a_T$.
+    temperature rises; by (F25) the velocity of the friction maximum then rises by $1/a_T$.
     """
     T, T_r = temperature, T_ref
     proof.where(sp.Gt(wlf_2 + T - T_r, 0), "above the pole of the equation")

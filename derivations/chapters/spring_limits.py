@@ -7,15 +7,16 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.record import Table
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from . import tables
-from .master_curve import state_at
+from .master_curve import PEAK, state_at
 from .model import K, M, R, V, g, tau
-from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x
+from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x, quartic
 from .spring_stability import (
     DEAD_WEIGHT_RISE,
     HURWITZ,
     PEELED,
+    REST,
     RISE,
     SQUARE,
     B_x,
@@ -30,7 +31,6 @@ from .spring_stability import (
     coupling,
     damper_share,
     hurwitz,
-    lay_down,
     onset_sum,
     own_rise,
     rise,
@@ -40,12 +40,12 @@ from .spring_stability import (
 )
 from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
-from .transient_edges import right
-from .transient_motion import a
-from .transient_rates import QUADRATIC, per_depth, steady_sliding
+from .transient_edges import left, rho, right
+from .transient_motion import a, f_friction
+from .transient_rates import at_motion, per_depth, quadratic, steady_sliding
+from .transient_scaling import d, d_s, f_normal
 
 lag_minus, T_flutter, sinks = symbols(r"""
-    -    P                 1  the quartic of the rates
     p_m  \check p_{-}      1  $\varrho_z - \vartheta_z \Omega_{-}$
     T_f  \vartheta_{\mathrm{f}}  1  $\vartheta_z$ from which on there is flutter
     d_l  d_\lambda         1  change of the scaled depth with the drive number  real
@@ -67,9 +67,9 @@ def _flutter(proof: Proof) -> None:
     proof.where(sp.Gt(rise, 0), "friction rises")
     proof.where(sp.Gt(S_z - rise, 0), "in motion")
     proof.define(coupling, (S_z - rise) / S_c, "F22-numbers")
-    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.define(bias, uncoupled - T_z * coupling * S_c, "a shorthand")
     more, less = ((sp.sqrt(S_z) + sign * sp.sqrt(rise)) ** 2 for sign in (1, -1))
-    proof.define(T_flutter, uncoupled / less)
+    proof.define(T_flutter, uncoupled / less, "an inertia")
     other = uncoupled / more
     form = (S_z - rise) ** 2 * (T_z - T_flutter) * (T_z - other)
     proof.equal(SQUARE, form, r"negative between the two: no frequency is real")
@@ -77,17 +77,17 @@ def _flutter(proof: Proof) -> None:
     apart = 2 * product / (S_z - rise) ** 2
     proof.equal(T_flutter - other, apart, "the one is larger than the other")
     proof.holds(apart, ">", 0, "all terms are positive")
-    proof.define(onset_sum, bias - 2 * T_z * rise)
+    proof.define(onset_sum, bias - 2 * T_z * rise, "the linear coefficient of the quadratic")
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
                 r"$\check n > 0$ at the lower and below: no positive $\Omega$ either")  # fmt: skip
     proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
                 left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
-    proof.where(sp.Gt(SQUARE, 0))
-    proof.define(spread, sp.sqrt(SQUARE))
+    proof.where(sp.Gt(SQUARE, 0), "a frequency is real")
+    proof.define(spread, sp.sqrt(SQUARE), "as in F22-critical")
     proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
     proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
     proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
-    proof.define(lag_minus, S_z - T_z * Omega_minus)
+    proof.define(lag_minus, S_z - T_z * Omega_minus, "as in F22-falling")
     proof.equal(
         lag_minus,
         (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z),
@@ -96,7 +96,7 @@ def _flutter(proof: Proof) -> None:
     proof.done(SQUARE, form)
 
 
-@result("F22-soft", uses=("F22-routh", "F22-forces", "F3"))
+@result("F22-soft")
 def _soft(proof: Proof) -> None:
     r"""A soft spring.
 
@@ -105,49 +105,61 @@ def _soft(proof: Proof) -> None:
     the depth, by $d_\lambda$.
     """
     steady_sliding(proof)
-    proof.define(right, a * q)
     half = sp.Rational(3, 2)
-    proof.define(
-        sinks, -half * lam * right / (3 * per_depth / 4 + kappa), "the load stays the same"
-    )
-    slope = right**3 + a**3 + half * lam * (right + a) * sinks
-    proof.define(B_z, 3 * a * (1 + q) / 4)
-    proof.define(B_x, a**3 * (1 + q) * PEELED)
-    proof.define(support_rate, kappa / B_z)
-    proof.define(damper_share, damper / B_x)
-    proof.define(S_z, (1 + q) / (2 * q) + support_rate)
-    proof.define(own_rise, DEAD_WEIGHT_RISE)
-    proof.define(rise, RISE)
+    value = -half * lam * a * q / (3 * per_depth / 4 + kappa)
+    proof.define(sinks, value, "how far it sinks for that")
+    slope = a**3 * (1 + q**3) + half * lam * a * (1 + q) * sinks
+    proof.recall("F11-start", rho, right, left)
+    proof.recall("F11", f_normal, f_friction)
+    by = {
+        (force, variable): at_motion(sp.Derivative(force, variable), {d: a**2, d_s: 0})
+        for force in (f_normal, f_friction) for variable in (d, lam)
+    }  # fmt: skip
     proof.equal(
-        S_z * (slope + damper) / (B_x + damper), rise, "what friction and damper gain with velocity"
+        by[f_normal, lam] + (by[f_normal, d] + kappa) * sinks, sp.S.Zero, "the load stays the same"
     )
+    proof.equal(by[f_friction, lam] + by[f_friction, d] * sinks, slope, "what friction gains")
+    proof.define(B_z, 3 * a * (1 + q) / 4, "damping of the contact across")
+    proof.define(B_x, a**3 * (1 + q) * PEELED, "and along")
+    proof.define(support_rate, kappa / B_z, "stiffness of the suspension")
+    proof.define(damper_share, damper / B_x, "the damper beside the contact")
+    proof.define(S_z, (1 + q) / (2 * q) + support_rate, "and with that of the contact")
+    proof.define(own_rise, DEAD_WEIGHT_RISE, "of a dead weight without a damper")
+    proof.define(rise, RISE, "F22-numbers")
+    gain = S_z * (slope + damper) / (B_x + damper)
+    proof.equal(gain, rise, "what friction and damper gain with velocity")
+    without = sp.Subs(hurwitz, S_x, 0)
+    proof.recall("F22-routh", without)
+    proof.equal(without / sp.Subs(REST, S_x, 0), gain, r"so $\check H$ has this sign")
     proof.define(kappa, sp.S.Zero, "dead weight")
     proof.define(damper, sp.S.Zero, "no damper")
     proof.equal(rise, DEAD_WEIGHT_RISE, "rational")
-    proof.root(DEAD_WEIGHT_RISE, q, 2 - sp.sqrt(3), "the friction maximum of F3", over=(q, 0, 1))
+    proof.root(DEAD_WEIGHT_RISE, q, PEAK, "where it changes its sign", over=UNIT)
+    proof.recall("F3")
+    proof.equal(DEAD_WEIGHT_RISE, sp.S.Zero, "at the friction maximum")
     proof.done(rise, DEAD_WEIGHT_RISE)
 
 
-@result("F22-limits", uses=("F22", "F12", "F22-routh"), notation={"P": QUARTIC})
+@result("F22-limits")
 def _limits(proof: Proof) -> None:
     r"""Rigid drive, fixed indenter, no inertia.
 
-    The quartic $P$ of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia across
+    The quartic of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia across
     the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where friction
     falls, and none where it rises.
     """
+    proof.recall("F22", (quartic, QUARTIC))
+    proof.recall("F12-linear", quadratic)
     for stiffness, other, reason in (
-        (kappa_x, QUADRATIC, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
+        (kappa_x, quadratic, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
         (
             kappa,
             LONGITUDINAL,
             r"and for $\kappa \to \infty$, a fixed indenter: a damped oscillation",
         ),
     ):
-        slope = sp.Derivative(QUARTIC, stiffness)
-        proof.equal(slope, other, reason, left=rf"\frac{{\partial P}}{{\partial {tex(stiffness)}}}")
-    lay_down(proof)
-    proof.define(hurwitz, HURWITZ)
+        proof.equal(sp.Derivative(quartic, stiffness), other, reason)
+    proof.recall("F22-routh", uncoupled, rise, (hurwitz, HURWITZ))
     light = T_x * (uncoupled * S_x + rise * (uncoupled + S_z * T_x))
     proof.equal(sp.Subs(hurwitz, T_z, 0), light, "a light indenter, across")
     proof.where(sp.Lt(rise, 0), "friction falls")

@@ -5,7 +5,7 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
-from .spring_drive import COUPLING, LONGITUDINAL, SECTION, damper, eps_x, kappa_x
+from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, eps_x, kappa_x, quartic
 from .steady import l, q
 from .theorems import kappa
 from .transient_edges import right
@@ -67,6 +67,8 @@ REST = T_z**2 * S_x + T_x**2 * S_z + uncoupled * (T_z + T_x) + T_z * T_x * coupl
 SQUARE = bias**2 - 4 * uncoupled * T_z * rise
 ONSET = T_z**2 * Omega**2 + (bias - 2 * T_z * rise) * Omega + S_z * rise
 """Vanishes for the square of the frequency at onset."""
+REAL_PART = _a4 * Omega**2 - _a2 * Omega + _a0
+"""Of the scaled quartic at the rate i sqrt(Omega)."""
 AT_ONSET = Omega * (T_x + (S_c - lag_plus) / (Omega + S_c * lag_plus))
 
 result = Chapter(SECTION)
@@ -89,7 +91,7 @@ def _quadratics(proof: Proof) -> None:
                 "two quadratic factors, real")  # fmt: skip
     proof.equal(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0, b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3),
                 "the determinant of Hurwitz")  # fmt: skip
-    proof.where(sp.Gt(a_0, 0))
+    proof.where(sp.Gt(a_0, 0), "the constant coefficient is positive")
     for total, parts, what in (
         (c_1 + c_2, c_1**2 + a_0, "two numbers with positive sum and product are positive"),
         (a_1, b_2 * c_1**2 + b_1 * a_0, "as they are if another sum is, with positive weights"),
@@ -100,7 +102,7 @@ def _quadratics(proof: Proof) -> None:
                       b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))  # fmt: skip
 
 
-@result("F22-numbers", uses=("F22",))
+@result("F22-numbers")
 def _numbers(proof: Proof) -> None:
     r"""The numbers of the rates.
 
@@ -114,34 +116,37 @@ def _numbers(proof: Proof) -> None:
     proof.define(B_z, 3 * a * (1 + q) / 4, "the damping of the contact across the foundation")
     proof.define(B_x, a**3 * (1 + q) * PEELED, "and along it")
     proof.equal(right**3 + a**3, B_x, "as in F22-forces")
-    proof.define(damper_share, damper / B_x)
-    proof.define(T_z, eps / B_z)
-    proof.define(T_x, eps_x / (B_x + damper))
-    proof.define(support_rate, kappa / B_z)
-    proof.define(S_z, (1 + q) / (2 * q) + support_rate)
-    proof.define(S_x, kappa_x / (B_x + damper))
-    proof.define(S_c, (1 + q) / q)
-    proof.define(coupling, 3 * (l * q) ** 2 / ((1 + q) ** 2 * PEELED * (1 + damper_share)))
+    proof.define(damper_share, damper / B_x, "the damper beside it")
+    proof.define(T_z, eps / B_z, "inertia across")
+    proof.define(T_x, eps_x / (B_x + damper), "inertia along")
+    proof.define(support_rate, kappa / B_z, "stiffness of the suspension")
+    proof.define(S_z, (1 + q) / (2 * q) + support_rate, "and with that of the contact")
+    proof.define(S_x, kappa_x / (B_x + damper), "stiffness along")
+    proof.define(S_c, (1 + q) / q, "stiffness of the coupling")
+    proof.define(
+        coupling, 3 * (l * q) ** 2 / ((1 + q) ** 2 * PEELED * (1 + damper_share)), "its strength"
+    )
     proof.equal(QUADRATIC, B_z * ACROSS, "across")
     proof.equal(LONGITUDINAL, (B_x + damper) * ALONG, "along")
-    whole, form = QUADRATIC * LONGITUDINAL - COUPLING, B_z * (B_x + damper) * SCALED
-    proof.equal(whole, form, "and both together")
+    proof.recall("F22", (quartic, QUARTIC))
+    form = B_z * (B_x + damper) * SCALED
+    proof.equal(quartic, form, "and both together")
     own = ((1 + q) ** 2 / (4 * PEELED) + damper_share) / (1 + damper_share)
-    proof.define(uncoupled, own)
+    proof.define(uncoupled, own, "what is left of the dampings")
     proof.equal(1 - coupling, uncoupled, "positive: without stiffness nothing would grow")
-    proof.define(own_rise, DEAD_WEIGHT_RISE)
-    proof.define(rise, RISE)
+    proof.define(own_rise, DEAD_WEIGHT_RISE, "of a dead weight without a damper")
+    proof.define(rise, RISE, "what is left of the stiffness")
     proof.equal(S_z - coupling * S_c, rise, "it has the sign of $dF/dV$ (F22-soft)")
-    proof.done(whole, form)
+    proof.done(quartic, form)
 
 
 def lay_down(proof: Proof) -> None:
     """Let the coupling and its stiffness be what is left of the dampings and of the stiffness."""
-    proof.define(uncoupled, 1 - coupling)
-    proof.define(rise, S_z - coupling * S_c)
+    proof.define(uncoupled, 1 - coupling, "what is left of the dampings")
+    proof.define(rise, S_z - coupling * S_c, "and of the stiffness")
 
 
-@result("F22-routh", uses=("F22-numbers", "hurwitz"))
+@result("F22-routh", uses=("hurwitz",))
 def _routh(proof: Proof) -> None:
     r"""Condition of stability.
 
@@ -151,17 +156,19 @@ def _routh(proof: Proof) -> None:
     """
     lay_down(proof)
     series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
-    proof.equal(SCALED, series, "by powers of the rate")
     proof.define(hurwitz, HURWITZ, "the determinant of Hurwitz")
     proof.equal(_a2 * _a3 - _a1 * _a4, REST, "its bracket: a sum of positive terms")
     proof.holds(REST, ">", 0, r"so $\check H > 0$ says that $\varrho_x + \check e > 0$, too")
-    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.define(bias, uncoupled - T_z * coupling * S_c, "a shorthand")
     square = (2 * T_z**2 * S_x + (T_z + T_x) * bias - 2 * T_z * T_x * rise) ** 2
     form = (square - (T_z + T_x) ** 2 * SQUARE) / (4 * T_z**2)
     proof.equal(
         hurwitz, form, r"quadratic in $\varrho_x$; its discriminant does not hold $\vartheta_x$"
     )
     proof.equal(sp.Subs(hurwitz, S_x, 0), rise * sp.Subs(REST, S_x, 0), "without a spring")
+    proof.recall("F22-numbers", quartic)
+    over = B_z * (B_x + damper)
+    proof.equal(quartic / over, series, "of these coefficients: the quartic by powers of the rate")
     proof.done(hurwitz, form)
 
 
@@ -174,26 +181,25 @@ def _onset(proof: Proof) -> None:
     gives this frequency, so that the critical stiffness is linear in the mass.
     """
     lay_down(proof)
-    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.define(bias, uncoupled - T_z * coupling * S_c, "a shorthand")
     proof.define(S_x, (T_z + T_x) * Omega - rise, "the imaginary part of the quartic vanishes")
-    real = _a4 * Omega**2 - _a2 * Omega + _a0
-    proof.equal(real, -ONSET, r"its real part does not hold $\vartheta_x$ and $\varrho_x$")
+    proof.equal(REAL_PART, -ONSET, r"its real part does not hold $\vartheta_x$ and $\varrho_x$")
     lag = S_z - T_z * Omega
     proof.equal(lag**2 + uncoupled * Omega - coupling * S_c * lag, ONSET, "complete square")
-    proof.done(real, -ONSET)
+    proof.done(REAL_PART, -ONSET)
 
 
 def _frequencies(proof: Proof) -> None:
     """Let the roots of the quadratic be known."""
     lay_down(proof)
-    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    proof.define(bias, uncoupled - T_z * coupling * S_c, "a shorthand")
     proof.where(sp.Gt(SQUARE, 0), "else no frequency is real")
-    proof.define(onset_square, SQUARE)
-    proof.define(spread, sp.sqrt(onset_square))
-    proof.define(onset_sum, bias - 2 * T_z * rise)
+    proof.define(onset_square, SQUARE, "the discriminant")
+    proof.define(spread, sp.sqrt(onset_square), "its root")
+    proof.define(onset_sum, bias - 2 * T_z * rise, "the linear coefficient of the quadratic")
 
 
-@result("F22-critical", uses=("F22-routh", "F22-onset"))
+@result("F22-critical", uses=("F22-routh",))
 def _critical(proof: Proof) -> None:
     r"""Critical stiffness.
 
@@ -205,10 +211,8 @@ def _critical(proof: Proof) -> None:
     for every stiffness.
     """
     _frequencies(proof)
-    proof.define(Omega_plus, (spread - onset_sum) / (2 * T_z**2))
-    proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2))
-    for each in (Omega_plus, Omega_minus):
-        proof.equal(ONSET.subs(Omega, each), sp.S.Zero, "a root of the quadratic of F22-onset")
+    proof.define(Omega_plus, (spread - onset_sum) / (2 * T_z**2), "one frequency")
+    proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the other")
     proof.equal(Omega_plus * Omega_minus, S_z * rise / T_z**2, "their product")
     high, low = ((T_z + T_x) * each - rise for each in (Omega_plus, Omega_minus))
     between = (T_z + T_x) * spread / T_z**2
@@ -218,7 +222,12 @@ def _critical(proof: Proof) -> None:
         S_z * rise / T_z**2, "<", 0, r"$\Omega_{-}$ does not exist", cases=(sp.Lt(rise, 0),)
     )
     proof.define(hurwitz, HURWITZ)
-    proof.equal(hurwitz, T_z**2 * (S_x - high) * (S_x - low), "F22-onset gives both roots")
+    factors = T_z**2 * (S_x - high) * (S_x - low)
+    proof.equal(hurwitz, factors, "it vanishes at the stiffnesses of both frequencies")
+    proof.recall("F22-onset", (REAL_PART, -ONSET))
+    zeros = -(T_z**2) * (Omega - Omega_plus) * (Omega - Omega_minus)
+    proof.equal(REAL_PART, zeros, "as does the real part of the quartic of F22-onset")
+    proof.done(hurwitz, factors)
 
 
 @result("F22-falling", uses=("F22-critical",))
@@ -231,7 +240,7 @@ def _forms(proof: Proof) -> None:
     """
     _frequencies(proof)
     proof.where(sp.Lt(rise, 0), "friction falls")
-    proof.where(sp.Gt(onset_sum, 0))
+    proof.where(sp.Gt(onset_sum, 0), "the case of little inertia")
     proof.define(Omega, -2 * S_z * rise / (spread + onset_sum), "of positive terms")
     proof.equal(Omega, (spread - onset_sum) / (2 * T_z**2), r"this is $\Omega_{+}$")
     proof.define(
@@ -243,5 +252,5 @@ def _forms(proof: Proof) -> None:
     proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega, "positive")
     proof.holds(uncoupled * Omega / lag_plus, ">", 0,
                 r"so $\check p_{+} < \check g \varrho_{\mathrm{c}} < \varrho_{\mathrm{c}}$")  # fmt: skip
-    proof.define(S_x, (T_z + T_x) * Omega - rise)
+    proof.define(S_x, (T_z + T_x) * Omega - rise, "as in F22-onset")
     proof.equal(S_x, AT_ONSET, "the critical stiffness")

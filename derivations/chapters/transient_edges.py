@@ -10,14 +10,22 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .contact_interval import E
+from .model import u_i
+from .tables import delta_0
 from .theorems import lam
 from .transient_memory import (
+    CLEAR,
     OF_TIME,
     SECTION,
     SURFACE,
+    compression,
     depth,
+    earlier,
     eta,
+    indenter,
+    margin_of,
     material,
+    pushed_by,
     sigma,
     time,
     travel,
@@ -51,8 +59,11 @@ LEFT_AT_ONCE, RIGHT_AT_ONCE = -E * drift - _radius, -E * drift + _radius
 """Edges on ground that was left at one instant."""
 
 _MOVING = {**OF_TIME, lam: sp.Derivative(travel, time)}
+_PRESSED_NOW = PRESSURE.subs(_MOVING).subs(xi, material + travel)
 _d_0, _moved = sp.symbols("d_0 m", real=True)
 _h, _ahead = sp.symbols("h k", positive=True)
+MEETS = sp.exp(time) * (indenter(time) - compression(time))
+"""Vanishes where the indenter meets the free surface."""
 edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
@@ -67,25 +78,8 @@ def _peeling(proof: Proof) -> None:
     An edge peels where the pressure vanishes: Eq. (33) in scaled form. If $d + d' + \lambda^2 < 0$ no element
     can be pressed: the indenter has left the foundation.
     """
-    pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
-    radius = sp.sqrt(RADICAND).subs(_MOVING)
-    proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
-    for sign, edge in ((-1, r"\ell"), (1, "r")):
-        position = sign * radius - sp.Derivative(travel, time) - travel
-        loss = sp.diff(pressure, time).subs(material, position)
-        moving = sign * radius - sp.Derivative(travel, time)
-        proof.notation |= {
-            edge: sp.Lambda(time, moving),
-            r"\hat p": pressure,
-            "Y": travel,
-            "X": material,
-        }
-        proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
-        proof.equal(
-            *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
-            left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
-            right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
-        )
+    falls = (material + travel) ** 2 + 2 * (material + travel) * travel.diff(time) - depth
+    proof.root(_PRESSED_NOW, depth.diff(time), falls, "of an element that has no pressure")
     proof.recall("scaled-pressure")
     proof.define(rho, sp.sqrt(RADICAND))
     proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
@@ -95,90 +89,101 @@ def _peeling(proof: Proof) -> None:
         proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
 
 
-_LEAVES = "the element there loses its pressure while the edge moves inward"
+@result("F10-inward")
+def _inward(proof: Proof) -> None:
+    r"""An edge that peels moves inward.
+
+    The elements there must lose their pressure, which vanishes. A left edge is the mirror image.
+    """
+    for name, value in _MOVING.items():
+        proof.define(name, value, "at every instant")
+    proof.recall("F10-peel", rho, right)
+    proof.where(sp.Gt(RADICAND, 0), "else no element can be pressed")
+    proof.notation |= {r"\hat p": _PRESSED_NOW, "X": material, "Y": travel}
+    proof.equal(
+        *(sp.Subs(sp.Derivative(_PRESSED_NOW, time), material, right - travel),),
+        *(
+            2 * rho * sp.Derivative(right - travel, time),
+            "negative while a right edge moves inward",
+        ),
+        left=r"\left.\frac{d\hat p}{ds}\right|_{X = r - Y}",
+    )
 
 
-@result("F10-touch", uses=("F8", "F9", "eq32"))
+@result("F10-touch")
 def _touching(proof: Proof) -> None:
     r"""Edges that touch.
 
     An edge touches where the indenter meets the free surface, $g = u$: on undisturbed ground at $\xi =
-    \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = e^{\sigma}
-    g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity $X_{\mathrm{e}}'$ of the
-    edge through the foundation, and positive while it moves outward, because $\xi - E \eta$ has the sign of
-    the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$ does not matter: either
-    all of the ground was left at once, or each element when its pressure, and with it $\partial(e^{\sigma}
-    g)/\partial\sigma$, vanished.
+    \mp\sqrt{d}$ (compare Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) =
+    e^{\sigma} g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity
+    $X_{\mathrm{e}}'$ of the edge through the foundation, and positive while it moves outward, because $\xi -
+    E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends on $X$
+    does not matter: either all of the ground was left at once, or each element when its pressure, and with it
+    $\partial(e^{\sigma} g)/\partial\sigma$, vanished.
     """
+    proof.recall("scaled-pressure", u_i / delta_0)
     for sign, called, words in ((-1, left, "left"), (1, right, "right")):
         side = (xi, -sp.oo, 0) if sign < 0 else (xi, 0, sp.oo)
         ground = f"{words} edge on undisturbed ground"
-        proof.root(d - xi**2, xi, sign * sp.sqrt(d), ground, over=side, name=called)
+        proof.root(u_i / delta_0, xi, sign * sp.sqrt(d), ground, over=side, name=called)
     now = depth - (material + travel) ** 2
-    proof.notation |= {r"\hat p": PRESSURE.subs(_MOVING)}
-    meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
-    condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
     along = -2 * sp.exp(time) * (xi - E * eta)
-    in_time = sp.exp(time) * PRESSURE.subs(_MOVING)
-    proof.define(xi, material + travel)
-    proof.define(eta, material + travel.subs(time, sigma), r"where the element was at $\sigma$")
-    proof.define(E, sp.exp(sigma - time))
-    proof.equal(
-        *(sp.Derivative(meeting, material), along, "along the foundation"),
-        left=rf"\frac{{\partial}}{{\partial X}} {condition}",
-    )
-    proof.equal(
-        *(sp.Derivative(meeting, time), in_time, "in time"),
-        left=rf"\frac{{\partial}}{{\partial s}} {condition}", right=r"e^{s} \hat p",
-    )  # fmt: skip
-    speed = sp.Derivative(edge_path, time)
-    reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
-    proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason)
+    proof.define(E, sp.exp(sigma - time), r"the decay since $\sigma$")
+    proof.define(xi, material + travel, "where the element is")
+    proof.define(_moved, travel - travel.subs(time, sigma), "how far it has moved")
+    proof.define(d, depth, "the depth now")
+    proof.define(_d_0, depth.subs(time, sigma), "and then")
+    for place in (time, sigma):
+        proof.define(indenter(place), now.subs(time, place), "the indenter at the element")
+    proof.recall("F8")
+    reason = "it vanishes where the surfaces meet"
+    proof.equal(MEETS, sp.exp(time) * (d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)), reason)
+    proof.define(eta, material + travel.subs(time, sigma), r"and where it was at $\sigma$")
+    proof.equal(sp.Derivative(MEETS, material), along, "along the foundation")
+    in_time, speed = sp.Derivative(sp.exp(time) * now, time), sp.Derivative(edge_path, time)
+    proof.recall("F8-update", in_time, reason="in time")
+    reason = r"the edge $X_{\mathrm{e}}(s)$ keeps it at zero"
+    proof.root(in_time + along * speed, P, TOUCHING_PRESSURE, reason)
 
 
-@result("F10-signs", uses=("F9", "F10-peel"))
+@result("F10-signs")
 def _signs(proof: Proof) -> None:
-    r"""Inward an edge peels, outward it touches.
+    r"""An edge that touches moves outward.
 
-    In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, $X_{\mathrm{e}}' <
-    0$: the elements there must lose their pressure, which vanishes. One that touches moves outward, for its
-    pressure is not negative. A left edge is the mirror image.
+    In the foundation a right edge is at $X_{\mathrm{e}}$. Where it touches it moves outward, for its pressure
+    is not negative. A left edge is the mirror image.
     """
-    now, speed = depth - (material + travel) ** 2, sp.Derivative(edge_path, time)
-    margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
-    other = margin.subs(material, material - b)
+    speed, at_left = sp.Derivative(edge_path, time), {material: material - b, earlier: sigma}
+    margin = margin_of(material).subs(earlier, sigma)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
     proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
-    proof.recall("F10-touch")
-    proof.holds(2 * rho * speed, "<", 0,
-                "F10-peel: an element that detaches on the right loses its pressure",
-                cases=(sp.Lt(speed, 0),))  # fmt: skip
-    proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
     inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
-    proof.define(
-        inside, other, r"at the left edge, not negative: it is in contact", right="D(X - b)"
-    )
+    proof.define(inside, margin_of(material).subs(at_left), "at the left edge", right="D(X - b)")
     proof.equal(
         *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D(X) = 0$"),
         left=r"2 e^{s} b \left(\xi - E \eta\right)",
         right=r"D_2 - D(X) + \left(e^{s} - e^{\sigma}\right) b^2",
     )
+    proof.recall("F9", margin_of(material), at=at_left)
+    pressed = (pushed_by()[0] - CLEAR).subs(earlier, sigma)
+    proof.equal(inside, pressed, "not negative: there is contact, $\\bar c(s) = 0$")
     proof.where(time > sigma, "an earlier instant")
     proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
+    proof.recall("F10-touch")
     proof.define(xi, E * eta + _ahead, "with $k > 0$")
     proof.equivalent(
         P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
     )
 
 
-@result("F10-instant", uses=("F10-touch",))
+@result("F10-instant")
 def _at_once(proof: Proof) -> None:
     r"""Ground left at one instant.
 
     A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. With $E =
     e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in $\xi$.
     """
-    left_then = d - xi**2 - E * (_d_0 - (xi - _moved) ** 2)
     quotient = (lift + E * (1 - E) * drift**2) / (E * drift + _radius)
     whole = (zeta, start, time)
     inner = depth.subs(time, zeta)
@@ -191,17 +196,18 @@ def _at_once(proof: Proof) -> None:
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
     proof.define(drift, _moved / (1 - E), "$m = Y(s) - Y(s_0)$")
+    proof.recall("F10-touch", MEETS, at={sigma: start})
     middle = -E * drift
     proof.where(E < 1, "time has passed")
     proof.where(sp.Gt(lift + E * drift**2, 0), "else the indenter is above all of this ground")
-    proof.root(left_then, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
-    proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
+    proof.root(MEETS, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
+    proof.root(MEETS, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
     proof.where(drift > 0, "the foundation has moved on")
     proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
     proof.done(right, RIGHT_AT_ONCE)
 
 
-@result("F10-instant-limits", uses=("F10-instant", "F10-peel", "F10-touch"))
+@result("F10-instant-limits")
 def _soon_and_late(proof: Proof) -> None:
     r"""Ground left at one instant: early and late.
 
@@ -209,7 +215,6 @@ def _soon_and_late(proof: Proof) -> None:
     $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after it
     $E$ vanishes, and $m$ is what the way has been.
     """
-    proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
     proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
     proof.equal(
@@ -217,18 +222,17 @@ def _soon_and_late(proof: Proof) -> None:
     )
     proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
     proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
-    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
-    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
+    proof.recall("F10-instant")
+    proof.recall("F10-peel", rho)
     means = E, lift, drift
-    for ends, edge, shown, words in (
-        ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
-        ((0, d, _moved), sp.sqrt(d), "0, d, m", "late: undisturbed ground"),
+    for ends, edge, words in (
+        ((1, d + d_s, lam), rho - lam, "soon: it peels, as in F10-peel"),
+        ((0, d, _moved), sp.sqrt(d), "late: as on undisturbed ground"),
     ):
-        place = sp.Subs(RIGHT_AT_ONCE, means, ends)
-        proof.equal(place, edge, words, left=f"r({shown})")
+        proof.equal(sp.Subs(right, means, ends), edge, words)
 
 
-@result("F10-gradual", uses=("F10-peel", "F10-touch"))
+@result("F10-gradual", uses=("F10-touch",))
 def _gradually(proof: Proof) -> None:
     r"""Ground left element by element.
 
@@ -243,11 +247,11 @@ def _gradually(proof: Proof) -> None:
     now, then = depth - (element + travel) ** 2, was_depth - (element + moved) ** 2
     meeting = sp.exp(time) * now - sp.exp(sigma) * then
     slope = -2 * sp.exp(time) * (xi - E * eta) * sp.Derivative(element, sigma)
-    peeling = eta**2 + 2 * eta * sp.Derivative(moved, sigma) - was_depth
     proof.define(xi, element + travel, "where the element is now")
     proof.define(eta, element + moved, r"and where it was at $\sigma$")
     proof.define(E, sp.exp(sigma - time))
-    proof.define(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$")
+    reason = r"no pressure there at $\sigma$"
+    proof.recall("F10-peel", depth.diff(time), reason=reason, at={time: sigma, material: element})
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
         left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "

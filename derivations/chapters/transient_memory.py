@@ -9,11 +9,14 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, letter, symbol, symbols
 from ..engine.step import Proof
+from .model import K, N, c, f_z, k, t, tau, u_i
+from .tables import delta_0
 from .theorems import lam
-from .transient_scaling import PRESSURE, d, d_s, xi
+from .transient_scaling import P, d, d_s, xi
 
 time = symbol("s", real=True)
 earlier = symbol("s_1", "earlier instant", real=True)
+end = symbol("s_2", "end of a step", real=True)
 depth = function("d", real=True)(time)
 compression = function("u", r"scaled compression, $u/\delta_0$", printed=r"\bar u", real=True)
 letter(r"\bar u_0", "scaled compression at the beginning")
@@ -35,7 +38,7 @@ sigma, eta, zeta, mix = symbols(r"""
     sigma  -         1  earlier instant, at which an element was at an edge  prints \bar \sigma  real
     eta    -         1  position of an element then  prints \bar \eta
     zeta   -         1  variable of integration  from F8  real
-    -      \bar c    1  rate of a motion within a step
+    -      \bar c    1  clearance of the indenter above an element
     -      \check f  1  memory $e^{s} g$ within a step, over the exponential at its end
     -      \check v  1  slope of $\check f$
     -      \check c  1  difference of $\check M$ and the decrease of that slope
@@ -58,10 +61,11 @@ _NOTATION = (
     r"indenter there is at $g(X, s) = d - \xi^2$."
 )
 _h = sp.Symbol("h", positive=True)
-PUSH = sp.Function("p", nonnegative=True)
+PUSH = sp.Function(r"\hat p", nonnegative=True)
 """The pressure on an element, p/(K delta_0), as a function of time."""
-_clear = sp.Function("c", nonnegative=True)
+_clear = sp.Function(r"\bar c", nonnegative=True)
 """How far the indenter is above the surface of an element."""
+CLEAR = sp.exp(time) * _clear(time) - sp.exp(earlier) * _clear(earlier)
 _HEIGHT = depth - (material + travel) ** 2
 SURFACE = sp.Lambda((material, time), _HEIGHT)
 """g(X, s), the surface of the indenter above an element."""
@@ -69,10 +73,26 @@ SURFACE = sp.Lambda((material, time), _HEIGHT)
 OF_TIME = {d: depth, d_s: sp.Derivative(depth, time)}
 """The depth and its rate as functions of the scaled time."""
 
+_MOVING = {**OF_TIME, xi: material + travel, lam: sp.Derivative(travel, time)}
 result = Chapter(SECTION)
 
 
-@result("F8", text=_NOTATION, uses=("scaled-pressure",), notation={r"\hat p": PUSH})
+@result("scaled-element")
+def _element(proof: Proof) -> None:
+    r"""Scaled pressure of an element.
+
+    In the units of (scaled-pressure), with $s = t/\tau$; the element is in contact or free.
+    """
+    u = compression
+    proof.recall("eq12")
+    proof.recall("eq22", k, c, tau)
+    proof.define(u_i, delta_0 * u(t / tau), "compression in units of the static depth")
+    proof.define(t, tau * time, "time in units of the retardation time")
+    force, rate = N * f_z / (K * delta_0), sp.Derivative(u(time), time)
+    proof.root(force - PUSH(time), rate, PUSH(time) - u(time), "the force per area, never negative")
+
+
+@result("F8", text=_NOTATION)
 def _memory(proof: Proof) -> None:
     r"""Memory in closed form.
 
@@ -85,31 +105,36 @@ def _memory(proof: Proof) -> None:
     whole = (zeta, earlier, time)
     pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), whole)
     kept = sp.exp(time) * u(time)
-    proof.define(
-        *(sp.Derivative(u(zeta), zeta), PUSH(zeta) - u(zeta), r"$\hat p = u + u'$, never negative"),
-        right=r"\hat p(\zeta) - u(\zeta)",
-    )  # fmt: skip
+    proof.recall("scaled-element", reason=r"$\hat p = u + u'$, never negative", at={time: zeta})
     proof.integral(
         *(pushed, sp.exp(zeta) * PUSH(zeta), whole, sp.exp(zeta) * u(zeta)),
         r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: so $e^{s} u$ never decreases",
         value=kept - sp.exp(earlier) * u(earlier),
-        left=r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta",
     )  # fmt: skip
     proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
+    proof.define(g(time), u(time) - _clear(time), "and now")
+    gained = sp.exp(time) * g(time) - sp.exp(earlier) * g(earlier)
+    proof.equal(pushed, gained + CLEAR, "in terms of the indenter")
     at_last = {earlier: sigma}
-    proof.define(pushed.subs(at_last), sp.S.Zero, r"no pressure since $\sigma$, the last contact",
-                 left=r"\int_{\sigma}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta")  # fmt: skip
+    proof.define(pushed.subs(at_last), sp.S.Zero, r"no pressure since $\sigma$, the last contact")
     proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
-    proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(sp.Gt(time, sigma), "that contact is over")
-    proof.greatest(
-        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
-        surplus=pushed + sp.exp(earlier) * _clear(earlier),
-    )  # fmt: skip
     value = sp.exp(sigma - time) * g(sigma)
     proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
     since = kept - sp.exp(sigma) * u(sigma)
     proof.root(*(since, u(time), value, r"the free element since $\sigma$"))
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.greatest(
+        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
+        surplus=pushed + sp.exp(earlier) * _clear(earlier),
+    )  # fmt: skip
+    proof.done(u(time), value)
+
+
+def pushed_by() -> tuple[sp.Expr, sp.Expr]:
+    """Return the integral of the pressure on an element and its value, as F8 has them."""
+    whole = sp.Integral(sp.exp(zeta) * PUSH(zeta), (zeta, earlier, time))
+    return whole, sp.exp(time) * compression(time) - sp.exp(earlier) * compression(earlier)
 
 
 _BOUND = (
@@ -118,7 +143,7 @@ _BOUND = (
 )
 
 
-@result("F8-update", text=_NOTATION, uses=("F8",), notation={"g": SURFACE})
+@result("F8-update", text=_NOTATION, notation={"g": SURFACE})
 def _update(proof: Proof) -> None:
     r"""Memory from one instant to the next.
 
@@ -128,11 +153,11 @@ def _update(proof: Proof) -> None:
     the step (F8-remainder).
     """
     u, g = compression, indenter
-    proof.define(xi, material + travel)
-    proof.define(lam, sp.Derivative(travel, time))
-    pressure = PRESSURE.subs(OF_TIME)
+    for name, value in _MOVING.items():
+        proof.define(name, value)
+    proof.recall("scaled-pressure")
     proof.equal(
-        *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * pressure, _RISES),
+        *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * P, _RISES),
         left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
     )
     after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
@@ -142,10 +167,12 @@ def _update(proof: Proof) -> None:
     proof.define(
         g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
     )
-    proof.define(
-        *(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse),
-        r"F8 over one step: $J = \int e^{\zeta} \hat p \, d\zeta \ge 0$",
-    )
+    step = (zeta, time, time + _h)
+    pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), step)
+    proof.holds(pushed, ">=", 0, "over one step")
+    proof.recall("F8", pushed_by(), at={earlier: time, time: time + _h})
+    proof.define(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse, r"with $J \ge 0$")
+    proof.equal(pushed, impulse, "which this is")
     either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
     proof.equal(
         *(after, larger, "free until then, or in contact at the end"), cases=either,
@@ -155,14 +182,14 @@ def _update(proof: Proof) -> None:
 _RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
 
 
-@result("F8-remainder", uses=("F8-update",))
+@result("F8-remainder", notation={"g": SURFACE})
 def _remainder(proof: Proof) -> None:
     r"""Error of the memory within a step.
 
     Where $e^{s} g$ is largest within a step, at the time $b_8$ from its nearer end, let $f_8(y_8)$ be it over
     the exponential at its end, at the time $y_8$ from the nearer end; the update takes $f_8(0)$ for
-    $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1 (F8-update), and $M_8$ its
-    greatest magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by $M_8 - c_8$ with $c_8
+    $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1, and $M_8$ its greatest
+    magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by $M_8 - c_8$ with $c_8
     \ge 0$.
     """
     f, slope = (sp.Function(name, real=True) for name in ("f_8", "v_8"))
@@ -170,6 +197,11 @@ def _remainder(proof: Proof) -> None:
     y, b, most = sp.symbols("y_8 b_8 M_8", positive=True)
     later = sp.Symbol("k_8", nonnegative=True)
     missed = f(b) - f(0)
+    rise = sp.Derivative(sp.exp(time) * _HEIGHT, time)
+    proof.recall("F8-update", *_MOVING, P, rise)
+    bends = sp.exp(time - end) * (P + sp.Derivative(P, time))
+    proof.equal(sp.Derivative(sp.exp(-end) * rise, time), bends, "its second derivative",
+                left=r"\frac{d^2}{ds^2} \left[e^{s - s_2} g(X, s)\right]")  # fmt: skip
     proof.define(sp.Derivative(f(y), y), slope(y), "its slope")
     proof.define(sp.Derivative(slope(y), y), unused(y) - most, "which falls by at most this bound")
     whole, spare = (y, 0, b), sp.Integral(y * unused(y), (y, 0, b))
@@ -185,30 +217,33 @@ def _remainder(proof: Proof) -> None:
     proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
 
 
-def _margin(position: sp.Expr) -> sp.Expr:
+def margin_of(position: sp.Expr) -> sp.Expr:
     """Return e**s g now minus e**s_1 g at an earlier instant, for the element X = position."""
     now = depth - (position + travel) ** 2
     return sp.exp(time) * now - sp.exp(earlier) * now.subs(time, earlier)
 
 
 _one, _other = sp.symbols("X_1 X_2", real=True)
+_first, _second = sp.symbols("D_1 D_2", real=True)
+_BETWEEN, _CHORD = margin_of(mix * _one + (1 - mix) * _other), mix * _first + (1 - mix) * _second
 _BULGE = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (_one - _other) ** 2
-_MARGIN = sp.Lambda(material, _margin(material))
+_MARGIN = sp.Lambda(material, margin_of(material))
 """e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
 
 
-@result("F9", text=_NOTATION, uses=("F8",), notation={"g": SURFACE, "D": _MARGIN})
+@result("F9", text=_NOTATION, notation={"g": SURFACE, "D": _MARGIN})
 def _interval(proof: Proof) -> None:
     r"""The contact is one interval.
 
     By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} g(X, s_1)$
-    at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of these differences,
+    at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$: without a clearance $\bar c$
+    the difference is not negative, and for its last contact it is $-e^{s} \bar c(s)$. Each of these,
     $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by $e^{s}$), so that the
     elements between two in contact satisfy the same conditions: the contact has no gap. So two edges describe
     the contact, for any drive $\lambda(s)$ and depth $d(s)$. That the differences are concave needs the
     parabola, whose curvature is the same everywhere; that the contact is one interval does not.
     """
-    margin = _margin(material)
+    margin = margin_of(material)
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")
     proof.define(eta, sp.exp(time - earlier))
@@ -216,9 +251,13 @@ def _interval(proof: Proof) -> None:
         *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
         left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
     )
+    contact_condition(proof, _HEIGHT, _HEIGHT.subs(time, earlier), margin, "D(X)")
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements in contact")
-    _between(proof)
+    for name, place, shown in ((_first, _one, "X_1"), (_second, _other, "X_2")):
+        proof.define(name, margin_of(place), f"at ${shown}$, not negative", right=f"D({shown})")
+    reason = "its chord, and how far it bulges above"
+    proof.equal(_BETWEEN, _CHORD + _BULGE, reason, left=r"D(\theta X_1 + (1 - \theta) X_2)")
     proof.holds(_BULGE, ">=", 0, _CONVEX)
     proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
@@ -228,34 +267,27 @@ _CONVEX = (
 )
 
 
-def _between(proof: Proof) -> None:
-    """Prove what a difference is between two elements where it is not negative."""
-    first, second = sp.symbols("D_1 D_2", real=True)
-    for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
-        proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
-    between = _margin(mix * _one + (1 - mix) * _other)
-    proof.equal(
-        *(
-            between,
-            mix * first + (1 - mix) * second + _BULGE,
-            "its chord, and how far it bulges above",
-        ),
-        left=r"D(\theta X_1 + (1 - \theta) X_2)",
-    )
+def contact_condition(
+    proof: Proof, now: sp.Expr, then: sp.Expr, margin: sp.Expr, shown: str
+) -> None:
+    """Prove by F8 what the difference is of which the sign decides about contact."""
+    proof.define(indenter(time), now, "the indenter at the element now")
+    proof.define(indenter(earlier), then, "and then")
+    proof.recall("F8", pushed_by()[0])
+    proof.equal(margin, pushed_by()[0] - CLEAR, r"not negative where $\bar c(s) = 0$", left=shown)
 
 
-@result("F9-landing", uses=("F8", "F9"), notation={"D": _MARGIN})
+@result("F9-landing", notation={"D": _MARGIN})
 def _landing(proof: Proof) -> None:
     r"""Landing is at one point.
 
-    While the indenter flies since $s_0$, an element is touched when $D(X) = e^{s} g(X, s) - e^{s_1} g(X,
-    s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If two elements
-    were touched at the same instant, those between them would exceed this condition by at least $\theta (1 -
-    \theta) (e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been compressed before.
+    While the indenter flies since $s_0$, an element is touched when $D(X)$ of (F9) is no longer negative for
+    any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$. If two elements were touched at the same instant,
+    those between them would exceed this condition by at least $\theta (1 - \theta) (e^{s} - e^{s_0}) (X_1 -
+    X_2)^2$, whatever $s_1$ is: they would have been compressed before.
     """
-    proof.where(sp.Gt(time, earlier), "any earlier instant")
-    proof.where(mix < 1, "between two elements")
-    proof.where(sp.Gt(_one, _other), "that are not the same")
-    _between(proof)
-    proof.holds(_BULGE, ">", 0,
-                "if both landed at the same instant, the elements between would have before")  # fmt: skip
+    proof.recall("F9", _BETWEEN)
+    proof.where(sp.Gt(_one, _other), "not the same element")
+    proof.holds(_BETWEEN - _CHORD, ">", 0,
+                "if both landed at the same instant, the elements between would have before",
+                left=r"D(\theta X_1 + (1 - \theta) X_2) - [\theta D_1 + (1 - \theta) D_2]")  # fmt: skip

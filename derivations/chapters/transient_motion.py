@@ -2,13 +2,12 @@
 
 import sympy as sp
 
-from ..engine.book import established
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
 from .contact_interval import E
 from .theorems import lam
-from .transient_edges import RADICAND, b, edge_path, left, rho, right
+from .transient_edges import MEETS, RADICAND, b, edge_path, left, rho, right
 from .transient_memory import SECTION, eta, time
 from .transient_scaling import PRESSURE, P, d, d_s, f_normal, xi
 
@@ -96,63 +95,62 @@ def _peeling_forces(proof: Proof) -> None:
     proof.done(f_normal, PEELING_NORMAL_FORCE)
 
 
-@result("F11-edges", uses=("F10-peel", "F10-instant", "F10-gradual"))
+@result("F11-edges")
 def _edges(proof: Proof) -> None:
     r"""How edges depend on the motion.
 
     An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left at
-    $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; if each
-    element was left at a different instant, this instant has no effect to first order (F10-gradual).
+    $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant. Where
+    each element was left at its own instant, this has no effect to first order, as (F10-gradual) shows.
     """
-    then, moved = sp.symbols("d_0 m", real=True)
-    meets = d - _touching**2 - E * (then - (_touching - moved) ** 2)
+    moved = sp.Symbol("m", real=True)
+    proof.define(xi, _touching, "a touching edge moves with the depth")
+    proof.recall("F10-touch", MEETS)
     proof.define(eta, _touching - moved, "where the element was when the edge left it")
     proof.where(sp.Gt(_touching, E * eta), "a right edge; a left one mirrors it")
     per_depth = 1 / (2 * (_touching - E * eta))
     for variable, value in ((d, per_depth), (d_s, sp.S.Zero)):
         slope = sp.Derivative(_touching, variable)
-        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches")
+        proof.root(sp.Derivative(MEETS, variable), slope, value, "an edge that touches")
     proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
-    proof.notation["r"] = START[right]
+    proof.recall("F10-peel", rho)
+    proof.recall("F10-peel")
     for variable in (d, d_s):
-        slope = sp.Derivative(START[right], variable)
-        proof.equal(
-            slope, 1 / (2 * sp.sqrt(RADICAND)), "an edge that peels", left=_partial(right, variable)
-        )
+        slope = sp.Derivative(right, variable)
+        proof.equal(slope, 1 / (2 * rho), "an edge that peels")
     proof.done(sp.Derivative(_touching, d), per_depth)
 
 
-@result("F11-derivatives", uses=("F10-peel", "F11"))
+@result("F11-derivatives")
 def _derivatives(proof: Proof) -> None:
     r"""How forces depend on the motion.
 
-    At an edge that peels $\hat p$ vanishes, and with it the term of that edge. An edge that touches does not
-    depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to $\partial
-    f_z/\partial d$.
+    At an edge that peels $\hat p$ vanishes (F10-peel), and with it the term of that edge. An edge that
+    touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to
+    $\partial f_z/\partial d$.
     """
     ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
-    named = {"f_z": f_normal, "f_x": f_friction}
-    proof.notation |= {name: established("F11", each).subs(ends) for name, each in named.items()}
     proof.notation |= {r"\hat p": sp.Lambda(xi, PRESSURE), r"\ell": ends[left], "r": ends[right]}
+    proof.recall("F11", f_normal, f_friction)
+    for end, moves in ends.items():
+        proof.define(end, moves, "an edge that moves")
     for variable in (d, d_s):
         for force, share, weight in ((f_normal, _LOAD_SHARE, 1), (f_friction, _FRICTION_SHARE, xi)):
-            slope = sp.Derivative(established("F11", force).subs(ends), variable)
             inside = sp.integrate(weight, CONTACT)
             ahead, behind = (
                 (weight * PRESSURE).subs(xi, end) * sp.Derivative(end, variable)
                 for end in ends.values()
             )
             proof.equal(
-                *(slope, share * (inside.subs(ends) + ahead - behind), "the pressure at moving ends"),
+                *(sp.Derivative(force, variable), share * (inside + ahead - behind), "moving ends"),
                 left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
             )  # fmt: skip
     proof.recall("F10-touch")
-    per_depth = sp.Derivative(_touching, d)
     proof.recall("F11-edges")
     proof.define(xi, _touching)
+    speed = sp.Derivative(edge_path, time)
     proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
-    proof.equal(P * per_depth, sp.Derivative(edge_path, time), _TOUCHES,
-                right=r"X_{\mathrm{e}}'")  # fmt: skip
+    proof.equal(P * sp.Derivative(_touching, d), speed, _TOUCHES, right=r"X_{\mathrm{e}}'")
 
 
 _TOUCHES = "an edge that touches: its velocity through the foundation"
@@ -171,22 +169,18 @@ def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.E
     return rf"{tex(share)} \left[{tex(inside)} + {ends[0]} - {ends[1]}\right]"
 
 
-@result("F11-start", uses=("F11-derivatives",))
+@result("F11-start")
 def _start_from_rest(proof: Proof) -> None:
     """How forces depend on the motion after a start from rest.
 
     While the drive does not slow down, the right edge peels and the left one touches undisturbed ground: the
     motion is an ordinary differential equation of two variables, without memory, with this Jacobian.
     """
-    proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
-    proof.define(right, START[right], "peels")
-    proof.define(left, START[left], "touches undisturbed ground")
-    proof.define(a, sp.sqrt(d))
-    named = {"f_z": f_normal, "f_x": f_friction}
-    proof.notation |= {name: established("F11", each).subs(START) for name, each in named.items()}
+    proof.recall("F10-peel", rho, right, reason="the right edge peels")
+    proof.recall("F10-touch", left, reason="the left one touches undisturbed ground")
+    proof.define(a, sp.sqrt(d), "half of a contact at rest")
+    proof.recall("F11", f_normal, f_friction)
     pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s)]
     for (force, variable), value in zip(pairs, JACOBIAN, strict=True):
-        slope = sp.Derivative(established("F11", force).subs(START), variable)
-        proof.equal(slope, value, "F11", left=_partial(force, variable))
-    first = sp.Derivative(established("F11", f_normal).subs(START), d)
-    proof.done(first, JACOBIAN[0])
+        proof.equal(sp.Derivative(force, variable), value, "F11", left=_partial(force, variable))
+    proof.done(sp.Derivative(f_normal, d), JACOBIAN[0])

@@ -1,5 +1,7 @@
 """Rates of the transient: near the steady state (F12), and without inertia (F13)."""
 
+from collections.abc import Mapping
+
 import sympy as sp
 
 from ..engine.book import established
@@ -12,13 +14,14 @@ from .master_curve import state_at
 from .model import K, M, R, V, g, tau
 from .steady import l, q
 from .theorems import LOAD, NUMBER, UNIT, A, kappa, lam, w
-from .transient_edges import b, rho, right
+from .transient_edges import b, left, rho, right
 from .transient_memory import SECTION, time
-from .transient_motion import PEELING_NORMAL_FORCE, START, a
-from .transient_scaling import P, d, d_s, eps, f_normal, xi
+from .transient_motion import START, a
+from .transient_scaling import P, d, d_s, d_ss, eps, f_normal, xi
 
-eps_critical, f, change, per_depth, per_rate, sigma, drive_excess, beta = symbols(r"""
+eps_critical, quadratic, f, change, per_depth, per_rate, sigma, drive_excess, beta = symbols(r"""
     epsilon_c  \varepsilon_{\mathrm{c}}  1  inertia number between monotone and oscillating motion
+    P_2        -                 1  quadratic of the rates  real
     f          -                 1  scaled force that balances weight and spring, $1 - \kappa (d -
             1)$  prints f_{\mathrm{b}}
     -          \tilde d          1  scaled depth near that of steady sliding
@@ -50,35 +53,51 @@ _times = sp.symbols("T_1 T_2", real=True)
 
 SLOW_RATE = right**2 + 2 * lam * right - d
 """d' of the slow manifold."""
+SLOW_FORCE = (right + a) ** 2 * (2 * right + 3 * lam - a) / 4
+"""f of the slow manifold."""
 EXCESS = 2 * (1 - beta**3) / (3 * beta**2)
 """n of the slow manifold, for its width beta."""
 
 result = Chapter(SECTION)
 
 
-@result("F12-linear", uses=("scaled-form", "F11-start"))
+@result("F12-linear")
 def _linearised(proof: Proof) -> None:
     r"""Small motions about steady sliding.
 
     The scaled motion with the force of F11-start, for the depth $D = a^2 + \hat d e^{\sigma s}$ near that of
     steady sliding, $a^2$. To first order in $\hat d$ it is obeyed if $\sigma$ is a root of the quadratic.
     """
-    force = established("F11", f_normal).subs(START)
     near = a**2 + change * sp.exp(sigma * time)
-    rate = sp.diff(near, time)
-    pushed = force.subs({d: near, d_s: rate}, simultaneous=True)
-    motion = eps * sp.Derivative(near, (time, 2)) - (1 - pushed - kappa * (near - 1))
-    proof.notation |= {"D": sp.Lambda(time, near), "f_z": sp.Lambda((d, d_s), force)}
+    rate, force = sp.diff(near, time), established("F11", f_normal).subs(START)
     proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "growth of the force with the depth")
     proof.define(per_rate, sp.sqrt(a**2 + lam**2) - lam + a, "and with its rate")
+    proof.define(
+        quadratic, QUADRATIC, r"small changes as $e^{\sigma s}$ are possible where it vanishes"
+    )
+    proof.recall("F11-start", rho, right, left)
+    proof.recall("F11", f_normal)
+    proof.recall("scaled-form")
+    by_depth, by_rate = (
+        at_motion(sp.Derivative(eps * d_ss, variable), {d: a**2, d_s: 0}) for variable in (d, d_s)
+    )
+    linear = eps * sigma**2 - by_rate * sigma - by_depth
+    proof.equal(linear, quadratic, "the scaled motion, linear in the change")
+    proof.notation |= {"D": sp.Lambda(time, near), "f_z": sp.Lambda((d, d_s), force)}
     proof.where(sp.Gt(near, 0), "the change is small")
     proof.where(sp.Gt(near + rate + lam**2, 0), "and the contact remains")
+    motion = eps * sp.Derivative(near, (time, 2)) - at_motion(eps * d_ss, {d: near, d_s: rate})
     first = sp.Subs(sp.Derivative(motion, change), change, 0)
     proof.equal(
-        *(first, QUADRATIC * sp.exp(sigma * time), r"the terms of first order in $\hat d$"),
+        *(first, quadratic * sp.exp(sigma * time), r"the terms of first order in $\hat d$"),
         left=r"\left. \frac{\partial}{\partial \hat d} \left[\varepsilon D'' - \left(1 - f_z(D, D') - "
         r"\kappa (D - 1)\right)\right] \right|_{\hat d = 0}",
     )
+
+
+def at_motion(expr: sp.Expr, places: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
+    """Return an expression along a motion."""
+    return sp.Subs(expr, tuple(places), tuple(places.values()))
 
 
 @result("F12-steady")
@@ -98,17 +117,18 @@ def _contact(proof: Proof) -> None:
 _IN_Q = {per_depth: a * (1 + q) ** 2 / (2 * q), per_rate: a * (1 + q)}
 
 
-@result("F12", uses=("F12-linear",))
+@result("F12")
 def _rates(proof: Proof) -> None:
     r"""Rates at the steady state.
 
-    The roots of the quadratic of F12-linear: near the steady state the change of depth is a sum of
+    Near the steady state the change of depth is a sum of
     $e^{\sigma_1 s}$ and $e^{\sigma_2 s}$.
     """
+    proof.recall("F12-linear", quadratic)
     proof.where(sp.Gt(DAMPING**2, 4 * eps * STIFFNESS), "no oscillation")
     middle = -DAMPING / (2 * eps)
-    proof.root(QUADRATIC, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
-    proof.root(QUADRATIC, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
+    proof.root(quadratic, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
+    proof.root(quadratic, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
 
 
 def steady_sliding(proof: Proof) -> None:
@@ -143,7 +163,7 @@ def _critical_inertia(proof: Proof) -> None:
     proof.done(eps_critical, 3 * a * q / 8)
 
 
-@result("F12-time-constants", uses=("F12",))
+@result("F12-time-constants")
 def _time_constants(proof: Proof) -> None:
     r"""The two time constants.
 
@@ -153,8 +173,9 @@ def _time_constants(proof: Proof) -> None:
     steady_sliding(proof)
     proof.define(kappa, sp.S.Zero, "dead weight")
     fast, slow = 4 * eps / (3 * a * (1 + q)), 2 * q / (1 + q)
-    for name, rate in zip(_times, (FAST, SLOW), strict=True):
-        proof.define(name, -tau / rate, "F12")
+    proof.recall("F12", _first, _second)
+    for name, rate in zip(_times, (_first, _second), strict=True):
+        proof.define(name, -tau / rate, "how long each change takes to decay")
     proof.leading_order(_times[0] / tau, fast, eps, 0, "inertia against damping", eps=eps)
     proof.leading_order(_times[1] / tau, slow, eps, 0, "damping against stiffness", eps=eps)
 
@@ -197,7 +218,7 @@ def _four_digits(value: sp.Expr) -> str:
     return f"{float(sp.N(value, 30)):.4g}"
 
 
-@result("F13", uses=("scaled-form", "F10-touch"))
+@result("F13")
 def _manifold(proof: Proof) -> None:
     r"""Slow manifold.
 
@@ -209,15 +230,26 @@ def _manifold(proof: Proof) -> None:
     proof.recall("scaled-pressure")
     proof.define(xi, right, "the right edge peels")
     proof.root(P, d_s, SLOW_RATE, "no pressure there")
-    proof.define(rho, right + lam)
-    proof.define(b, right + a, r"the left edge touches at $-a = -\sqrt{d}$")
-    proof.define(f, PEELING_NORMAL_FORCE, "F11: the force equals the weight less the spring force")
-    proof.equal(f, (right + a) ** 2 * (2 * right + 3 * lam - a) / 4, "which is a cubic in $r$")
+    proof.define(rho, right + lam, "as an edge that peels")
+    proof.define(b, right - left, "the length of the contact")
+    proof.recall("F10-touch", left, reason="the left edge touches undisturbed ground")
+    proof.define(a, sp.sqrt(d), "half of a contact at rest")
+    proof.recall("scaled-form")
+    balanced = 1 - kappa * (d - 1)
+    proof.root(
+        eps * d_ss,
+        f_normal,
+        balanced,
+        "without inertia the force is the weight less the spring force",
+    )
+    proof.define(f, f_normal, "this force")
+    proof.recall("F11-peel")
+    proof.equal(f, SLOW_FORCE, "which is a cubic in $r$")
     proof.equal(4 * f / 3, cubic, "expanded")
     proof.done(d_s, SLOW_RATE)
 
 
-@result("F13-root", uses=("F13",))
+@result("F13-root")
 def _one_root(proof: Proof) -> None:
     r"""Slow manifold: one root.
 
@@ -235,10 +267,9 @@ def _one_root(proof: Proof) -> None:
     proof.leading_order(
         EXCESS, -2 * beta / 3, beta, sp.oo, r"$n \to -\infty$: to exactly one", eps=1 / beta
     )
-    proof.define(rho, b + lam - a)
-    proof.define(b, unit * beta)
-    proof.define(lam, a + unit * drive_excess)
-    proof.notation["f_z"] = PEELING_NORMAL_FORCE
-    proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
-                left=r"\frac{f_z}{f}")  # fmt: skip
+    proof.recall("F13", (f, SLOW_FORCE))
+    proof.where(right + a > 0, "there is a contact")
+    proof.define(beta, (right + a) / unit, "the length of the contact in this unit")
+    proof.define(drive_excess, (lam - a) / unit)
+    proof.equal(relation, sp.S.One, "the cubic of F13")
     proof.done(drive_excess, EXCESS)

@@ -51,6 +51,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "A drive with a spring": {
         "a": r"\hat a", "z_A": r"z_{\mathrm{A}}", "x_A": r"x_{\mathrm{A}}",
     },
+    "A drive with a spring on rubber": {"z_A": r"z_{\mathrm{A}}", "x_A": r"x_{\mathrm{A}}"},
     "Discrete elements": {
         r"\hat p": r"\bar p", "u": r"\bar u", "L": r"\ell_{\mathrm{c}}", "R": r"\hat R", "z": r"\hat z",
         "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta",
