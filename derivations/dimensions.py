@@ -41,9 +41,10 @@ _ALIKE = (sp.Abs, sp.Max, sp.Min, sp.UnevaluatedExpr)
 """Expressions of the dimension of their arguments."""
 
 _FALL = {r"\breve H": "N/m³"}
+_MOMENTS = {rf"\breve {each}": "N/m³" for each in "PDEAB"}
 OWN: dict[str, dict[str, str]] = {
-    "F17-parts": dict.fromkeys((r"\breve P", r"\breve D", r"\breve E"), "N/m³"),
-    **dict.fromkeys(("F17-sign", "F18-glass", "F27-steepest", "F27-close"), _FALL),
+    **dict.fromkeys(("F17-parts", "F17-falls"), _MOMENTS),
+    **dict.fromkeys(("F18-glass", "F27-steepest", "F27-close"), _FALL),
     "F8": {"p": "1"},
     "F9-difference": {"h": "1"},
     **{each: {r"\hat y": "m"} for each in ("F9-power", "F9-catenary")},
