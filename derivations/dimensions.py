@@ -44,6 +44,7 @@ _FALL = {r"\breve H": "N/m³"}
 _MOMENTS = {rf"\breve {each}": "N/m³" for each in "PDEAB"}
 OWN: dict[str, dict[str, str]] = {
     **dict.fromkeys(("F17-parts", "F17-falls"), _MOMENTS),
+    "F18-voigt": {"F_z": "m²", "F_x": "m²"},
     **dict.fromkeys(("F18-glass", "F27-steepest", "F27-close"), _FALL),
     "F8": {"p": "1"},
     "F9-difference": {"h": "1"},
@@ -57,7 +58,7 @@ OWN: dict[str, dict[str, str]] = {
 }
 """Units of letters in records where they are not those of the nomenclature: moments of the whole relaxation
 function, not of an arm over its stiffness; its fall over a scaled distance; functions that are written for
-scaled ones; a shape in any unit."""
+scaled ones; a shape in any unit; forces over a stiffness."""
 EXEMPT = {
     "groups-lengths": "scale factors of the units themselves",
     **dict.fromkeys(

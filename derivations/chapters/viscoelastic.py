@@ -50,6 +50,10 @@ dashpots = symbols(r"""
     W_vc  \breve W_c  1  load of a dashpot, likewise
     F_vc  \breve F_c  1  friction force of a dashpot, likewise
 """)
+voigt_load, voigt_work = symbols(r"""
+    W_v0  \breve W_0  1  load on Kelvin-Voigt, in units of $K \breve c^3/R$
+    F_v0  \breve F_0  1  friction force on Kelvin-Voigt, in units of $K \breve c^4/R^2$
+""")
 ratio_first, ratio_second, spring_share, springpot = symbols(r"""
     t_v0    \breve t_0    1  ratio of two modified spherical Bessel functions
     t_v1    \breve t_1    1  ratio of the next two modified spherical Bessel functions
@@ -81,6 +85,8 @@ PRESSURE = (b * z - z * y + 1 - (b * z + 1) * sp.exp(-z * y)) / z**2
 LOAD = D + e * P
 WORK = E + e**2 * P
 LOST = E - B**2 / 2 + e * (A * B + e * (B + A * z * P / 2))
+OF_ARM = (springs[2] + springpot * arm_work) / (springs[1] + springpot * arm_load)
+"""The friction coefficient of a spring and one arm, over c/R."""
 UNIT = (w, 0, 1)
 half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
 
@@ -298,28 +304,30 @@ def _kelvin_voigt(proof: Proof) -> None:
     edge_d, load_d, work_d = dashpots
     proof.define(e, lam / (2 * (1 + lam)), "the excess over half of the contact, as there is")
     proof.equal(edge + lam * edge_d, sp.S.Zero, "no pressure at the trailing edge")
+    product = lam * (half + lam) / (2 * (1 + lam))
+    proof.define(voigt_load, load + lam * load_d, "both loads")
+    proof.equal(voigt_load, twelfth + product, "the load")
+    proof.define(voigt_work, work + lam * work_d, "both friction forces")
+    proof.equal(voigt_work, lam / 12 + product * lam / (2 * (1 + lam)), "the friction force")
     proof.define(a, c * (half + e), "the half length")
     proof.recall("scaling")
     proof.define(q, (c - a) / a, r"$x_{\mathrm{TE}}/a$")
     proof.equal(l, lam * c / a, r"$l_{\mathrm{r}}/a$")
     proof.recall("F1", scaled_load)
     proof.recall("F1", scaled_friction)
-    proof.equal((load + lam * load_d) * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ is that of F1")
-    proof.equal(
-        (work + lam * work_d) * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1"
-    )
+    proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ is that of F1")
+    proof.equal(voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1")
 
 
-def _spring_and_arm(proof: Proof) -> sp.Expr:
-    """Return the friction coefficient of a spring and one arm, over c/R."""
+def _spring_and_arm(proof: Proof) -> None:
+    """Let a spring and one arm have no pressure together where the contact ends."""
     from_moments(proof)
-    edge, load, work = _spring(proof)
+    edge, *_ = _spring(proof)
     proof.recall("F17-edge")
     proof.define(e, springpot * B / (1 + springpot * A), "the excess over half of the contact, as there is")
     proof.equal(edge + springpot * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
     proof.recall("F17-load")
     proof.recall("F17")
-    return (work + springpot * arm_work) / (load + springpot * arm_load)
 
 
 @result("F18-low")
@@ -331,8 +339,8 @@ def _slow(proof: Proof) -> None:
     Argued: To this order arms add up: $\mu \to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i
     \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
     """
-    ratio, reason = _spring_and_arm(proof), r"$\mu R/\breve c$"
-    proof.leading_order(ratio, springpot / z, z, sp.oo, reason, eps=1 / z)
+    _spring_and_arm(proof)
+    proof.leading_order(OF_ARM, springpot / z, z, sp.oo, r"$\mu R/\breve c$", eps=1 / z)
 
 
 @result("F18-high")
@@ -345,6 +353,7 @@ def _fast(proof: Proof) -> None:
     depth, and Eqs. (45) and (46) hold only in a window, in which most of the arms have relaxed and the
     fastest have not.
     """
-    ratio, reason = _spring_and_arm(proof), r"$\mu R/\breve c$"
+    _spring_and_arm(proof)
     proof.leading_order(e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$", eps=z)
-    proof.leading_order(ratio, springpot * z / (10 * (1 + springpot)), z, 0, reason, eps=z)
+    high = springpot * z / (10 * (1 + springpot))
+    proof.leading_order(OF_ARM, high, z, 0, r"$\mu R/\breve c$", eps=z)
