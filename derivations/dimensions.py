@@ -44,8 +44,11 @@ _FALL = {r"\breve H": "N/m³"}
 _MOMENTS = {rf"\breve {each}": "N/m³" for each in "PDEAB"}
 OWN: dict[str, dict[str, str]] = {
     **dict.fromkeys(("F17-parts", "F17-falls"), _MOMENTS),
+    "F18-fall": {r"\breve H": "1/m"},
     "F18-voigt": {"F_z": "m²", "F_x": "m²"},
-    **dict.fromkeys(("F18-glass", "F27-steepest", "F27-close"), _FALL),
+    "F18-glass": _FALL,
+    **dict.fromkeys(("F27-kernel", "F27-steepest"), _MOMENTS | {r"\breve C": "Pa/m³"}),
+    "F27-close": _MOMENTS,
     "F8": {"p": "1"},
     "F9-difference": {"h": "1"},
     **{each: {r"\hat y": "m"} for each in ("F9-power", "F9-catenary")},

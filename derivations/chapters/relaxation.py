@@ -209,6 +209,7 @@ def _moments(proof: Proof) -> None:
         proof.integral(name, whole, (y, 0, c), parts, "by parts", value=sp.expand(parts.subs(y, c)))
     proof.recall("F17-concave", a)
     proof.define(e, a / c - sp.Rational(1, 2), "the excess over half of the contact")
+    proof.equal(a, c * (e + sp.Rational(1, 2)), "solved for the half length")
     proof.equal(e, B / A, "no pressure at the trailing edge")
     for total, integral, form in ((F_z, LOADED, c**3 / R * (D + e * P)), (F_x, WORKED, c**4 / R**2 * (E + e**2 * P))):
         proof.recall("F17-forces", integral)
