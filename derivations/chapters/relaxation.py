@@ -14,6 +14,7 @@ from ..engine.step import Proof, tex
 from .model import F_x, F_z, K, R
 from .steady import W, a, x_te
 from .viscoelastic import (
+    FALL,
     MOMENTS,
     SECTION,
     UNIT,
@@ -22,14 +23,17 @@ from .viscoelastic import (
     D,
     E,
     P,
+    Q,
     arm_lost,
     arm_work,
     b,
     contact_length,
     edge_pressure,
     excess_share,
+    from_moments,
     from_trailing,
     spring_share,
+    springs,
     under_pressure,
     z,
 )
@@ -313,7 +317,7 @@ def _stored_springpot(proof: Proof) -> None:
     proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
 
 
-@result("F17-surface", uses=("F17-concave",))
+@result("F17-surface")
 def _surface(proof: Proof) -> None:
     r"""Standard linear solid: the surface behind the contact.
 
@@ -323,18 +327,22 @@ def _surface(proof: Proof) -> None:
     $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin-Voigt,
     and does not touch again.
     """
+    u, stretch, beta = left_behind, (1 + arm_ratio) * l, arm_ratio
     rate = slope_free
-    u, stretch = left_behind, (1 + arm_ratio) * l
-    free = K * arm_ratio * rate + K * rate + K * u / l
-    proof.root(free, rate, -u / stretch,
+    proof.root(K * beta * rate + K * rate + K * u / l, rate, -u / stretch,
                r"the slope of the free surface, where the arm carries $-K \breve u$: "
                r"$-K \breve \chi_0 = K_1 \breve \chi_0 + K \breve u/l_i$")  # fmt: skip
-    proof.define(
-        x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this"
-    )
-    leaving = -K * (1 + arm_ratio) * x_te / R + K * u / l
-    proof.equal(leaving, -K * (1 + arm_ratio) * parting,
-                "slope of the pressure at the end of the contact, negative by F17-concave")  # fmt: skip
+    from_moments(proof)
+    proof.recall("F17-edge")
+    spring = proof.asymptote("F17-limits", edge_pressure, springs[0], "of the spring")
+    proof.define(e, beta * B / (1 + beta * A), "the excess over half of the contact, as there is")
+    proof.equal(springs[0] + beta * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
+    proof.define(l, c / z, "length of the arm")
+    proof.define(x_te, c / 2 - c * e, "by definition of the excess")
+    proof.define(u, c**2 * spring / R, "what the spring carries there")
+    angle = (1 + beta * (2 * (1 + z) * Q + FALL) + 2 * beta**2 * Q) / (2 * (1 + beta) * (1 + beta * A))
+    proof.define(parting, c / R * angle, "positive")
+    proof.equal(x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this")
     part = sp.Symbol("zeta", positive=True)
     over = (part, 0, y / stretch)
     above = sp.Integral(1 - sp.exp(-part), over)
