@@ -21,7 +21,7 @@ from .theorems import kappa, lam
 
 (
     s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
-    ball_loss, ball_depth, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
+    ball_loss, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
     ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
     ball_load_high, ball_friction_low, ball_friction_high, ball_low, ball_high,
 ) = symbols(r"""
@@ -37,7 +37,6 @@ from .theorems import kappa, lam
     N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
     T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
     D_b         \tilde D          1  integral by which a ball leaves energy behind
-    I_b         \tilde I          1  integral of the depths of the strips
     phi_b       \tilde \varphi    1  scaled friction force of a ball, $F R/(K \delta a^3
             \sqrt{R_{\mathrm{y}}/R})$
     m_b         \tilde m          1  scaled friction coefficient of a ball, $\mu R/a$

@@ -40,7 +40,7 @@ from .theorems import (
     c_W         -             1  coefficient of the circle in the load  real
     c_F         -             1  coefficient of the circle in the friction force  real
     c_mu        -             1  coefficient of the circle in the friction coefficient  real
-    c_delta     c_{\delta}    1  change of the depth, over $\varepsilon$  real
+    c_delta     c_\delta      1  change of the depth, over $\varepsilon$  real
     c_delta_W   c_{\delta,W}  1  coefficient of the circle in the depth at given load  real
     c_mu_W      c_{\mu,W}     1  coefficient of the circle in the friction coefficient at given load  real
     -           \hat h        1  height of a true circle over $R$

@@ -110,6 +110,7 @@ def _steepest(proof: Proof) -> None:
     half = sp.Rational(1, 2)
     proof.recall("F27-slope", force_slope)
     proof.recall("F17-parts", (a, c * (e + half)), e, F_z, F_x)
+    proof.where(E > 0, "$G$ is not constant")
     ratio = 2 * e * (D + e * P) / (E + e**2 * P)
     proof.equal(force_slope * F_z / F_x, ratio, "by the moments")
     proof.recall("F27-kernel", (E, (B + sp.Add(*SLOWED)) / 10), SLOWED[1], D)
@@ -141,6 +142,7 @@ def _close(proof: Proof) -> None:
         )
     one, two, three = (1 + spare for spare in (spare_1, spare_2, spare_3))
     proof.recall("F17-parts", e, F_z, F_x)
+    proof.where(E > 0, "$G$ is not constant")
     for power, form, own, (most_of, least_of), what in (
         (1, F_z * R / c**3, D, loads, "load"), (2, F_x * R**2 / c**4, E, frictions, "friction force"),
     ):  # fmt: skip

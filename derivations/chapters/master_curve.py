@@ -151,7 +151,7 @@ def _expansion(
     proof.recall("scaling")
     proof.recall("F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
-    proof.leading_order(first + second - m, last, q, end, "what two terms exceed it by", eps=small)
+    proof.leading_order(first + second - m, last, q, end, "two terms, less the exact", eps=small)
 
 
 result("F4-low", title="Friction coefficient at low velocity: series", end=1, small=l, first=l,

@@ -31,7 +31,7 @@ from .theorems import w as scaled_load
     P_v    \breve P     1  moment of the relaxation function, of weight $1 - \breve w$
     Q_v    \breve Q     1  moment of weight $\breve w$
     D_v    \breve D     1  moment of weight $\breve w (1 - \breve w)/2$
-    E_v    \breve E     1  moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$
+    E_v    \breve E     1  moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$  real
     A_v    \breve A     1  mean of the relaxation function, $\breve P + \breve Q$
     B_v    \breve B     1  $(\breve P - \breve Q)/2$
     eta_v  \breve \eta  1  $\breve a - \frac{1}{2}$

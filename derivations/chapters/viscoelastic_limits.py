@@ -14,7 +14,7 @@ from .asymptote_errors import e_l2_fixed, e_l2_weight
 from .model import F_x, F_z, K, R
 from .relaxation import FALLS, WEIGHTS, by_fall, fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
 from .relaxation import y as back
-from .steady import l, q
+from .steady import a, l, q
 from .theorems import m
 from .theorems import UNIT as RATIOS
 from .theorems import w as w_steady
@@ -47,11 +47,12 @@ spare_3, spare_4, reach, delay = symbols(r"""
     epsilon_v  \breve \varepsilon  1  mean relaxation length over the length of the contact
 """)
 (
-    *rates, spring_number, voigt_error, lack_mean, lack_ahead, lack_bulge, lack_twist, steepness, steepest, limit, haste, load_number,
+    *rates, voigt_half, spring_number, voigt_error, lack_mean, lack_ahead, lack_bulge, lack_twist, steepness, steepest, limit, haste, load_number,
     friction_number,
 ) = symbols(r"""
     r_1       -                1/s  rate of an arm  from scene
     r_2       -                1/s  rate of another arm  from scene
+    a_v0      \breve a_0       m    half length on the Kelvin-Voigt foundation
     -         \bar t           s  mean relaxation time, $\int t (G - K)\,dt/C$
     -         \mu_0            1  friction coefficient on the Kelvin-Voigt foundation with the same $C$
     kappa_v   \breve \kappa    1  $K \breve c/(C V)$
@@ -140,8 +141,9 @@ def _voigt(proof: Proof) -> None:
     of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on Kelvin-Voigt
     (error-L1) this bounds that of Eq. (42) on every foundation.
     """
-    proof.recall("F1", w_steady, m)
-    proof.recall("scaling", l)
+    other = {a: voigt_half}  # at the same length of the contact, half lengths at rest differ
+    proof.recall("F1", w_steady, m, at=other)
+    proof.recall("scaling", l, at=other)
     for slope, relation, what in (
         (m, "<", r"$\mu_0 R/a$ grows with $l$"),
         (m / l, ">", "but less than in proportion"),
