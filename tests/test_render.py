@@ -207,6 +207,7 @@ def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(ev
 ASSUMED = {
     "energy-split": "that friction resists sliding is what the next record shows of any shape",
     "energy-any-shape": "the result, a sum of squares, shows it",
+    "F18-voigt": "F18-lacks says that these differences are zero for a dashpot alone",
 }
 """The records that assume a sign which they do not prove, and why they may."""
 

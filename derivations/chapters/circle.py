@@ -157,7 +157,8 @@ def _dead_weight(proof: Proof) -> None:
     proof.recall("circle-fixed", c_w, c_f)
     proof.recall("circle-fixed")
     kept = c_w + s * f_s / f / 2 * deeper
-    proof.root(kept, deeper, -c_w * A / 3, "the load is kept, to first order", name=c_delta_load)
+    proof.root(kept, deeper, -c_w * A / 3, r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order",
+               name=c_delta_load)  # fmt: skip
     proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
     proof.equal(change, q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B), "logarithmic slope of $m$")
     proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2,

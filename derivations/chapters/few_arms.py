@@ -53,13 +53,14 @@ SLIGHT, BOUND = (relative, 0, sp.Rational(1, 100)), 14
 """Relative differences of two series for which friction at a load differs by at most 14 times as much."""
 STEEPEST = sp.Rational(5, 2)
 """Of friction over the load, logarithmically, at one velocity."""
-_gained = c * sp.factor(antiderivative(10 * FALLS[E] - FALLS[B], w)).subs(w, y / c)
+_kernel_of = 10 * FALLS[E] - FALLS[B]
+_gained = sp.factor(c * antiderivative(_kernel_of, w).subs(w, y / c))
 SLOWED = (
     sp.Integral(_gained * slowing(y), (y, 0, c)),
-    sp.Integral((10 * FALLS[E] - FALLS[B]).subs(w, y / c) * fading(y) - _gained * slowing(y), (y, 0, c)),
+    sp.Integral(sp.factor(_kernel_of.subs(w, y / c)) * fading(y) - _gained * slowing(y), (y, 0, c)),
 )
 """10 E - B, by how the fall slows, and the rest, which vanishes."""
-LACKING = sp.Integral((1 - 2 * y / c) ** 2 * G(y) / c, (y, 0, c))
+LACKING = sp.Integral((c - 2 * y) ** 2 * G(y) / c**3, (y, 0, c))
 """A - 8 D."""
 
 result = Chapter(SECTION)

@@ -113,12 +113,12 @@ def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
 
 def weighted(name: sp.Symbol) -> sp.Integral:
     """Return a moment of the relaxation function."""
-    return sp.Integral(sp.expand(WEIGHTS[name].subs(w, y / c)) / c * G(y), (y, 0, c))
+    return sp.Integral(sp.factor(WEIGHTS[name].subs(w, y / c) / c) * G(y), (y, 0, c))
 
 
 def in_parts(name: sp.Symbol) -> tuple[sp.Integral, sp.Integral]:
     """Return a moment as one of the fall, and the rest, of which only the value at the end is left."""
-    fallen = sp.Integral(FALLS[name].subs(w, y / c) * fading(y), (y, 0, c))
+    fallen = sp.Integral(sp.factor(FALLS[name].subs(w, y / c)) * fading(y), (y, 0, c))
     return fallen, sp.Integral(weighted(name).function - fallen.function, (y, 0, c))
 
 
@@ -168,7 +168,7 @@ def _forces(proof: Proof) -> None:
     - \breve y)\, u'(\breve y)\, u'(\breve X)$ over $\breve y < \breve X$.
     """
     name_integrals(proof, 4)
-    over, rate = LOADED.limits[0], (a - y) / R
+    over, rate = (y, 0, c), (a - y) / R
     primitive = (a * G_2(y) - G_3(y)) / R
     proof.integral(LOADED, LOADED.function, over, primitive, "this is the load $W$", value=LOAD)
     whole = rate * primitive + (a * G_3(y) - G_4(y)) / R**2

@@ -36,7 +36,7 @@ from .theorems import w as scaled_load
     B_v    \breve B     1  $(\breve P - \breve Q)/2$
     eta_v  \breve \eta  1  $\breve a - \frac{1}{2}$
     W_v    \breve W     1  load of an arm, in units of $K_i \breve c^3/R$
-    F_v    \breve F     1  friction force of an arm, in units of $K_i \breve c^4/R^2$
+    F_v    \breve F     1  friction force of an arm, in units of $K_i \breve c^4/R^2$  real
     L_v    \breve L     1  part of $\breve F$ that is lost in the contact  real
     p_ve   \breve p_e   1  $\breve p$ at the trailing edge  real
 """)  # fmt: skip

@@ -131,7 +131,7 @@ def _voigt(proof: Proof) -> None:
     the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve
     \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The
     steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at
-    one $\breve c$. There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times that of Kelvin-Voigt,
+    one $\breve c$. There $a$ is between $1 - \breve \varepsilon$ and 1 times $\breve a_0$ of Kelvin-Voigt,
     the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$
     times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve
     \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times.
@@ -285,7 +285,7 @@ def _fall(proof: Proof) -> None:
     proof.define(fading(back), (steepest - weight_at(back)) / contact_length, "at most the fall at first")
     over, at = (back, 0, contact_length), {w: back / contact_length}
     for name, value in MOST.items():
-        most, less = (sp.Integral(FALLS[name].subs(at) * part / contact_length, over) for part in (1, weight_at(back)))
+        most, less = (sp.Integral(sp.factor(FALLS[name].subs(at) / contact_length) * part, over) for part in (1, weight_at(back)))
         proof.integral(most, most.function, over, antiderivative(most.function, back), "at most", value=value)
         proof.equal(name, steepest * most - less, "a moment of the fall")
         proof.holds(less, ">=", 0, rf"so ${tex(name)}$ is at most $\breve \gamma$ times its integral")
@@ -312,7 +312,7 @@ def _glassy(proof: Proof) -> None:
     share = sp.Rational(5, 12)
     lower, upper = (1 - share * o) * part**2, 1 + share * o / part**2
     longest = (1 + (o / 6) / part) * part
-    twist, bulge = (sp.Integral(FALLS[name].subs(w, back / contact_length) / contact_length, (back, 0, contact_length))
+    twist, bulge = (sp.Integral(sp.factor(FALLS[name].subs(w, back / contact_length) / contact_length), (back, 0, contact_length))
                     for name in (E, B))
     slowed = sp.Integral(w * FALLS[E], UNIT)
     proof.recall("F18-fall", twist, bulge, slowed)
