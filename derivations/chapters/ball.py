@@ -79,8 +79,8 @@ LOAD = (PI + sp.Rational(16, 3) * l + T) / 4
 FRICTION = l * (PI + T) / 4
 COEFFICIENT = l * (PI + T) / (PI + sp.Rational(16, 3) * l + T)
 STRIPS = sp.Rational(4, 3) * (
-    y * (5 - 2 * y**2) * sp.sqrt(1 - y**2) / 8 + 3 * sp.asin(y) / 8 + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8
-    + 3 * (1 + l**2) ** 2 * sp.atan(y / EDGE) / 8 - l**3 * y
+    y * (5 - 2 * y**2) * sp.sqrt(1 - y**2) / 8 + 3 * sp.asin(y) / 8
+    + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8 + 3 * (1 + l**2) ** 2 * sp.atan(y / EDGE) / 8 - l**3 * y
 )  # fmt: skip
 """The load of the strips up to y."""
 BEHIND = sp.Integral(
@@ -129,9 +129,9 @@ def _tail(proof: Proof) -> None:
 def _strip(proof: Proof) -> None:
     r"""Ball: a strip of it.
 
-    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, is a parabola: $1 - \tilde
-    \zeta^2$ times as deep as the ball, with the half length $a \sqrt{1 - \tilde \zeta^2}$. What it carries, rubs
-    and leaves behind, for both sides of the ball.
+    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, is a parabola: $1 -
+    \tilde \zeta^2$ times as deep as the ball, with the half length $a \sqrt{1 - \tilde \zeta^2}$. What it
+    carries, rubs and leaves behind, for both sides of the ball.
     """
     width = 1 - y**2
     laws = (
@@ -223,7 +223,9 @@ def _energy(proof: Proof) -> None:
     proof.recall("F20-loss")
     proof.recall("F20-strip", strip_loss(y))
     lost = sp.Integral(strip_loss(y), UNIT)
-    proof.integral(lost, strip_loss(y), UNIT, 2 * l**2 * primitive, "all strips", value=2 * l**2 * D)
+    proof.integral(
+        lost, strip_loss(y), UNIT, 2 * l**2 * primitive, "all strips", value=2 * l**2 * D
+    )
     proof.recall("F20", phi)
     share = 1 - 8 * l * D / (PI + T)
     proof.define(ball_share, 1 - lost / phi, r"the rest of $F V$ relaxes behind")

@@ -29,8 +29,8 @@ from .theorems import (
 )
 
 (
-    eps, steeper, recedes, W_1, F_1, c_w, c_f, c_mu, deeper, c_delta_load, c_mu_load, tilt, circle_number, turning,
-    turning_angle, slope_square,
+    eps, steeper, recedes, W_1, F_1, c_w, c_f, c_mu, deeper, c_delta_load, c_mu_load, tilt, circle_number,
+    turning, turning_angle, slope_square,
 ) = symbols(r"""
     epsilon     \varepsilon   1  $(a/R)^2$ of a true circle  prints \gamma
     h_circle    \hat h_1      1  height that a circle adds to the parabola, over the depth, to first order
@@ -80,12 +80,16 @@ def _shape(proof: Proof) -> None:
     Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.
     """
     first = eps * xi**4 / 4
-    proof.leading_order(STEEPER, first, eps, 0, "by this the circle is higher than the parabola", eps=eps)
+    proof.leading_order(
+        STEEPER, first, eps, 0, "by this the circle is higher than the parabola", eps=eps
+    )
     proof.leading_order(RECEDES, eps / 8, eps, 0, "and by this its leading edge recedes", eps=eps)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.recall("eq28", delta)
     proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
-    proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, xi**2 + STEEPER, r"$h/\delta$ of the circle")
+    proof.equal(
+        (R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, xi**2 + STEEPER, r"$h/\delta$ of the circle"
+    )
     reason = (
         r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
     )
@@ -127,7 +131,9 @@ def _fixed(proof: Proof) -> None:
         low, high = (sp.Subs(primitive, xi, end) for end in moved[1:])
         proof.integral(total, density, moved, primitive, _MOVED, value=high - low)
         proof.define(
-            coefficient, _per_eps(total / scale), r"the change per $\varepsilon$, over that of the parabola"
+            coefficient,
+            _per_eps(total / scale),
+            r"the change per $\varepsilon$, over that of the parabola",
         )
         proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
@@ -157,12 +163,12 @@ def _dead_weight(proof: Proof) -> None:
     proof.recall("circle-fixed", c_w, c_f)
     proof.recall("circle-fixed")
     kept = c_w + s * f_s / f / 2 * deeper
-    proof.root(kept, deeper, -c_w * A / 3, r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order",
-               name=c_delta_load)  # fmt: skip
+    reason = r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order"
+    proof.root(kept, deeper, -c_w * A / 3, reason, name=c_delta_load)
     proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
     proof.equal(change, q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B), "logarithmic slope of $m$")
-    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2,
-                 r"chain rule: $\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$")  # fmt: skip
+    reason = r"chain rule: $\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, reason)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
 
 

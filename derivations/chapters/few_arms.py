@@ -70,8 +70,8 @@ result = Chapter(SECTION)
 def _along(proof: Proof) -> None:
     r"""Any relaxation function: friction force over the load.
 
-    At one velocity $\mathrm{d}F_x/\mathrm{d}F_z = (a - x_{\mathrm{TE}})/R$: twice the slope of the indenter in
-    the middle of the contact.
+    At one velocity $\mathrm{d}F_x/\mathrm{d}F_z = (a - x_{\mathrm{TE}})/R$: twice the slope of the
+    indenter in the middle of the contact.
     """
     name_integrals(proof, 4, c)
     proof.recall("F17-concave", a)
@@ -149,7 +149,9 @@ def _close(proof: Proof) -> None:
     ):  # fmt: skip
         most = up * own / one + (up * B / (low * A * two)) ** power * up * P / three
         least = low * own * one + (low * B * two / (up * A)) ** power * low * P * three
-        proof.define(most_of, up ** (1 + power) / low**power, f"the most by which the {what} differs")
+        proof.define(
+            most_of, up ** (1 + power) / low**power, f"the most by which the {what} differs"
+        )
         proof.define(least_of, low ** (1 + power) / up**power, "and the least")
         proof.holds(
             most_of * form, ">=", most, f"{what} of the other series at the same length, at most"
@@ -170,7 +172,8 @@ def _enough(proof: Proof) -> None:
     proof.recall("F27-close", *loads, *frictions)
     proof.recall("F27-steepest", power)
     most, least = (
-        (friction / load**power) ** 2 for friction, load in zip(frictions, reversed(loads), strict=True)
+        (friction / load**power) ** 2
+        for friction, load in zip(frictions, reversed(loads), strict=True)
     )
     proof.sign((1 + BOUND * eps) ** 2, ">", most, SLIGHT, "the square of the most")
     proof.sign(least, ">", (1 - BOUND * eps) ** 2, SLIGHT, "and that of the least")

@@ -75,8 +75,8 @@ def _monotonic(proof: Proof) -> None:
 def _low(proof: Proof) -> None:
     r"""Power law: low velocity.
 
-    At rest $q = Q = 1$ and $l = 0$. The load tends to the load at rest, $w_{n,0}$ in units of $K \delta a$, and
-    $\mu$ to $m_{n,0}' l$ in units of $\delta/a$.
+    At rest $q = Q = 1$ and $l = 0$. The load tends to the load at rest, $w_{n,0}$ in units of $K \delta
+    a$, and $\mu$ to $m_{n,0}' l$ in units of $\delta/a$.
     """
     rest = (q, Q, l), (1, 1, 0)
     proof.recall("F19-load")

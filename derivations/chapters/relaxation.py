@@ -7,10 +7,9 @@ linear solid leaves behind, and the one interval of contact on every Prony serie
 
 import sympy as sp
 
-from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .model import F_x, F_z, K, R
 from .steady import W, a, x_te
 from .viscoelastic import (
@@ -45,7 +44,8 @@ memory = function(
 repeated = tuple(
     function(f"G_v{n}", rf"integral of ${inner}$", unit, printed=rf"\breve G_{n}", nonnegative=True)
     for n, inner, unit in (
-        (1, r"\breve G", "N/m²"), (2, r"\breve G_1", "N/m"), (3, r"\breve G_2", "N"), (4, r"\breve G_3", "N m"),
+        (1, r"\breve G", "N/m²"), (2, r"\breve G_1", "N/m"),
+        (3, r"\breve G_2", "N"), (4, r"\breve G_3", "N m"),
     )
 )  # fmt: skip
 behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
@@ -97,7 +97,8 @@ WORK = ((a - c) * (a * G_2(c) - G_3(c)) + a * G_3(c) - G_4(c)) / R**2
 WEIGHTS = {name: MOMENTS[name][0] for name in (P, D, E)} | {A: sp.S.One, B: (1 - 2 * w) / 2}
 """Of the moments that give load and friction force."""
 FALLS = {
-    P: w * (2 - w) / 2, D: w**2 * (3 - 2 * w) / 12, E: w * (1 - w) ** 2 * (2 + w) / 24, A: w, B: w * (1 - w) / 2,
+    P: w * (2 - w) / 2, D: w**2 * (3 - 2 * w) / 12, E: w * (1 - w) ** 2 * (2 + w) / 24,
+    A: w, B: w * (1 - w) / 2,
 }  # fmt: skip
 """With which the fall of the relaxation function counts in them: their integrals from the trailing edge."""
 
@@ -215,7 +216,9 @@ def _moments(proof: Proof) -> None:
     proof.define(e, a / c - sp.Rational(1, 2), "the excess over half of the contact")
     proof.equal(a, c * (e + sp.Rational(1, 2)), "solved for the half length")
     proof.equal(e, B / A, "no pressure at the trailing edge")
-    for total, integral, form in ((F_z, LOADED, c**3 / R * (D + e * P)), (F_x, WORKED, c**4 / R**2 * (E + e**2 * P))):
+    for total, integral, form in (
+        (F_z, LOADED, c**3 / R * (D + e * P)), (F_x, WORKED, c**4 / R**2 * (E + e**2 * P)),
+    ):  # fmt: skip
         proof.recall("F17-forces", integral)
         proof.define(total, integral, "over the contact")
         proof.equal(total, form, "in terms of the moments")
@@ -340,9 +343,13 @@ def _surface(proof: Proof) -> None:
     proof.define(l, c / z, "length of the arm")
     proof.define(x_te, c / 2 - c * e, "by definition of the excess")
     proof.define(u, c**2 * spring / R, "what the spring carries there")
-    angle = (1 + beta * (2 * (1 + z) * Q + FALL) + 2 * beta**2 * Q) / (2 * (1 + beta) * (1 + beta * A))
+    angle = (1 + beta * (2 * (1 + z) * Q + FALL) + 2 * beta**2 * Q) / (
+        2 * (1 + beta) * (1 + beta * A)
+    )
     proof.define(parting, c / R * angle, "positive")
-    proof.equal(x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this")
+    proof.equal(
+        x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this"
+    )
     part = sp.Symbol("zeta", positive=True)
     over = (part, 0, y / stretch)
     above = sp.Integral(1 - sp.exp(-part), over)

@@ -164,7 +164,9 @@ def _edge(proof: Proof) -> None:
     - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once.
     """
     under_pressure(proof)
-    proof.define(edge_pressure, sp.Subs(arm_pressure, y, 1), "pressure of the arm at the trailing edge")
+    proof.define(
+        edge_pressure, sp.Subs(arm_pressure, y, 1), "pressure of the arm at the trailing edge"
+    )
     proof.equal(edge_pressure, b * A - P, "in terms of the moments")
     proof.equal(edge_pressure, e * A - B, "and by the excess over half of the contact")
 
@@ -273,7 +275,10 @@ def _one_arm(proof: Proof) -> None:
     under_pressure(proof)
     proof.recall("F17-load")
     proof.recall("F17")
-    near, far = ({"variable": z, "point": 0, "eps": z}, {"variable": z, "point": sp.oo, "eps": 1 / z})
+    near, far = (
+        {"variable": z, "point": 0, "eps": z},
+        {"variable": z, "point": sp.oo, "eps": 1 / z},
+    )
     for whole, spring, dashpot, what in (
         (edge_pressure, e, e - half, "pressure at the trailing edge"),
         (arm_load, twelfth + e / 2, e, "load"),
@@ -316,7 +321,9 @@ def _kelvin_voigt(proof: Proof) -> None:
     proof.recall("F1", scaled_load)
     proof.recall("F1", scaled_friction)
     proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ is that of F1")
-    proof.equal(voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1")
+    proof.equal(
+        voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1"
+    )
 
 
 def _spring_and_arm(proof: Proof) -> None:
@@ -324,7 +331,9 @@ def _spring_and_arm(proof: Proof) -> None:
     from_moments(proof)
     edge, *_ = _spring(proof)
     proof.recall("F17-edge")
-    proof.define(e, springpot * B / (1 + springpot * A), "the excess over half of the contact, as there is")
+    proof.define(
+        e, springpot * B / (1 + springpot * A), "the excess over half of the contact, as there is"
+    )
     proof.equal(edge + springpot * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
     proof.recall("F17-load")
     proof.recall("F17")
@@ -348,12 +357,14 @@ def _fast(proof: Proof) -> None:
     r"""Any relaxation function: high velocity.
 
     Of a spring and one arm, with $\breve c \to 2 a$: $\mu \to \frac{2}{5} \frac{a^2}{R V}
-    \frac{-G'(0)}{G(0)}$, as $G(0) = K (1 + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; for several arms
-    see F18-glassy. The half length is that of the stiffness $G(0)$. So friction has a maximum even at a fixed
-    depth, and Eqs. (45) and (46) hold only in a window, in which most of the arms have relaxed and the
-    fastest have not.
+    \frac{-G'(0)}{G(0)}$, as $G(0) = K (1 + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; for
+    several arms see F18-glassy. The half length is that of the stiffness $G(0)$. So friction has a
+    maximum even at a fixed depth, and Eqs. (45) and (46) hold only in a window, in which most of the arms
+    have relaxed and the fastest have not.
     """
     _spring_and_arm(proof)
-    proof.leading_order(e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$", eps=z)
+    proof.leading_order(
+        e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$", eps=z
+    )
     high = springpot * z / (10 * (1 + springpot))
     proof.leading_order(OF_ARM, high, z, 0, r"$\mu R/\breve c$", eps=z)

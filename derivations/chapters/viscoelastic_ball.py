@@ -48,7 +48,8 @@ def _strip(proof: Proof) -> None:
     name_integrals(proof, 4, c)
     proof.recall("F17-concave", a)
     for name, whole, rate, what in (
-        (strip_load(c), LOADED, LOAD_RATE, "load"), (strip_friction(c), WORKED, FRICTION_RATE, "friction force"),
+        (strip_load(c), LOADED, LOAD_RATE, "load"),
+        (strip_friction(c), WORKED, FRICTION_RATE, "friction force"),
     ):  # fmt: skip
         proof.recall("F17-forces", whole)
         proof.define(name, whole, what)

@@ -12,11 +12,22 @@ from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof, tex
 from .asymptote_errors import e_l2_fixed, e_l2_weight
 from .model import F_x, F_z, K, R
-from .relaxation import FALLS, WEIGHTS, by_fall, fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2
+from .relaxation import (
+    FALLS,
+    WEIGHTS,
+    by_fall,
+    fading,
+    memory,
+    other_trailing,
+    spare_1,
+    spare_2,
+    spring_1,
+    spring_2,
+)
 from .relaxation import y as back
 from .steady import a, l, q
-from .theorems import m
 from .theorems import UNIT as RATIOS
+from .theorems import m
 from .theorems import w as w_steady
 from .viscoelastic import (
     OF_ARM,
@@ -47,8 +58,8 @@ spare_3, spare_4, reach, delay = symbols(r"""
     epsilon_v  \breve \varepsilon  1  mean relaxation length over the length of the contact
 """)
 (
-    *rates, voigt_half, spring_number, voigt_error, lack_mean, lack_ahead, lack_bulge, lack_twist, steepness, steepest, limit, haste, load_number,
-    friction_number,
+    *rates, voigt_half, spring_number, voigt_error, lack_mean, lack_ahead, lack_bulge, lack_twist,
+    steepness, steepest, limit, haste, load_number, friction_number,
 ) = symbols(r"""
     r_1       -                1/s  rate of an arm  from scene
     r_2       -                1/s  rate of another arm  from scene
@@ -87,6 +98,7 @@ MOST, SLOWED = {E: sp.Rational(1, 120), B: twelfth}, sp.Rational(1, 288)
 """Of a fall that does not slow; and how much less, for each part by which it slows over the contact."""
 GLASSY = 2
 """The same for the glassy limit, over the length of the contact by that of the fastest arms."""
+IN_CONTACT, _SLOWED = (back, 0, contact_length), sp.Integral(w * FALLS[E], UNIT)
 
 result = Chapter(SECTION)
 
@@ -96,13 +108,14 @@ def _lacks(proof: Proof) -> None:
     r"""Low velocity: moments near those of a dashpot.
 
     Let $\breve \zeta = C V/(K \breve c)$, and $\breve \varepsilon = V \bar t/\breve c$ with the mean
-    relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. Without
-    the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and $\breve E$ of F17-moments
-    are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - \breve \alpha_E$; for a
-    dashpot all four differences are 0. They are integrals of $\breve k = (G - K)/(K \breve \zeta) \ge 0$ over
-    all $\breve w > 0$, with weights that are 1, 1, 0 and $\frac{1}{12}$ beyond the contact, $\breve w = 1$;
-    here to any distance $\breve \lambda$ beyond it.
+    relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$.
+    Without the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and
+    $\breve E$ of F17-moments are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and
+    $\frac{1}{12} - \breve \alpha_E$; for a dashpot all four differences are 0. They are integrals of
+    $\breve k = (G - K)/(K \breve \zeta) \ge 0$ over all $\breve w > 0$, with weights that are 1, 1, 0 and
+    $\frac{1}{12}$ beyond the contact, $\breve w = 1$; here to any distance $\breve \lambda$ beyond it.
     """
+
     def felt(near: sp.Expr, far: sp.Expr | int) -> sp.Expr:
         """Add up the memory within the contact and ahead of it, where it is not zero."""
         over = (near, UNIT), (far, (w, 1, 1 + reach))
@@ -115,7 +128,8 @@ def _lacks(proof: Proof) -> None:
     for name, weight in weights.items():
         proof.define(name, felt(*weight), "within the contact and ahead of it")
     for small, bound, factor, spare in LACKS:
-        less = felt(*(sp.expand(factor * one - other) for one, other in zip(weights[bound], weights[small], strict=True)))
+        pairs = zip(weights[bound], weights[small], strict=True)
+        less = felt(*(sp.expand(factor * one - other) for one, other in pairs))
         proof.equal(factor * bound - small, less, "the difference")
         proof.holds(less, ">=", 0, "no weight is negative")
         proof.where(small > 0, "as for every arm; of a dashpot it is 0")
@@ -177,7 +191,9 @@ def _voigt(proof: Proof) -> None:
     proof.recall("F17-parts", excess_share, F_z, F_x)
     for name, form in {A: plain_mean, P: plain_ahead, B: half, D: most, E: twelfth}.items():
         proof.define(name, form, "as on Kelvin-Voigt" if name != D else "the most")
-    proof.equal(F_z * R / contact_length**3, most + product, "the load with these, which is no less")
+    proof.equal(
+        F_z * R / contact_length**3, most + product, "the load with these, which is no less"
+    )
     proof.holds((1 + 9 * eps / 8) * load, ">=", most + product, "the load, at most")
     proof.equal(F_x * R**2 / contact_length**4, work, "and the friction force")
     proof.where(eps < half, "slow enough")
@@ -209,8 +225,9 @@ def _window(proof: Proof) -> None:
     r"""The window of the asymptotes for high velocity.
 
     With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve
-    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. The window is best at $l = \sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens
-    slowly: for an error of 10 % by this bound an arm must be 1900 times as stiff as the spring.
+    \varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. The window is best at $l = \sqrt{2
+    \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens slowly: for an error of 10 %
+    by this bound an arm must be 1900 times as stiff as the spring.
 
     Argued: So the relative error of Eq. (45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$
     upwards, and $7 l/\breve \chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$.
@@ -231,8 +248,8 @@ def _window(proof: Proof) -> None:
 def _window_weight(proof: Proof) -> None:
     """The window under a dead weight.
 
-    As Eq. (45) in F18-window, Eq. (46) has the error $1/l$ on Kelvin-Voigt; $a$ is that of the indenter that is
-    lifted, and $l$ grows faster for it.
+    As Eq. (45) in F18-window, Eq. (46) has the error $1/l$ on Kelvin-Voigt; $a$ is that of the indenter
+    that is lifted, and $l$ grows faster for it.
     """
     proof.recall("scaling", l)
     proof.recall("F1", w_steady, m)
@@ -267,31 +284,47 @@ def _glass(proof: Proof) -> None:
     proof.equal(glass * second - first**2, form, "of Cauchy and Schwarz, with two arms")
     proof.holds(form, ">", 0, r"$\breve \omega > \breve \gamma$")
     for weight, value, what in (
-        (WEIGHTS[A], half, r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this"),
+        (
+            WEIGHTS[A],
+            half,
+            r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this",
+        ),
         (WEIGHTS[D], sp.Rational(1, 24), r"and $\breve D$ by at most $\breve \gamma$ times this"),
     ):
         whole = sp.Integral(w * weight, UNIT)
-        proof.integral(whole, whole.function, UNIT, antiderivative(w * weight, w), what, value=value)
+        proof.integral(
+            whole, whole.function, UNIT, antiderivative(w * weight, w), what, value=value
+        )
 
 
 @result("F18-fall")
 def _fall(proof: Proof) -> None:
     r"""High velocity: moments of a fall that hardly slows.
 
-    In the units of F18-glass, where the fall is at most $\breve \gamma$, and less by some $\breve k \ge 0$; by
-    at most $\breve \gamma \breve \omega \breve w$, which gives the last integral.
+    In the units of F18-glass, where the fall is at most $\breve \gamma$, and less by some $\breve k \ge
+    0$; by at most $\breve \gamma \breve \omega \breve w$, which gives the last integral.
     """
     by_fall(proof, E, B)
-    proof.define(fading(back), (steepest - weight_at(back)) / contact_length, "at most the fall at first")
-    over, at = (back, 0, contact_length), {w: back / contact_length}
+    proof.define(
+        fading(back), (steepest - weight_at(back)) / contact_length, "at most the fall at first"
+    )
     for name, value in MOST.items():
-        most, less = (sp.Integral(sp.factor(FALLS[name].subs(at) / contact_length) * part, over) for part in (1, weight_at(back)))
-        proof.integral(most, most.function, over, antiderivative(most.function, back), "at most", value=value)
+        most, less = _of_fall(name, 1), _of_fall(name, weight_at(back))
+        primitive = antiderivative(most.function, back)
+        proof.integral(most, most.function, IN_CONTACT, primitive, "at most", value=value)
         proof.equal(name, steepest * most - less, "a moment of the fall")
-        proof.holds(less, ">=", 0, rf"so ${tex(name)}$ is at most $\breve \gamma$ times its integral")
-    slowed = sp.Integral(w * FALLS[E], UNIT)
-    proof.integral(slowed, slowed.function, UNIT, antiderivative(slowed.function, w),
-                   r"$\breve E$ is less by at most $\breve \gamma \breve \omega$ times this", value=SLOWED)  # fmt: skip
+        proof.holds(
+            less, ">=", 0, rf"so ${tex(name)}$ is at most $\breve \gamma$ times its integral"
+        )
+    less = r"$\breve E$ is less by at most $\breve \gamma \breve \omega$ times this"
+    primitive = antiderivative(_SLOWED.function, w)
+    proof.integral(_SLOWED, _SLOWED.function, UNIT, primitive, less, value=SLOWED)
+
+
+def _of_fall(name: sp.Symbol, part: sp.Expr | int) -> sp.Integral:
+    """Return a moment of a fall, over the length of the contact."""
+    weight = sp.factor(FALLS[name].subs(w, back / contact_length) / contact_length)
+    return sp.Integral(weight * part, IN_CONTACT)
 
 
 @result("F18-glassy")
@@ -312,16 +345,17 @@ def _glassy(proof: Proof) -> None:
     share = sp.Rational(5, 12)
     lower, upper = (1 - share * o) * part**2, 1 + share * o / part**2
     longest = (1 + (o / 6) / part) * part
-    twist, bulge = (sp.Integral(sp.factor(FALLS[name].subs(w, back / contact_length) / contact_length), (back, 0, contact_length))
-                    for name in (E, B))
-    slowed = sp.Integral(w * FALLS[E], UNIT)
-    proof.recall("F18-fall", twist, bulge, slowed)
+    twist, bulge = _of_fall(E, 1), _of_fall(B, 1)
+    proof.recall("F18-fall", twist, bulge, _SLOWED)
     proof.asymptote("F18-high", OF_ARM, limit)
     proof.define(steepest, springpot * z / (1 + springpot), "of a spring and one arm")
-    proof.equal(limit, steepest * twist / twelfth, r"$\mu_\infty R/\breve c$, with the greatest $\breve E$")
+    proof.equal(
+        limit, steepest * twist / twelfth, r"$\mu_\infty R/\breve c$, with the greatest $\breve E$"
+    )
     proof.where(o < HASTE, "fast enough")
-    proof.equal(slowed / twist, share, r"$\breve E$ is less by at most $\breve \omega$ times this")
-    proof.equal(bulge**2 / (2 * twist), share, r"$\breve \eta^2 \breve P$ over $\breve E$, at most $\breve \gamma$ times this")
+    proof.equal(_SLOWED / twist, share, r"$\breve E$ is less by at most $\breve \omega$ times this")
+    ratio = r"$\breve \eta^2 \breve P$ over $\breve E$, at most $\breve \gamma$ times this"
+    proof.equal(bulge**2 / (2 * twist), share, ratio)
     proof.equal(longest, 1 - o / 3, r"greatest $2 \breve a$, times $1 - \breve \omega/2$")
     proof.sign(
         part - (1 - o / 3) ** 2, ">", 0, unit, "so that its square is bounded as the load is"
