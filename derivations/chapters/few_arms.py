@@ -38,9 +38,11 @@ part_at = function(
     "n_v", "place of a value between two bounds", printed=r"\breve n", nonnegative=True
 )
 
-force_slope, power, *differences = symbols(r"""
+force_slope, power, slowed, left, *differences = symbols(r"""
     f_v    \breve f    1  slope of the friction force over the load, at one velocity  real
     q_v    \breve q    1  bound of $\mathrm{d} \ln F_x/\mathrm{d} \ln F_z$
+    J_s    \breve J_s  N/m³  part of $10 \breve E - \breve B$ by how the fall slows  nonnegative
+    J_r    \breve J_r  N/m³  rest of it  real
     r_W    \breve r_W  1  most by which the loads on two series differ, as a factor
     s_W    \breve s_W  1  least by which they differ
     r_F    \breve r_F  1  most by which the friction forces differ, as a factor
@@ -55,11 +57,11 @@ STEEPEST = sp.Rational(5, 2)
 """Of friction over the load, logarithmically, at one velocity."""
 _kernel_of = 10 * FALLS[E] - FALLS[B]
 _gained = sp.factor(c * antiderivative(_kernel_of, w).subs(w, y / c))
-SLOWED = (
-    sp.Integral(_gained * slowing(y), (y, 0, c)),
-    sp.Integral(sp.factor(_kernel_of.subs(w, y / c)) * fading(y) - _gained * slowing(y), (y, 0, c)),
-)
+SLOWED = sp.Integral(_gained * slowing(y), (y, 0, c))
+LEFT = sp.Integral(sp.factor(_kernel_of.subs(w, y / c)) * fading(y) - SLOWED.function, (y, 0, c))
 """10 E - B, by how the fall slows, and the rest, which vanishes."""
+IN_PARTS = (B + slowed + left) / 10
+"""E by these."""
 LACKING = sp.Integral((c - 2 * y) ** 2 * G(y) / c**3, (y, 0, c))
 """A - 8 D."""
 
@@ -92,9 +94,10 @@ def _kernel(proof: Proof) -> None:
     """
     by_fall(proof, E, B)
     proof.define(sp.Derivative(fading(y), y), -slowing(y), "the relaxation function is convex")
-    proof.equal(E, (B + sp.Add(*SLOWED)) / 10, "in two parts")
-    slowed, rest = SLOWED
-    proof.integral(rest, rest.function, (y, 0, c), _gained * fading(y), "by parts", value=sp.S.Zero)
+    proof.define(slowed, SLOWED, "one part")
+    proof.define(left, LEFT, "the other one")
+    proof.equal(E, IN_PARTS, "both")
+    proof.integral(left, LEFT.function, (y, 0, c), _gained * fading(y), "by parts", value=sp.S.Zero)
     proof.holds(slowed, ">=", 0, r"so $\breve B \le 10 \breve E$")
     for name in (A, D):
         proof.define(name, weighted(name), "a moment")
@@ -114,9 +117,9 @@ def _steepest(proof: Proof) -> None:
     proof.where(E > 0, "$G$ is not constant")
     ratio = 2 * e * (D + e * P) / (E + e**2 * P)
     proof.equal(force_slope * F_z / F_x, ratio, "by the moments")
-    proof.recall("F27-kernel", (E, (B + sp.Add(*SLOWED)) / 10), SLOWED[1], D)
+    proof.recall("F27-kernel", (E, IN_PARTS), left, D)
     proof.define(power, STEEPEST, "a bound of it")
-    surplus = (e**2 * P / 2 + (SLOWED[0] + e * LACKING) / 4) / (E + e**2 * P)
+    surplus = (e**2 * P / 2 + (slowed + e * LACKING) / 4) / (E + e**2 * P)
     proof.equal(power - ratio, surplus, r"what $\mathrm{d} \ln F_x/\mathrm{d} \ln F_z$ is less")
     proof.holds(surplus, ">=", 0, "no term is negative")
     proof.done(power - ratio, surplus)
