@@ -43,9 +43,14 @@ _ALIKE = (sp.Abs, sp.Max, sp.Min, sp.UnevaluatedExpr)
 _FALL = {r"\breve H": "N/m³"}
 _SHAPE = {"h": "1"}
 _LENGTHS = {r"\hat y": "m", r"\bar m": "m", r"\chi": "1/m", "J": "1/m"}
+_MOMENTS = {rf"\breve {each}": "N/m³" for each in "PDEAB"}
 OWN: dict[str, dict[str, str]] = {
-    "F17-parts": dict.fromkeys((r"\breve P", r"\breve D", r"\breve E"), "N/m³"),
-    **dict.fromkeys(("F17-sign", "F18-glass", "F27-steepest", "F27-close"), _FALL),
+    **dict.fromkeys(("F17-parts", "F17-falls"), _MOMENTS),
+    "F18-fall": {r"\breve H": "1/m"},
+    "F18-voigt": {"F_z": "m²", "F_x": "m²"},
+    "F18-glass": _FALL,
+    **dict.fromkeys(("F27-kernel", "F27-steepest"), _MOMENTS | {r"\breve C": "Pa/m³"}),
+    "F27-close": _MOMENTS,
     **dict.fromkeys(("F9-difference", "F9-shapes"), _SHAPE),
     **dict.fromkeys(("F9-power", "F9-catenary"), _LENGTHS),
     "F9-circle": {"R": "1"},
@@ -56,7 +61,7 @@ OWN: dict[str, dict[str, str]] = {
 }
 """Units of letters in records where they are not those of the nomenclature: moments of the whole relaxation
 function, not of an arm over its stiffness; its fall over a scaled distance; functions that are written for
-scaled ones; a shape in any unit."""
+scaled ones; a shape in any unit; forces over a stiffness."""
 EXEMPT = {
     "groups-lengths": "scale factors of the units themselves",
     **dict.fromkeys(

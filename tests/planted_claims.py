@@ -203,7 +203,7 @@ WIDER = {
     "wedge-low/4": {"over": ["l", "0", "2"], "domain": []},  # (1 - l)(2 + l)
     "F9/0": {"over": ["eta", "0", ["infinity"]]},  # 2 - 2 eta
     "F3/3": {"over": ["q", "0", "4"]},  # 2 - sqrt 3 and 2 + sqrt 3
-    "F18-glassy/3": {"over": ["omega_v", "0", "2"], "domain": []},  # w/6 - w^2/9 is zero at 3/2
+    "F18-glassy/10": {"over": ["omega_v", "0", "2"], "domain": []},  # w/6 - w^2/9 is zero at 3/2
     "F9-circle/4": {"domain": []},  # R^2 - 3 y^2 changes its sign
     "F9/8": {"domain": []},  # e^s - e^s_1
     "F10-signs/6": {"domain": []},

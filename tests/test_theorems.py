@@ -100,7 +100,7 @@ def true_circle(l_r, depth):
         (master_curve, "PEAK", "_peak"),
         (energy, "NUMBER", "_parabola"),
         (circle, "CORRECTION", "_fixed"),
-        (circle, "EDGE", "_shape"),
+        (circle, "RECEDES", "_shape"),
         (circle, "LOAD_COEFFICIENT", "_fixed"),
         (circle, "FORCE_COEFFICIENT", "_fixed"),
         (circle, "LOADED_COEFFICIENT", "_dead_weight"),

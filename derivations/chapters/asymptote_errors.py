@@ -11,7 +11,7 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
-from .asymptotics import mu_high, mu_low
+from .asymptotics import F_high, F_low, W_high, W_low, mu_high, mu_low
 from .model import V, delta
 from .steady import F, W, l, l_r, mu, q
 from .theorems import (
@@ -32,7 +32,7 @@ from .theorems import (
 
 (
     gap, e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high,
-    e_depth_low, e_depth_high, e_load_spring, S, b, E, W_low, W_high, F_low, F_high, depth_high,
+    e_depth_low, e_depth_high, e_load_spring, S, b, E, depth_high,
 ) = symbols(r"""
     gap         \bar q            1  $1 - q$
     e_L1        e_{\mathrm{L1}}   1  relative error of the asymptote of the friction coefficient for low
@@ -53,10 +53,6 @@ from .theorems import (
     b           -                 1  root of the static depth over the depth, $(1 +
             E_\delta)^{1/3}$  prints b_\delta
     E           -                 1  relative excess of the load over the static one  prints E_\delta
-    W_low       W_{\mathrm{L1}}   N/m  asymptote of the load for low velocity
-    W_high      W_{\mathrm{L2}}   N/m  asymptote of the load for high velocity
-    F_low       F_{\mathrm{L1}}   N/m  asymptote of the friction force for low velocity
-    F_high      F_{\mathrm{L2}}   N/m  asymptote of the friction force for high velocity
     depth_high  \delta_{\mathrm{L2}}  m  asymptote of the depth for high velocity
 """)  # fmt: skip
 

@@ -13,12 +13,16 @@ from . import friction_identity
 from .model import C, K, R, V, delta, h, x
 from .steady import F, W, a, l, l_r, mu, q
 
-load_excess, V_star, mu_low, mu_high, mu_high_weight = symbols(r"""
+load_excess, V_star, mu_low, mu_high, mu_high_weight, W_low, W_high, F_low, F_high = symbols(r"""
     W_e      W_{\mathrm{e}}     N/m  elastic part of the load  real
     V_star   V^{*}              m/s  crossing velocity, where the two asymptotes meet  from critical-fixed
     mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity
     mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity
     mu_high_weight  \mu_{\mathrm{L2\text{-}MI}}  1  asymptote for high velocity, dead weight
+    W_low       W_{\mathrm{L1}}   N/m  asymptote of the load for low velocity
+    W_high      W_{\mathrm{L2}}   N/m  asymptote of the load for high velocity
+    F_low       F_{\mathrm{L1}}   N/m  asymptote of the friction force for low velocity
+    F_high      F_{\mathrm{L2}}   N/m  asymptote of the friction force for high velocity
 """)
 alpha = constant(r"\alpha", 2 * sp.sqrt(2) / 3, r"$2 \sqrt{2}/3$")
 
@@ -33,10 +37,6 @@ high_coefficient = alpha * sp.sqrt(delta / R)
 high_coefficient_dead_weight = alpha * sp.sqrt(W / (R * C * V))
 critical_fixed = alpha * K * sp.sqrt(R * delta) / C
 critical_dead_weight = alpha ** (2 * third) * (R * K**2 * W) ** third / C
-
-LOW_LOAD = r"2 \alpha R^{1/2} K \delta^{3/2}"
-LOW_FRICTION = r"2 \alpha R^{-1/2} C V \delta^{3/2}"
-HIGH_FRICTION = r"\alpha R^{-1/2} C V \delta^{3/2}"
 
 _SHAPE = x**2 / (2 * R)
 _compression = delta - h(x)
@@ -109,8 +109,9 @@ def _low_coefficient(proof: Proof) -> None:
     nor load enters.
     """
     _recall_coefficient(proof)
-    proof.equal(sp.UnevaluatedExpr(low_friction / low_load), low_coefficient, "Eqs. (40) and (41)",
-                left=rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}")  # fmt: skip
+    proof.asymptote("eq40", W, W_low)
+    proof.asymptote("eq41", F, F_low)
+    proof.equal(F_low / W_low, low_coefficient, "Eqs. (40) and (41)")
     proof.leading_order(mu, low_coefficient, *_low, "exact $F/W$", eps=l_r / a)
 
 
@@ -125,8 +126,9 @@ _estimates(False, (
 def _high_coefficient(proof: Proof) -> None:
     """Friction coefficient at high velocity, fixed indenter."""
     _recall_coefficient(proof)
-    proof.equal(sp.UnevaluatedExpr(high_friction / high_load), high_coefficient, "Eqs. (43) and (44)",
-                left=rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}")  # fmt: skip
+    proof.asymptote("eq43", W, W_high)
+    proof.asymptote("eq44", F, F_high)
+    proof.equal(F_high / W_high, high_coefficient, "Eqs. (43) and (44)")
     proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r)
 
 

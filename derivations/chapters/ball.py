@@ -11,14 +11,17 @@ from collections.abc import Mapping
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import symbols
+from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
-from .steady import l
+from .friction_identity import LOAD as STRIP_LOAD
+from .friction_identity import p_le, p_te, r
+from .model import C, F_x, F_z, K, R, V, delta, delta_t, t, t_0, u_i, x
+from .steady import W, a, any_pressure, l, l_r, p, trailing_edge, x_le, x_te
 from .theorems import kappa, lam
 
 (
     s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
-    ball_loss, ball_depth, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
+    ball_loss, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
     ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
     ball_load_high, ball_friction_low, ball_friction_high, ball_low, ball_high,
 ) = symbols(r"""
@@ -34,7 +37,6 @@ from .theorems import kappa, lam
     N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
     T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
     D_b         \tilde D          1  integral by which a ball leaves energy behind
-    I_b         \tilde I          1  integral of the depths of the strips
     phi_b       \tilde \varphi    1  scaled friction force of a ball, $F R/(K \delta a^3
             \sqrt{R_{\mathrm{y}}/R})$
     m_b         \tilde m          1  scaled friction coefficient of a ball, $\mu R/a$
@@ -58,6 +60,11 @@ from .theorems import kappa, lam
     m_b_high    \tilde m_{\mathrm{L2}}  1  asymptote of $\tilde m$ for high velocity
 """)  # fmt: skip
 
+strip_load, strip_friction, strip_loss = (
+    function(name, rf"{what} of the strips of a ball at one distance from its middle, scaled")
+    for name, what in (("S_b", "load"), ("R_b", "friction force"), ("U_b", "loss behind"))
+)  # fmt: skip
+
 SECTION = "Ball"
 
 y, theta, T, D = aside, ball_angle, ball_tail, ball_loss
@@ -71,6 +78,15 @@ LOSS = (sp.Rational(2, 3) - l * T / 2) / (1 + l**2)
 LOAD = (PI + sp.Rational(16, 3) * l + T) / 4
 FRICTION = l * (PI + T) / 4
 COEFFICIENT = l * (PI + T) / (PI + sp.Rational(16, 3) * l + T)
+STRIPS = sp.Rational(4, 3) * (
+    y * (5 - 2 * y**2) * sp.sqrt(1 - y**2) / 8 + 3 * sp.asin(y) / 8
+    + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8 + 3 * (1 + l**2) ** 2 * sp.atan(y / EDGE) / 8 - l**3 * y
+)  # fmt: skip
+"""The load of the strips up to y."""
+BEHIND = sp.Integral(
+    C / V * (V * sp.Derivative(u_i.subs(t, t_0 + (x - x_te) / V), x)) ** 2, (x, x_te, sp.oo)
+)
+"""What is lost behind the contact per distance slid."""
 REST = sp.Rational(2, 15) - l**2 * (sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta)
 HIGH = 3 * PI / 16
 UNIT = (y, 0, 1)
@@ -109,29 +125,53 @@ def _tail(proof: Proof) -> None:
     proof.done(T, TAIL)
 
 
-@result("F20-load", uses=("F21-load",))
+@result("F20-strip")
+def _strip(proof: Proof) -> None:
+    r"""Ball: a strip of it.
+
+    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, is a parabola: $1 -
+    \tilde \zeta^2$ times as deep as the ball, with the half length $a \sqrt{1 - \tilde \zeta^2}$. What it
+    carries, rubs and leaves behind, for both sides of the ball.
+    """
+    width = 1 - y**2
+    laws = (
+        sp.Rational(4, 3) * (width ** sp.Rational(3, 2) + EDGE**3 - l**3),
+        l * (strip_load(y) - 2 * l * width), 2 * l**2 * (EDGE - l) ** 2,
+    )  # fmt: skip
+    for law, form in zip((strip_load, strip_friction, strip_loss), laws, strict=True):
+        proof.define(law(y), form, "over both sides")
+    proof.where(width > 0, "within the contact")
+    strip = {a: a * sp.sqrt(width), delta: delta * width}
+    proof.recall("F21-load", (r, sp.sqrt(a**2 + l_r**2)), (W, STRIP_LOAD), at=strip)
+    proof.recall("eq27", (x_te, trailing_edge), at=strip)
+    proof.recall("eq26", at=strip)
+    proof.recall("pressure", (p, any_pressure), at={delta: delta * width})
+    proof.recall("eq3")
+    proof.recall("eq29", C)
+    proof.recall("F21", at={delta_t: delta * width})
+    for edge, place in ((p_te, x_te), (p_le, x_le)):
+        proof.define(edge, sp.Subs(p, x, place), "the pressure of steady sliding")
+    proof.define(F_z, W, "its load")
+    proof.recall("energy-behind", at={delta: delta * width})
+    proof.recall("eq3", at={x: x_te})
+    proof.recall("eq28", delta)
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.equal(2 * W / (K * delta * a), strip_load(y), "F21-load, both sides")
+    proof.equal(2 * F_x * R / (K * delta * a**2), strip_friction(y), "and F21")
+    proof.equal(2 * BEHIND * R / (K * delta * a**2), strip_loss(y), "by the surface behind")
+
+
+@result("F20-load")
 def _load(proof: Proof) -> None:
     r"""Ball: load.
 
-    A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length $a
-    \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde \zeta^2)^{3/2} +
-    (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of the contact at rest,
-    ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on which the pressure
-    vanishes.
+    The contact is the disc of the contact at rest, ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde
+    \zeta^2 + l^2} - l$ on which the pressure vanishes.
     """
-    width = 1 - y**2
-    strip = sp.Rational(4, 3) * (width ** sp.Rational(3, 2) + EDGE**3 - l**3)
-    primitive = sp.Rational(4, 3) * (
-        y * (5 - 2 * y**2) * sp.sqrt(width) / 8
-        + sp.Rational(3, 8) * sp.asin(y)
-        + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8
-        + sp.Rational(3, 8) * (1 + l**2) ** 2 * sp.atan(y / EDGE)
-        - l**3 * y
-    )
-    whole = sp.Integral(strip, UNIT)
     known(proof)
-    proof.integral(whole, strip, UNIT, primitive, "F21-load of each strip, both sides", value=LOAD)
-    proof.define(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
+    proof.recall("F20-strip", strip_load(y))
+    proof.integral(w, strip_load(y), UNIT, STRIPS, r"all strips: $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$",
+                   value=LOAD)  # fmt: skip
 
 
 @result("F20-loss")
@@ -151,7 +191,7 @@ def _loss(proof: Proof) -> None:
     proof.done(D, LOSS)
 
 
-@result("F20", uses=("F21-steady",))
+@result("F20")
 def _friction(proof: Proof) -> None:
     r"""Ball: friction.
 
@@ -162,17 +202,15 @@ def _friction(proof: Proof) -> None:
     as wide as $\frac{4}{3} (\frac{32}{9 \pi})^2 a \sqrt{R_{\mathrm{y}}/R}$ has the same forces, by F1.
     """
     _sums(proof)
-    depth = ball_depth
-    proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
-    proof.define(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$")
-    proof.equal(
-        l * (w - l * depth), phi, r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
-    )
+    proof.recall("F20-strip", strip_load(y), strip_friction(y))
+    depth = 2 * y - 2 * y**3 / 3
+    proof.integral(phi, strip_friction(y), UNIT, l * (STRIPS - l * depth),
+                   r"all strips: $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$", value=FRICTION)  # fmt: skip
     proof.equal(phi / w, COEFFICIENT, "friction coefficient")
     proof.define(m, COEFFICIENT, r"$\mu R/a$")
 
 
-@result("F20-energy", uses=("energy-any-shape",))
+@result("F20-energy")
 def _energy(proof: Proof) -> None:
     r"""Ball: energy dissipated inside the contact.
 
@@ -183,14 +221,15 @@ def _energy(proof: Proof) -> None:
     primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
     known(proof)
     proof.recall("F20-loss")
-    left_behind = (EDGE - l) ** 2
-    proof.integral(sp.Integral(left_behind, UNIT), left_behind, UNIT, primitive,
-                   r"$u_{\mathrm{TE}}^2$ of each strip, in units of $(l_{\mathrm{r}} a/R)^2$",
-                   value=D)  # fmt: skip
+    proof.recall("F20-strip", strip_loss(y))
+    lost = sp.Integral(strip_loss(y), UNIT)
+    proof.integral(
+        lost, strip_loss(y), UNIT, 2 * l**2 * primitive, "all strips", value=2 * l**2 * D
+    )
     proof.recall("F20", phi)
     share = 1 - 8 * l * D / (PI + T)
-    proof.define(ball_share, share, "fraction inside")
-    proof.equal((1 - ball_share) * phi, 2 * l**2 * D, r"the rest of $F V$ relaxes behind")
+    proof.define(ball_share, 1 - lost / phi, r"the rest of $F V$ relaxes behind")
+    proof.equal(ball_share, share, "fraction inside")
     proof.done(ball_share, share)
 
 

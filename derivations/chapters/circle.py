@@ -21,6 +21,7 @@ from .theorems import (
     B,
     f,
     f_s,
+    m,
     phi,
     s,
     w,
@@ -28,15 +29,18 @@ from .theorems import (
 )
 
 (
-    eps, W_1, F_1, c_w, c_f, c_mu, c_delta_load, c_mu_load, tilt, circle_number, turning,
-    turning_angle, slope_square,
+    eps, steeper, recedes, W_1, F_1, c_w, c_f, c_mu, deeper, c_delta_load, c_mu_load, tilt, circle_number,
+    turning, turning_angle, slope_square,
 ) = symbols(r"""
     epsilon     \varepsilon   1  $(a/R)^2$ of a true circle  prints \gamma
+    h_circle    \hat h_1      1  height that a circle adds to the parabola, over the depth, to first order
+    e_circle    \hat e        1  by which its leading edge recedes, over the half length, to first order
     W_1         -             1  first-order change of the scaled load by the circle  real
     F_1         -             1  first-order change of the scaled friction force by the circle  real
     c_W         -             1  coefficient of the circle in the load  real
     c_F         -             1  coefficient of the circle in the friction force  real
     c_mu        -             1  coefficient of the circle in the friction coefficient  real
+    c_delta     c_\delta      1  change of the depth, over $\varepsilon$  real
     c_delta_W   c_{\delta,W}  1  coefficient of the circle in the depth at given load  real
     c_mu_W      c_{\mu,W}     1  coefficient of the circle in the friction coefficient at given load  real
     -           \hat h        1  height of a true circle over $R$
@@ -57,8 +61,10 @@ PARABOLA = 1 - xi**2 - 2 * l * xi
 CORRECTION = -(xi**4) / 4 - l * xi**3
 """The addition by the fourth-order term of the circle, per eps."""
 _shift = sp.Symbol("t", real=True)
-EDGE = sp.Rational(1, 8)
-"""The leading edge of the circle is at xi = -1 + eps/8 + O(eps**2)."""
+STEEPER = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2)) - xi**2
+"""By which the circle is higher than the parabola, over the depth."""
+RECEDES = 1 - sp.sqrt(1 - eps / 4)
+"""By which its leading edge is behind that of the parabola, over the half length."""
 
 LOAD_COEFFICIENT = -3 * q * (1 + (1 - q) * (1 - 3 * q * (1 - q))) / (20 * A)
 FORCE_COEFFICIENT = 9 * (1 - q * (1 - q) * (1 + q**2)) / (10 * B)
@@ -73,23 +79,25 @@ def _shape(proof: Proof) -> None:
 
     Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.
     """
-    circle = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2))
-    edge = sp.sqrt(1 - eps / 4)
+    first = eps * xi**4 / 4
+    proof.leading_order(
+        STEEPER, first, eps, 0, "by this the circle is higher than the parabola", eps=eps
+    )
+    proof.leading_order(RECEDES, eps / 8, eps, 0, "and by this its leading edge recedes", eps=eps)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.recall("eq28", delta)
     proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
-    proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
-    first = eps * xi**4 / 4
-    proof.leading_order(circle - xi**2, first, eps, 0, "the difference to the parabola", eps=eps)
+    proof.equal(
+        (R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, xi**2 + STEEPER, r"$h/\delta$ of the circle"
+    )
     reason = (
         r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
     )
-    proof.equal((R - delta) ** 2, R**2 - (edge * a) ** 2, reason)
-    proof.leading_order(1 - edge, EDGE * eps, eps, 0, "the leading edge recedes by", eps=eps)
-    proof.done(circle - xi**2, first)
+    proof.equal((R - delta) ** 2, R**2 - ((1 - RECEDES) * a) ** 2, reason)
+    proof.done(STEEPER, first)
 
 
-@result("circle-fixed", uses=("circle-shape",))
+@result("circle-fixed")
 def _fixed(proof: Proof) -> None:
     r"""True circle at given depth.
 
@@ -98,10 +106,10 @@ def _fixed(proof: Proof) -> None:
     trailing edge, whose shift therefore has no effect to this order; at the leading edge it does not vanish.
     """
     proof.recall("scaling")
-    change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
-    proof.equal(
-        change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
-    )
+    proof.asymptote("circle-shape", STEEPER, steeper, "the height that the circle adds")
+    proof.asymptote("circle-shape", RECEDES, recedes, "by which its leading edge recedes")
+    change = -steeper - l * sp.Derivative(steeper, xi)
+    proof.equal(change, eps * CORRECTION, "what it adds to the pressure")
     proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
     proof.sign(
         sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
@@ -111,19 +119,21 @@ def _fixed(proof: Proof) -> None:
     proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
     proof.recall("F1", w)
     proof.recall("F1", phi)
-    moved = (xi, -1 + EDGE * eps, q + _shift * eps)
-    slope = xi + eps * xi**3 / 2
+    moved = (xi, -1 + recedes, q + _shift * eps)
+    slope = sp.Derivative(xi**2 + steeper, xi) / 2
     for total, weight, scale, coefficient, value, name in (
         (W_1, 1, w, c_w, LOAD_COEFFICIENT, "load"),
         (F_1, -slope, phi, c_f, FORCE_COEFFICIENT, "friction force"),
     ):
-        density = sp.expand(weight * (PARABOLA + eps * CORRECTION))
-        primitive = sp.integrate(density, xi)
+        density = weight * (PARABOLA + change)
+        known = density.xreplace({steeper: eps * xi**4 / 4}).doit()
+        primitive = sp.integrate(sp.expand(known), xi)
         low, high = (sp.Subs(primitive, xi, end) for end in moved[1:])
         proof.integral(total, density, moved, primitive, _MOVED, value=high - low)
-        per_eps = sp.Subs(sp.Derivative(total / scale, eps), eps, 0)
         proof.define(
-            coefficient, per_eps, r"the change per $\varepsilon$, over that of the parabola"
+            coefficient,
+            _per_eps(total / scale),
+            r"the change per $\varepsilon$, over that of the parabola",
         )
         proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
@@ -142,23 +152,29 @@ def _dead_weight(proof: Proof) -> None:
     r"""True circle at given load.
 
     With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and friction coefficient
-    are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + c_{\mu,W} \varepsilon$, up to
-    $O(\varepsilon^2)$: the depth adjusts until the load is the same.
+    change by $c_{\delta,W} \varepsilon$ and $c_{\mu,W} \varepsilon$ of themselves, to first order in
+    $\varepsilon$.
     """
-    loading = 3 / A
-    slipping = sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT * NUMBER / sp.diff(NUMBER, q)
-    slope = q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B)
-    proof.recall("balance", s * f_s / f)
-    proof.recall("circle-fixed", c_w)
-    proof.recall("circle-fixed", c_f)
-    proof.recall("circle-fixed")
-    proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
-    proof.define(c_delta_load, -c_w / loading, "depth: the load is kept")
     change = sp.Symbol("m_l", real=True)
+    slipping = l * sp.Derivative(FRICTION_COEFFICIENT, q) / sp.Derivative(NUMBER, q) / m
+    proof.recall("scaling", l)
+    proof.recall("F1", m)
+    proof.recall("balance", s * f_s / f)
+    proof.recall("circle-fixed", c_w, c_f)
+    proof.recall("circle-fixed")
+    kept = c_w + s * f_s / f / 2 * deeper
+    reason = r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order"
+    proof.root(kept, deeper, -c_w * A / 3, reason, name=c_delta_load)
     proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
-    proof.equal(change, slope, "logarithmic slope of $m$")
-    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, _CHAIN)
+    proof.equal(change, q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B), "logarithmic slope of $m$")
+    reason = r"chain rule: $\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, reason)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
+
+
+def _per_eps(form: sp.Expr) -> sp.Expr:
+    """Return the first change with the circle."""
+    return sp.Subs(sp.Derivative(form, eps), eps, 0)
 
 
 @result("circle-steepness")
@@ -207,4 +223,3 @@ _NUMBER = (
     r"$\hat l = l_{\mathrm{r}}/R$, if $\hat l \le 2/(3 \sqrt{3})$, with $0 < \hat \theta \le "
     r"\frac{\pi}{6}$"
 )
-_CHAIN = r"$\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"

@@ -87,8 +87,7 @@ def _master_curve(proof: Proof) -> None:
 def _peak(proof: Proof) -> None:
     r"""Friction maximum of the dead-weight indenter.
 
-    $\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is $\sqrt{3}$
-    times the half length of the contact.
+    $\mu (K R^2/W)^{1/3}$ has one maximum over all velocities; F3-values says where.
     """
     parabola = q**2 - 4 * q + 1
     rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
@@ -152,13 +151,13 @@ def _expansion(
     proof.recall("scaling")
     proof.recall("F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
-    proof.leading_order(m - first - second, last, q, end, "what two terms leave", eps=small)
+    proof.leading_order(first + second - m, last, q, end, "two terms, less the exact", eps=small)
 
 
 result("F4-low", title="Friction coefficient at low velocity: series", end=1, small=l, first=l,
-       second=-3 * l**2 / 4, last=9 * l**4 / 16)(_expansion)  # fmt: skip
+       second=-3 * l**2 / 4, last=-9 * l**4 / 16)(_expansion)  # fmt: skip
 result("F4-high", title="Friction coefficient at high velocity: series", end=0, small=1 / l,
-       first=sp.Rational(2, 3), second=-7 / (36 * l), last=-1 / (27 * l**2))(_expansion)  # fmt: skip
+       first=sp.Rational(2, 3), second=-7 / (36 * l), last=1 / (27 * l**2))(_expansion)  # fmt: skip
 
 
 @result("F5")

@@ -29,6 +29,9 @@ w_rest, m_low, m_high, l_cross = symbols(r"""
     l_cross  l^{*}         1  scaled retardation length where the asymptotes meet
 """)
 
+AT_REST = 2 * n / (n + 1)
+"""w_n of a contact at rest."""
+
 result = Chapter(SECTION)
 
 
@@ -72,18 +75,22 @@ def _monotonic(proof: Proof) -> None:
 def _low(proof: Proof) -> None:
     r"""Power law: low velocity.
 
-    At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K \delta a$ and
-    $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$.
+    At rest $q = Q = 1$ and $l = 0$. The load tends to the load at rest, $w_{n,0}$ in units of $K \delta
+    a$, and $\mu$ to $m_{n,0}' l$ in units of $\delta/a$.
     """
     rest = (q, Q, l), (1, 1, 0)
     proof.recall("F19-load")
     proof.recall("F19")
     proof.define(w_rest, sp.Subs(w_n, *rest), "load at rest")
-    proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
+    proof.equal(w_rest, AT_REST, "in units of $K \\delta a$")
     ratio = n * (n + 1) * (SQUARES + l * Q**2 / 2) / (1 + q + l + l**2 * Q)
     proof.equal(m_n / l, ratio, "friction coefficient per $l$, continuous at rest")
     proof.define(m_low, sp.Subs(ratio, *rest), "friction coefficient per $l$ at rest")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
+    in_q(proof)
+    proof.leading_order(w_n, AT_REST, q, 1, "the load tends to this", eps=1 - q)
+    proof.leading_order(m_n / l, LOW_SLOPE, q, 1, "and friction to this, times $l$", eps=1 - q)
+    proof.done(m_low, LOW_SLOPE)
 
 
 @result("F19-high")

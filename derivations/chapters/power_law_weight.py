@@ -26,7 +26,7 @@ from .power_law import (
     w_n,
     z,
 )
-from .power_law_limits import m_high
+from .power_law_limits import AT_REST, m_high
 from .steady import W, a, l, mu, q
 from .tables import delta_0
 from .theorems import kappa, lam, r, s
@@ -42,8 +42,6 @@ a_0 = symbol("a_0", "static half length of the contact", "m")
 
 SCALED_LOAD = s**n * (s + r + lam + lam**2 / (r + n * lam)) / 2
 SCALED_SLOPE = (n + 1) * s ** (n - 1) * (s + r + lam) / 2
-AT_REST = 2 * n / (n + 1)
-"""w_n of a contact at rest."""
 _SHARE = (n - 1) / (2 * n - 1)
 CROSSING = n * 2**_SHARE * (1 + kappa) ** _SHARE / (n + 1)
 _DAMPED = 1 + q * Q**2

@@ -7,34 +7,51 @@ linear solid leaves behind, and the one interval of contact on every Prony serie
 
 import sympy as sp
 
-from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, letter, symbol, symbols
-from ..engine.step import Proof, tex
-from .model import K, R
-from .steady import a, x_te
+from ..engine.nomenclature import function, symbol, symbols
+from ..engine.step import Proof
+from .model import F_x, F_z, K, R
+from .steady import W, a, x_te
 from .viscoelastic import (
+    FALL,
     MOMENTS,
     SECTION,
     UNIT,
+    A,
     B,
     D,
     E,
     P,
     Q,
+    arm_lost,
+    arm_work,
+    b,
     contact_length,
+    edge_pressure,
     excess_share,
+    from_moments,
     from_trailing,
     spring_share,
+    springs,
+    under_pressure,
+    z,
 )
 
 arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
-memory = function("G_v", positive=True)
+memory = function(
+    "G_v", "relaxation function, over the distance", "N/m³", printed=r"\breve G", positive=True
+)
+repeated = tuple(
+    function(f"G_v{n}", rf"integral of ${inner}$", unit, printed=rf"\breve G_{n}", nonnegative=True)
+    for n, inner, unit in (
+        (1, r"\breve G", "N/m²"), (2, r"\breve G_1", "N/m"),
+        (3, r"\breve G_2", "N"), (4, r"\breve G_3", "N m"),
+    )
+)  # fmt: skip
 behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
 edge_distance = symbol(
     "y_v", "distance back from there, or behind the trailing edge", "m", latex=r"\breve y"
 )
-letter(r"\breve G_4", r"integral of $\breve G_3$ over the contact", "N m")
 fading = function(
     "H_v",
     "rate of decrease of the relaxation function",
@@ -64,13 +81,26 @@ fading = function(
     omega_v1  \breve \omega_1  1     remainder of a bound, not negative  nonnegative
     omega_v2  \breve \omega_2  1     remainder of another bound  nonnegative
 """)  # fmt: skip
-repeated = tuple(function(f"G_v{n}", nonnegative=True) for n in range(1, 5))
 
 y, X, c, w, l = edge_distance, behind, contact_length, from_trailing, arm_length
+e = excess_share
 G, (G_1, G_2, G_3, G_4) = memory, repeated
 PRESSURE = sp.Lambda(y, (a * G_1(y) - G_2(y)) / R)
+PRESSED = sp.Integral(G(y) * (a - X + y) / R, (y, 0, X))
+"""The pressure at the distance X from the leading edge."""
+LOADED = sp.Integral(PRESSURE(y), (y, 0, c))
+"""The load: the pressure over the contact."""
+WORKED = sp.Integral((a - y) / R * PRESSURE(y), (y, 0, c))
+"""The friction force: its work."""
 LOAD = (a * G_2(c) - G_3(c)) / R
 WORK = ((a - c) * (a * G_2(c) - G_3(c)) + a * G_3(c) - G_4(c)) / R**2
+WEIGHTS = {name: MOMENTS[name][0] for name in (P, D, E)} | {A: sp.S.One, B: (1 - 2 * w) / 2}
+"""Of the moments that give load and friction force."""
+FALLS = {
+    P: w * (2 - w) / 2, D: w**2 * (3 - 2 * w) / 12, E: w * (1 - w) ** 2 * (2 + w) / 24,
+    A: w, B: w * (1 - w) / 2,
+}  # fmt: skip
+"""With which the fall of the relaxation function counts in them: their integrals from the trailing edge."""
 
 result = Chapter(SECTION)
 
@@ -80,6 +110,17 @@ def name_integrals(proof: Proof, count: int, place: sp.Symbol = y) -> None:
     for integral, part in zip(repeated[:count], (G, *repeated)[:count], strict=True):
         proof.define(sp.Derivative(integral(place), place), part(place), "a repeated integral")
         proof.define(integral(0), sp.S.Zero, "from the leading edge on")
+
+
+def weighted(name: sp.Symbol) -> sp.Integral:
+    """Return a moment of the relaxation function."""
+    return sp.Integral(sp.factor(WEIGHTS[name].subs(w, y / c) / c) * G(y), (y, 0, c))
+
+
+def in_parts(name: sp.Symbol) -> tuple[sp.Integral, sp.Integral]:
+    """Return a moment as one of the fall, and the rest, of which only the value at the end is left."""
+    fallen = sp.Integral(sp.factor(FALLS[name].subs(w, y / c)) * fading(y), (y, 0, c))
+    return fallen, sp.Integral(weighted(name).function - fallen.function, (y, 0, c))
 
 
 @result("F17-any")
@@ -92,10 +133,8 @@ def _pressure(proof: Proof) -> None:
     """
     name_integrals(proof, 2)
     rate = (a - X + y) / R
-    value = PRESSURE(X)
-    whole = sp.Integral(G(y) * rate, (y, 0, X))
-    proof.integral(whole, G(y) * rate, (y, 0, X), rate * G_1(y) - G_2(y) / R,
-                   r"by parts; this is the pressure $p(\breve X)$", value=value)  # fmt: skip
+    proof.integral(PRESSED, PRESSED.function, (y, 0, X), rate * G_1(y) - G_2(y) / R,
+                   r"by parts; this is the pressure $p(\breve X)$", value=PRESSURE(X))  # fmt: skip
 
 
 @result("F17-concave", uses=("F17-any",))
@@ -103,11 +142,15 @@ def _concave(proof: Proof) -> None:
     r"""Any relaxation function: one trailing edge.
 
     The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is concave:
-    it vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$.
+    it vanishes at one point behind, the trailing edge.
 
     Argued: Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$.
     """
     name_integrals(proof, 2)
+    proof.recall("F17-any", at={X: c})
+    for part in (G_1(c), G_2(c)):
+        proof.where(part > 0, "an integral of a positive function")
+    proof.root(PRESSED.subs(X, c), a, G_2(c) / G_1(c), "no pressure where the contact ends")
     first = (a * G(y) - G_1(y)) / R
     proof.equal(sp.Derivative(PRESSURE(y), y), first, "slope of the pressure")
     proof.define(sp.Derivative(G(y), y), -fading(y), "G does not increase")
@@ -126,69 +169,108 @@ def _forces(proof: Proof) -> None:
     - \breve y)\, u'(\breve y)\, u'(\breve X)$ over $\breve y < \breve X$.
     """
     name_integrals(proof, 4)
-    over = (y, 0, c)
-    load = sp.Integral(PRESSURE(y), over)
+    over, rate = (y, 0, c), (a - y) / R
     primitive = (a * G_2(y) - G_3(y)) / R
-    proof.integral(load, PRESSURE(y), over, primitive, "this is the load $W$", value=LOAD)
-    rate = (a - y) / R
-    work = sp.Integral(rate * PRESSURE(y), over)
+    proof.integral(LOADED, LOADED.function, over, primitive, "this is the load $W$", value=LOAD)
     whole = rate * primitive + (a * G_3(y) - G_4(y)) / R**2
-    proof.integral(work, rate * PRESSURE(y), over, whole, "the work of the pressure, which is $F$",
+    proof.integral(WORKED, WORKED.function, over, whole, "the work of the pressure, which is $F$",
                    value=WORK)  # fmt: skip
 
 
-@result("F17-parts", uses=("F17-forces", "F17-load", "F17"))
+@result("F17-growth")
+def _growth(proof: Proof) -> None:
+    r"""Any relaxation function: growth of the contact.
+
+    With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each
+    load.
+    """
+    name_integrals(proof, 3, c)
+    proof.recall("F17-concave", a)
+    whole, first, second = G(c), G_1(c), G_2(c)
+    slope = 1 - second * whole / first**2
+    proof.equal(sp.Derivative(a, c), slope, "by the quotient rule: less than 1")
+    gap, fall = first**2 - 2 * second * whole, sp.Derivative(whole, c)
+    proof.equal(slope - sp.Rational(1, 2), gap / (2 * first**2), "more than one half, if")
+    proof.equal(sp.Derivative(gap, c), -2 * second * fall,
+                r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
+    proof.recall("F17-forces", LOADED)
+    proof.define(W, LOADED, "the load")
+    rise = second * slope / R
+    proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
+
+
+@result("F17-parts", uses=("F17-forces",))
 def _moments(proof: Proof) -> None:
     """Any relaxation function: the moments by parts.
 
-    The moments of F17-moments, applied to the whole relaxation function: load and friction force are those of
+    The moments of F17-moments, applied to the whole relaxation function: load and friction force are as in
     F17-load and F17, whether or not $G$ is a sum of arms. (F17-sign shows that the moments are positive.)
     """
     name_integrals(proof, 4)
-    parts = (G_1(y), G_2(y), G_3(y), G_4(y))
-    for name in (P, D, E):
-        weight = sp.expand(MOMENTS[name][0].subs(w, y / c)) / c
-        primitive = sum((-1) ** n * sp.diff(weight, y, n) * part for n, part in enumerate(parts))
-        ends = [sp.diff(weight, y, n).subs(y, c) * part.subs(y, c) for n, part in enumerate(parts)]
-        value = sum((-1) ** n * end for n, end in enumerate(ends))
-        proof.integral(
-            name, weight * G(y), (y, 0, c), primitive, "by parts", value=sp.expand(value)
-        )
-    proof.define(a, G_2(c) / G_1(c), "F17-concave: no pressure at the trailing edge")
-    proof.define(excess_share, a / c - sp.Rational(1, 2), "the excess over half of the contact")
-    e, load, work = excess_share, LOAD, WORK
-    proof.equal(load, c**3 / R * (D + e * P), "the load of F17-load")
-    form = c**4 / R**2 * (E + e**2 * P)
-    proof.equal(work, form, "the friction force of F17")
+    for name in WEIGHTS:
+        whole = weighted(name).function
+        weight = whole / G(y)
+        parts = sum((-1) ** n * sp.diff(weight, y, n) * part(y) for n, part in enumerate(repeated))
+        proof.integral(name, whole, (y, 0, c), parts, "by parts", value=sp.expand(parts.subs(y, c)))
+    proof.recall("F17-concave", a)
+    proof.define(e, a / c - sp.Rational(1, 2), "the excess over half of the contact")
+    proof.equal(a, c * (e + sp.Rational(1, 2)), "solved for the half length")
+    proof.equal(e, B / A, "no pressure at the trailing edge")
+    for total, integral, form in (
+        (F_z, LOADED, c**3 / R * (D + e * P)), (F_x, WORKED, c**4 / R**2 * (E + e**2 * P)),
+    ):  # fmt: skip
+        proof.recall("F17-forces", integral)
+        proof.define(total, integral, "over the contact")
+        proof.equal(total, form, "in terms of the moments")
 
 
-@result("F17-sign", uses=("F17-parts",))
+@result("F17-falls")
+def _falls(proof: Proof) -> None:
+    r"""Any relaxation function: the moments by its fall.
+
+    Each moment of F17-parts is a multiple of $\breve G$ at the trailing edge and an integral of its fall
+    $\breve H$, both with factors that are not negative. A springpot, infinite at $\breve y = 0$, gives no
+    boundary term there, because $\breve y\, G$ vanishes.
+    """
+    proof.define(sp.Derivative(G(y), y), -fading(y), "the relaxation function does not rise")
+    for name in WEIGHTS:
+        proof.define(name, weighted(name), "a moment")
+        fallen, rest = in_parts(name)
+        proof.equal(name, fallen + rest, "by parts")
+        proof.integral(rest, rest.function, (y, 0, c), FALLS[name].subs(w, y / c) * G(y), "the end",
+                       value=FALLS[name].subs(w, 1) * G(c))  # fmt: skip
+        proof.holds(fallen, ">=", 0, "not negative in the contact")
+    proof.done(name, fallen + rest)
+
+
+def by_fall(proof: Proof, *names: sp.Symbol) -> None:
+    """Recall moments as integrals of the fall."""
+    for name in names:
+        fallen, rest = in_parts(name)
+        proof.recall("F17-falls", (name, fallen + rest), rest)
+
+
+@result("F17-sign")
 def _positive(proof: Proof) -> None:
     r"""Any relaxation function: friction is positive.
 
-    Each moment is a multiple of $\breve G$ at the trailing edge and an integral of its fall $\breve H$, both
-    with factors that are not negative. Where $G$ does not rise, $F = (\breve c^4/R^2)(\breve E + \breve
-    \eta^2 \breve P)$ with $\breve \eta = \breve B/\breve A$ is therefore positive unless $G$ is constant:
-    convexity of $G$ is not needed. A springpot, infinite at $\breve w = 0$, gives no boundary term there,
-    because $\breve w\, G$ vanishes.
+    Where $G$ does not rise, $F_x$ is not negative, and is zero only where $G$ is
+    constant and $\breve \eta = 0$: convexity of $G$ is not needed.
     """
-    proof.define(sp.Derivative(G(w), w), -fading(w), "the relaxation function does not rise")
-    for name in (P, Q, D, B, E):
-        weight = (1 - 2 * w) / 2 if name == B else MOMENTS[name][0]
-        gained = sp.factor(antiderivative(weight, w))
-        inside, end = weight * G(w) - gained * fading(w), gained.subs(w, 1) * G(1)
-        proof.integral(sp.Integral(inside, UNIT), inside, UNIT, gained * G(w), rf"${tex(name)}$ by parts",
-                       value=end)  # fmt: skip
-        proof.holds(sp.Integral(gained * fading(w), UNIT), ">=", 0, "not negative in the contact")
-    proof.done(sp.Integral(inside, UNIT), end)
+    proof.recall("F17-parts", F_x)
+    by_fall(proof, E, P)
+    form = c**4 / R**2 * (in_parts(E)[0] + e**2 * (in_parts(P)[0] + G(c) / 2))
+    proof.equal(F_x, form, "by the fall")
+    proof.holds(form, ">=", 0, "no term is negative")
+    proof.done(F_x, form)
 
 
-@result("F17-stored", uses=("F17-energy",))
+@result("F17-stored")
 def _stored(proof: Proof) -> None:
     r"""Any relaxation function: energy behind the contact.
 
-    Half of the square of this is the energy stored in the spring of an arm (F17-energy), $\frac{1}{2}
-    \int \int e^{-\breve z (\breve w + \breve w')} u' u'$.
+    Half of the square of this stress is the energy stored in the spring of an arm, $\frac{1}{2} \int \int
+    e^{-\breve z (\breve w + \breve w')} u' u'$.
 
     Argued: Added up over arms it is $\frac{1}{2} \int \int G(\breve w + \breve w')\, u'(\breve w)\,
     u'(\breve w')$ for every $G$ that is a sum or an integral of arms (Bernstein: that is completely
@@ -196,14 +278,15 @@ def _stored(proof: Proof) -> None:
     of $F$ is lost inside it. For other relaxation functions $G$ alone does not determine the stored
     energy.
     """
-    from .viscoelastic import PRESSURE as ARM
-    from .viscoelastic import b, z
-    from .viscoelastic import y as at
-
+    under_pressure(proof)
+    proof.recall("F17-edge")
     held = sp.Integral(sp.exp(-z * w) * (b - 1 + w), UNIT)
     primitive = -sp.exp(-z * w) * ((b - 1 + w) / z + 1 / z**2)
-    proof.integral(held, sp.exp(-z * w) * (b - 1 + w), UNIT, primitive,
-                   "stress of an arm at the trailing edge", value=ARM.subs(at, 1))  # fmt: skip
+    proof.integral(held, held.function, UNIT, primitive,
+                   "stress of an arm at the trailing edge", value=edge_pressure)  # fmt: skip
+    proof.recall("F17", arm_work)
+    proof.recall("F17-energy")
+    proof.equal(arm_work - arm_lost, held**2 / 2, "what the arm does not lose in the contact")
 
 
 @result("F17-stored-springpot", uses=("F17-stored",))
@@ -237,7 +320,7 @@ def _stored_springpot(proof: Proof) -> None:
     proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
 
 
-@result("F17-surface", uses=("F17-concave",))
+@result("F17-surface")
 def _surface(proof: Proof) -> None:
     r"""Standard linear solid: the surface behind the contact.
 
@@ -247,18 +330,26 @@ def _surface(proof: Proof) -> None:
     $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin-Voigt,
     and does not touch again.
     """
+    u, stretch, beta = left_behind, (1 + arm_ratio) * l, arm_ratio
     rate = slope_free
-    u, stretch = left_behind, (1 + arm_ratio) * l
-    free = K * arm_ratio * rate + K * rate + K * u / l
-    proof.root(free, rate, -u / stretch,
+    proof.root(K * beta * rate + K * rate + K * u / l, rate, -u / stretch,
                r"the slope of the free surface, where the arm carries $-K \breve u$: "
                r"$-K \breve \chi_0 = K_1 \breve \chi_0 + K \breve u/l_i$")  # fmt: skip
-    proof.define(
+    from_moments(proof)
+    proof.recall("F17-edge")
+    spring = proof.asymptote("F17-limits", edge_pressure, springs[0], "of the spring")
+    proof.define(e, beta * B / (1 + beta * A), "the excess over half of the contact, as there is")
+    proof.equal(springs[0] + beta * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
+    proof.define(l, c / z, "length of the arm")
+    proof.define(x_te, c / 2 - c * e, "by definition of the excess")
+    proof.define(u, c**2 * spring / R, "what the spring carries there")
+    angle = (1 + beta * (2 * (1 + z) * Q + FALL) + 2 * beta**2 * Q) / (
+        2 * (1 + beta) * (1 + beta * A)
+    )
+    proof.define(parting, c / R * angle, "positive")
+    proof.equal(
         x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this"
     )
-    leaving = -K * (1 + arm_ratio) * x_te / R + K * u / l
-    proof.equal(leaving, -K * (1 + arm_ratio) * parting,
-                "slope of the pressure at the end of the contact, negative by F17-concave")  # fmt: skip
     part = sp.Symbol("zeta", positive=True)
     over = (part, 0, y / stretch)
     above = sp.Integral(1 - sp.exp(-part), over)

@@ -51,6 +51,8 @@ p = function("p", "contact pressure", "Pa", real=True)(x)
 
 half_length = sp.sqrt(2 * R * delta)
 trailing_edge = sp.sqrt(a**2 + l_r**2) - l_r
+any_pressure = K * (delta - h(x)) - C * V * h(x).diff(x)
+"""Of any shape."""
 pressure = K * (delta - x**2 / (2 * R) - l_r * x / R)
 number = (1 - q**2) / (2 * q)
 """l_r/a in terms of q = x_TE/a."""

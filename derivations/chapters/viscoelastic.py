@@ -10,15 +10,16 @@ import sympy as sp
 
 from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import function, symbols
+from ..engine.nomenclature import symbols
 from ..engine.step import Proof
-from .model import R
-from .steady import W, a, l, q
+from .steady import a, l, q
+from .theorems import phi as scaled_friction
+from .theorems import w as scaled_load
 
 (
     contact_length, arm_number, place, passed, half_share, arm_pressure, from_trailing,
     moment_ahead, moment_behind, moment_bulge, moment_twist, moment_mean, moment_slant,
-    excess_share, arm_load, arm_work, arm_lost,
+    excess_share, arm_load, arm_work, arm_lost, edge_pressure,
 ) = symbols(r"""
     c_v    \breve c     m  length of the contact
     z_v    \breve z     1  length of the contact over that of an arm, $\breve c/l_i$
@@ -30,26 +31,29 @@ from .steady import W, a, l, q
     P_v    \breve P     1  moment of the relaxation function, of weight $1 - \breve w$
     Q_v    \breve Q     1  moment of weight $\breve w$
     D_v    \breve D     1  moment of weight $\breve w (1 - \breve w)/2$
-    E_v    \breve E     1  moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$
+    E_v    \breve E     1  moment of weight $(1 - 3 \breve w + 2 \breve w^3)/12$  real
     A_v    \breve A     1  mean of the relaxation function, $\breve P + \breve Q$
     B_v    \breve B     1  $(\breve P - \breve Q)/2$
     eta_v  \breve \eta  1  $\breve a - \frac{1}{2}$
     W_v    \breve W     1  load of an arm, in units of $K_i \breve c^3/R$
-    F_v    \breve F     1  friction force of an arm, in units of $K_i \breve c^4/R^2$
+    F_v    \breve F     1  friction force of an arm, in units of $K_i \breve c^4/R^2$  real
     L_v    \breve L     1  part of $\breve F$ that is lost in the contact  real
+    p_ve   \breve p_e   1  $\breve p$ at the trailing edge  real
 """)  # fmt: skip
-relaxation = function(
-    "G_v", "relaxation function at the trailing edge", "N/m³", printed=r"\breve G", positive=True
-)(contact_length)
-G_1, G_2, G_3 = primitives = tuple(
-    function(
-        f"G_v{n}", rf"integral of ${inner}$ over the contact", unit,
-        printed=rf"\breve G_{n}", source="F17-growth", positive=True,
-    )(contact_length)
-    for n, inner, unit in (
-        (1, r"\breve G", "N/m²"), (2, r"\breve G_1", "N/m"), (3, r"\breve G_2", "N"),
-    )
-)  # fmt: skip
+springs = symbols(r"""
+    p_vk  \breve p_k  1  pressure of a spring at the trailing edge, in units of $K \breve c^2/R$
+    W_vk  \breve W_k  1  load of a spring, in units of $K \breve c^3/R$
+    F_vk  \breve F_k  1  friction force of a spring, in units of $K \breve c^4/R^2$
+""")
+dashpots = symbols(r"""
+    p_vc  \breve p_c  1  pressure of a dashpot there, in the same units, over $\breve \zeta$  real
+    W_vc  \breve W_c  1  load of a dashpot, likewise
+    F_vc  \breve F_c  1  friction force of a dashpot, likewise
+""")
+voigt_load, voigt_work = symbols(r"""
+    W_v0  \breve W_0  1  load on Kelvin-Voigt, in units of $K \breve c^3/R$
+    F_v0  \breve F_0  1  friction force on Kelvin-Voigt, in units of $K \breve c^4/R^2$
+""")
 ratio_first, ratio_second, spring_share, springpot = symbols(r"""
     t_v0    \breve t_0    1  ratio of two modified spherical Bessel functions
     t_v1    \breve t_1    1  ratio of the next two modified spherical Bessel functions
@@ -81,7 +85,10 @@ PRESSURE = (b * z - z * y + 1 - (b * z + 1) * sp.exp(-z * y)) / z**2
 LOAD = D + e * P
 WORK = E + e**2 * P
 LOST = E - B**2 / 2 + e * (A * B + e * (B + A * z * P / 2))
+OF_ARM = (springs[2] + springpot * arm_work) / (springs[1] + springpot * arm_load)
+"""The friction coefficient of a spring and one arm, over c/R."""
 UNIT = (w, 0, 1)
+half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
 
 result = Chapter(SECTION)
 
@@ -131,7 +138,7 @@ def _moments(proof: Proof) -> None:
     proof.done(A, P + Q)
 
 
-def _from_moments(proof: Proof) -> None:
+def from_moments(proof: Proof) -> None:
     """Let the moments stand for their values, and a/c for 1/2 + e."""
     proof.recall("F17-moments", *MOMENTS)
     proof.recall("F17-moments")
@@ -141,9 +148,9 @@ def _from_moments(proof: Proof) -> None:
     )
 
 
-def _under_pressure(proof: Proof) -> None:
+def under_pressure(proof: Proof) -> None:
     """Let the pressure of an arm stand for its value too."""
-    _from_moments(proof)
+    from_moments(proof)
     proof.recall("F17-pressure")
 
 
@@ -156,11 +163,12 @@ def _edge(proof: Proof) -> None:
     length of the contact therefore determines the half length at rest. The slope of the pressure, $R p' = a G
     - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once.
     """
-    _from_moments(proof)
-    proof.notation[r"\breve p"] = sp.Lambda(y, PRESSURE)
-    at_edge = PRESSURE.subs(y, 1)
-    proof.equal(at_edge, b * A - P, "pressure of the arm at the trailing edge", left=r"\breve p(1)")
-    proof.equal(at_edge, e * A - B, "in terms of the moments", left=r"\breve p(1)")
+    under_pressure(proof)
+    proof.define(
+        edge_pressure, sp.Subs(arm_pressure, y, 1), "pressure of the arm at the trailing edge"
+    )
+    proof.equal(edge_pressure, b * A - P, "in terms of the moments")
+    proof.equal(edge_pressure, e * A - B, "and by the excess over half of the contact")
 
 
 @result("F17-load")
@@ -170,7 +178,7 @@ def _load(proof: Proof) -> None:
     Of one arm, in units of $K_i \breve c^3/R$. So $W = (\breve c^3/R) \sum K_i (\breve D + \breve \eta \breve
     P)$, a sum of positive terms.
     """
-    _under_pressure(proof)
+    under_pressure(proof)
     primitive = (b * z * y - z * y**2 / 2 + y + (b * z + 1) * sp.exp(-z * y) / z) / z**2
     proof.integral(arm_load, arm_pressure, (y, 0, 1), sp.expand(primitive),
                    "the integral of the pressure", value=LOAD)  # fmt: skip
@@ -183,7 +191,7 @@ def _work(proof: Proof) -> None:
     Of one arm, in units of $K_i \breve c^4/R^2$. So $F = (\breve c^4/R^2) \sum K_i (\breve E + \breve \eta^2
     \breve P)$: friction is positive where $G$ falls and is convex, and no sum cancels.
     """
-    _under_pressure(proof)
+    under_pressure(proof)
     primitive = antiderivative(PRESSURE * (b - y), y)
     proof.integral(
         arm_work, arm_pressure * (b - y), (y, 0, 1), primitive, "the integral of $u' p$", value=WORK
@@ -197,7 +205,7 @@ def _energy(proof: Proof) -> None:
     What is stored in the springs at the trailing edge, $\breve p(1)^2/2$, is lost while the surface relaxes
     behind the contact.
     """
-    _under_pressure(proof)
+    under_pressure(proof)
     stored = sp.Derivative(arm_pressure**2, y) / 2
     work = arm_pressure * (b - y)
     proof.equal(work, stored + z * arm_pressure**2, "stored in the spring of the arm, or lost")
@@ -209,27 +217,6 @@ def _energy(proof: Proof) -> None:
     proof.done(arm_lost, LOST)
 
 
-@result("F17-growth", uses=("F17-edge",))
-def _growth(proof: Proof) -> None:
-    r"""Any relaxation function: growth of the contact.
-
-    With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each
-    load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact.
-    """
-    for whole, part in zip(primitives, (relaxation, *primitives), strict=False):
-        proof.define(sp.Derivative(whole, c), part, "a repeated integral")
-    proof.define(a, G_2 / G_1, "F17-edge")
-    slope = 1 - G_2 * relaxation / G_1**2
-    proof.equal(sp.Derivative(a, c), slope, "by the quotient rule: less than 1")
-    gap, fall = G_1**2 - 2 * G_2 * relaxation, sp.Derivative(relaxation, c)
-    proof.equal(slope - sp.Rational(1, 2), gap / (2 * G_1**2), "more than one half, if")
-    proof.equal(sp.Derivative(gap, c), -2 * G_2 * fall,
-                r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
-    proof.define(W, (G_2**2 / G_1 - G_3) / R, "F17-load, with $a$ inserted")
-    rise = G_2 * slope / R
-    proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
-
-
 @result("F17-arm")
 def _forms(proof: Proof) -> None:
     r"""Any relaxation function: an arm without cancellation.
@@ -237,7 +224,7 @@ def _forms(proof: Proof) -> None:
     $\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of $\coth$, which
     continues with 5, 7 and so on, all positive; ten terms give full double precision for $\breve z \le 4$.
     """
-    _from_moments(proof)
+    from_moments(proof)
     x = z / 2
     hyperbolic = (1 + FALL) / (1 - FALL)
     proof.define(
@@ -276,62 +263,108 @@ SPRINGPOT = {
 }
 
 
-@result("F17-kelvin-voigt", uses=("F17-edge", "F17-load", "F17", "F17-springpot"))
+@result("F17-limits")
+def _one_arm(proof: Proof) -> None:
+    r"""Any relaxation function: an arm that is long or short.
+
+    An arm much longer than the contact is a spring, for $\breve z \to 0$, and one much shorter a dashpot, for
+    $\breve z \to \infty$.
+    """
+    proof.where(e < half, r"$x_{\mathrm{TE}} > 0$")
+    proof.recall("F17-edge")
+    under_pressure(proof)
+    proof.recall("F17-load")
+    proof.recall("F17")
+    near, far = (
+        {"variable": z, "point": 0, "eps": z},
+        {"variable": z, "point": sp.oo, "eps": 1 / z},
+    )
+    for whole, spring, dashpot, what in (
+        (edge_pressure, e, e - half, "pressure at the trailing edge"),
+        (arm_load, twelfth + e / 2, e, "load"),
+        (arm_work, e**2 / 2, twelfth + e**2, "friction force"),
+    ):
+        proof.leading_order(whole, spring, reason=f"{what} of a spring", **near)
+        proof.leading_order(z * whole, dashpot, reason="and of a dashpot", **far)
+
+
+def _spring(proof: Proof) -> tuple[sp.Symbol, ...]:
+    """Recall the pressure at the trailing edge, the load and the friction force of a spring."""
+    for whole, name in zip((edge_pressure, arm_load, arm_work), springs, strict=True):
+        proof.asymptote("F17-limits", whole, name, "of a spring")
+    return springs
+
+
+@result("F17-kelvin-voigt")
 def _kelvin_voigt(proof: Proof) -> None:
     r"""Any relaxation function: Kelvin-Voigt.
 
     A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the steady state
     of F1.
     """
-    lam, half = springpot, sp.Rational(1, 2)
-    proof.define(A, 1 + lam, "spring and dashpot")
-    proof.define(P, half + lam, "their moments")
-    proof.define(e, P / A - half, "F17-edge")
-    proof.define(a, contact_length * P / A, "F17-edge")
-    proof.define(l, lam * contact_length / a, r"$l_{\mathrm{r}}/a$")
-    proof.define(q, half / P, r"$x_{\mathrm{TE}}/a$")
-    proof.equal(l, (1 - q**2) / (2 * q), "the same relation as in F1")
-    scaled = contact_length**3 / (a**3 / 2)
-    load = (sp.Rational(1, 12) + e * P) * scaled
+    lam = springpot
+    edge, load, work = _spring(proof)
+    for whole, name in zip((edge_pressure, arm_load, arm_work), dashpots, strict=True):
+        proof.asymptote("F17-limits", z * whole, name, "of a dashpot")
+    edge_d, load_d, work_d = dashpots
+    proof.define(e, lam / (2 * (1 + lam)), "the excess over half of the contact, as there is")
+    proof.equal(edge + lam * edge_d, sp.S.Zero, "no pressure at the trailing edge")
+    product = lam * (half + lam) / (2 * (1 + lam))
+    proof.define(voigt_load, load + lam * load_d, "both loads")
+    proof.equal(voigt_load, twelfth + product, "the load")
+    proof.define(voigt_work, work + lam * work_d, "both friction forces")
+    proof.equal(voigt_work, lam / 12 + product * lam / (2 * (1 + lam)), "the friction force")
+    proof.define(a, c * (half + e), "the half length")
+    proof.recall("scaling")
+    proof.define(q, (c - a) / a, r"$x_{\mathrm{TE}}/a$")
+    proof.equal(l, lam * c / a, r"$l_{\mathrm{r}}/a$")
+    proof.recall("F1", scaled_load)
+    proof.recall("F1", scaled_friction)
+    proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ is that of F1")
     proof.equal(
-        load, (1 + q) ** 2 * (q**2 - 2 * q + 3) / (6 * q), r"$W/(K \delta a)$ is that of F1"
+        voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1"
     )
-    work = (lam / 12 + e**2 * P) * contact_length**4 / (a**4 / 2)
-    friction = (1 - q) * (1 + q) ** 2 * (q**2 - q + 4) / (12 * q)
-    proof.equal(work, friction, r"$F R/(K \delta a^2)$ is that of F1")
 
 
-@result("F18-low", uses=("F17", "F17-load"))
+def _spring_and_arm(proof: Proof) -> None:
+    """Let a spring and one arm have no pressure together where the contact ends."""
+    from_moments(proof)
+    edge, *_ = _spring(proof)
+    proof.recall("F17-edge")
+    proof.define(
+        e, springpot * B / (1 + springpot * A), "the excess over half of the contact, as there is"
+    )
+    proof.equal(edge + springpot * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
+    proof.recall("F17-load")
+    proof.recall("F17")
+
+
+@result("F18-low")
 def _slow(proof: Proof) -> None:
     r"""Any relaxation function: low velocity.
 
-    With $\breve \zeta = K_i/K$ this is $\mu \to V (K_i/K) \tau_i/R$.
+    Of a spring and one arm, with $\breve \zeta = K_i/K$: $\mu \to V (K_i/K) \tau_i/R$.
 
     Argued: To this order arms add up: $\mu \to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i
     \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
     """
-    _from_moments(proof)
-    far = {"variable": z, "point": sp.oo, "eps": 1 / z}
-    proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order, "
-                        r"and $e^{-\breve z}$ of none", **far)  # fmt: skip
-    proof.leading_order(E, 1 / (12 * z), reason="friction force of the arm", **far)
+    _spring_and_arm(proof)
+    proof.leading_order(OF_ARM, springpot / z, z, sp.oo, r"$\mu R/\breve c$", eps=1 / z)
 
 
-@result("F18-high", uses=("F17", "F17-load"))
+@result("F18-high")
 def _fast(proof: Proof) -> None:
     r"""Any relaxation function: high velocity.
 
-    With $\breve c \to 2 a$ this is $\mu \to \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$, as $G(0) = K (1
-    + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; to this order arms add up. The half length is that
-    of the stiffness $G(0)$. So friction has a maximum even at a fixed depth, and Eqs. (45) and (46) hold only
-    in a window, in which most of the arms have relaxed and the fastest have not.
+    Of a spring and one arm, with $\breve c \to 2 a$: $\mu \to \frac{2}{5} \frac{a^2}{R V}
+    \frac{-G'(0)}{G(0)}$, as $G(0) = K (1 + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; for
+    several arms see F18-glassy. The half length is that of the stiffness $G(0)$. So friction has a
+    maximum even at a fixed depth, and Eqs. (45) and (46) hold only in a window, in which most of the arms
+    have relaxed and the fastest have not.
     """
-    _from_moments(proof)
-    near = {"variable": z, "point": 0, "eps": z}
-    proof.leading_order(B, z / 12, reason=r"so $\breve \eta^2$ is of second order", **near)
-    proof.leading_order(E, z / 120, reason="friction force of the arm", **near)
-    proof.leading_order(D, sp.Rational(1, 12), reason="load of the arm, that of a spring", **near)
-    stiff = springpot
-    limit = stiff * z / (10 * (1 + stiff))
-    proof.equal(stiff * z / 120 / ((1 + stiff) / 12), limit, r"$\mu R/\breve c$ with the spring")
-    proof.done(E, z / 120)
+    _spring_and_arm(proof)
+    proof.leading_order(
+        e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$", eps=z
+    )
+    high = springpot * z / (10 * (1 + springpot))
+    proof.leading_order(OF_ARM, high, z, 0, r"$\mu R/\breve c$", eps=z)

@@ -11,8 +11,7 @@ from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import R, delta
 from .power_law_weight import a_0
-from .relaxation import PRESSURE, name_integrals, repeated
-from .relaxation import y as back
+from .relaxation import LOADED, WORKED, name_integrals, repeated
 from .steady import a
 from .viscoelastic import SECTION, contact_length
 
@@ -47,11 +46,10 @@ def _strip(proof: Proof) -> None:
     With $a = \breve G_2/\breve G_1$ as a function of $\breve c$.
     """
     name_integrals(proof, 4, c)
-    proof.define(a, G_2(c) / repeated[0](c), "no pressure at the trailing edge, as in F17-concave")
-    load = sp.Integral(PRESSURE(back), (back, 0, c))
-    work = sp.Integral((a - back) / R * PRESSURE(back), (back, 0, c))
+    proof.recall("F17-concave", a)
     for name, whole, rate, what in (
-        (strip_load(c), load, LOAD_RATE, "load"), (strip_friction(c), work, FRICTION_RATE, "friction force"),
+        (strip_load(c), LOADED, LOAD_RATE, "load"),
+        (strip_friction(c), WORKED, FRICTION_RATE, "friction force"),
     ):  # fmt: skip
         proof.recall("F17-forces", whole)
         proof.define(name, whole, what)

@@ -9,8 +9,7 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof, tex
-from .friction_identity import r
-from .model import C, K, V, delta
+from .model import C, K, delta, h, x
 from .power_law import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
@@ -26,12 +25,13 @@ from .power_law import (
     w_n,
     y,
 )
-from .power_law_weight import SCALED_LOAD
-from .steady import a, l, l_r, q
+from .power_law_weight import scaled_n
+from .steady import a, any_pressure, l, l_r, p, q
 from .theorems import P, kappa, lam, s
 
-inclination, held, s_peeling, s_peeled = symbols(r"""
+inclination, side, held, s_peeling, s_peeled = symbols(r"""
     c_1   c       1  slope of a wedge  prints \hat c
+    sigma_w  \hat \sigma  1  1 behind the tip of a wedge, -1 ahead of it  real
     held  \bar w  1  scaled load beyond the support of a wedge
     s_1   -       1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
     s_2   -       1  half length of a wedge whose contact ends at its tip  prints \hat a_2
@@ -46,7 +46,7 @@ SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 
 result = Chapter(SECTION)
 
 
-@result("wedge-edge", uses=("pressure",))
+@result("wedge-edge")
 def _edge(proof: Proof) -> None:
     r"""Wedge: pressure and trailing edge.
 
@@ -54,16 +54,16 @@ def _edge(proof: Proof) -> None:
     \delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the equation $Q (q + n l) = 1$ of a power
     law says the same for $n = 1$, with $Q = \min(1, 1/l)$, the limit of $q^{n - 1}$.
     """
-    ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
+    proof.recall("pressure", (p, any_pressure))
+    proof.define(h(x), side * c * x, r"$\hat \sigma = 1$ behind the tip and $-1$ ahead of it")
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
     proof.recall("eq29", C)
     proof.define(l_r, l * a, "the retardation length over the half length")
-    proof.notation |= {r"\hat p(-y a)": ahead, r"\hat p(y a)": behind}
-    proof.equal(
-        ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)"
-    )
-    proof.equal(behind, 1 - y - l, "at $x = y a$", left=r"\hat p(y a)")
-    proof.define(P, 1 - y - l, "behind the tip")
+    proof.define(P, sp.Subs(p, x, side * y * a) / (K * delta), r"at $x = \hat \sigma y a$, scaled")
+    ahead = r"ahead of the tip, where it is largest, $1 + l$"
+    proof.equal(P, 1 - y + l, ahead, cases=(sp.Eq(side, -1),))
+    proof.equal(P, 1 - y - l, "behind the tip", cases=(sp.Eq(side, 1),))
+    proof.define(side, sp.S.One, "behind the tip")
     proof.where(l < 1, "otherwise there is no contact behind the tip")
     proof.root(P, y, 1 - l, "the trailing edge", name=q)
 
@@ -135,18 +135,16 @@ def _fast(proof: Proof) -> None:
     proof.equal(m_n, sp.S.One, r"$\mu = c$")
 
 
-def _depth(
-    proof: Proof, edge: dict[sp.Symbol, sp.Expr], name: sp.Symbol, root: sp.Expr, balance: sp.Expr
-) -> None:
+def _depth(proof: Proof, source: str, name: sp.Symbol, root: sp.Expr, balance: sp.Expr) -> None:
     proof.root(balance, s, root, "its one positive root, without a difference", name=name)
     if name == s_peeling:
         proof.define(held, 1 + kappa - lam**2 / 2, r"positive, because $\lambda < 1$")
-    load = SCALED_LOAD.subs(n, 1).subs(edge)
-    proof.notation["G"] = sp.Lambda(s, load + kappa * (s - 1) - 1)
-    proof.equal(load + kappa * (s - 1) - 1, balance, "the balance of forces", left="G")
+    proof.recall(source, w_n)
+    proof.define(scaled_n, s**2 * w_n, r"$W/W_0$")
+    proof.define(l, lam / s, r"$l = V \tau/a$")
+    proof.equal(scaled_n + kappa * (s - 1) - 1, balance, "the balance of forces")
     switch = 3 * lam**2 / 2 + kappa * lam - (1 + kappa)
-    proof.equal(balance.subs(s, lam), switch, r"which is negative if $s > \lambda$",
-                left=r"G(\lambda)")  # fmt: skip
+    proof.equal(sp.Subs(balance, s, lam), switch, r"which is negative if $s > \lambda$")
     proof.done(name, root)
 
 
@@ -155,10 +153,9 @@ _WEIGHT = (
     r"is slow, $\lambda < s$, if $\frac{3}{2} \lambda^2 + \kappa \lambda < 1 + \kappa$, which is "
     r"the balance at $s = \lambda$; then $\lambda < 1$. No difference cancels."
 )
-for _regime, _sliding, _edge_at, _name, _root, _balance in (
-    ("peeling", "slow", {r: s - lam}, s_peeling, SCALED_PEELING, s**2 + kappa * s - held),
-    ("peeled", "fast", {r: 0}, s_peeled, SCALED_PEELED, s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
+for _regime, _sliding, _name, _root, _balance in (
+    ("peeling", "slow", s_peeling, SCALED_PEELING, s**2 + kappa * s - held),
+    ("peeled", "fast", s_peeled, SCALED_PEELED, s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
 ):
     result(f"wedge-weight-{_regime}", title=f"Wedge: depth at a load, {_sliding} sliding", text=_WEIGHT,
-           uses=("wedge-edge",), edge=_edge_at, name=_name, root=_root,
-           balance=_balance)(_depth)  # fmt: skip
+           source=f"wedge-{_regime}", name=_name, root=_root, balance=_balance)(_depth)  # fmt: skip

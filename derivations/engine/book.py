@@ -423,9 +423,8 @@ class Book:
         if len(found) != 1 or not name.is_Symbol:
             raise StepError(f"{self.label}: {label} has no one leading term of {of} for {name}")
         fact, leading = _source(label).leading[found[0]], found[0][1]
-        right = fact.step.right.rpartition(r" \left(1 ")[0] or tex(leading)
         worth = "proved" if fact.step.status == "proved-leading-order" else fact.step.status
-        step = replace(fact.step, left=tex(name), right=right, status=worth)
+        step = replace(fact.step, left=tex(name), right=tex(leading), status=worth)
         fact = replace(fact, step=step)
         self._use(label, name, leading, fact)
         shown: Shown = {"left": step.left, "right": step.right}

@@ -131,7 +131,7 @@ def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
         if sign not in seen and not (sign == 0 and seen)
     ):
         return True
-    if value.is_number and symbol.is_real and value.is_real is None:
+    if value.is_number and not value.has(AppliedUndef) and symbol.is_real and value.is_real is None:
         return abs(sp.im(value).evalf(20)) > sp.Float("1e-15")
     return False
 
