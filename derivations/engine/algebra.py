@@ -29,7 +29,7 @@ from .forms import (
     sign_of_terms,
 )
 from .identity import is_rational, vanishes
-from .series import leading_of_series
+from .series import leading_of_series, without_root
 
 
 class UndecidedError(ArithmeticError):
@@ -358,7 +358,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
         coefficient, exponent = local.leadterm(h)
     except (ValueError, NotImplementedError, sp.PoleError) as error:
         raise UndecidedError(f"{local} has no leading power of {h}") from error
-    return sp.radsimp(coefficient), exponent
+    return without_root(coefficient), exponent
 
 
 def _arc(tangent: sp.Expr, h: sp.Symbol) -> sp.Expr:
@@ -524,7 +524,7 @@ def _next_on(
     if not (eps_c.is_nonzero and eps_c.is_real and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
-    c = sp.radsimp(next_c / eps_c**k)
+    c = without_root(next_c / eps_c**k)
     if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
     return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)

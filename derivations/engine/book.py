@@ -705,11 +705,11 @@ class Book:
         if name.is_nonnegative or name.is_nonpositive:
             forms = [
                 each if name.is_nonnegative else -each
-                for each in (sp.sympify(self._rules[name]), value)
+                for each in (*self._equals(self._rules[name]), value)
             ]
             proves = proves_positive if name.is_nonzero else proves_nonnegative
             if not any(proves(form, self._conditions) for form in forms):
-                gaps += open_factors(forms[1], self._conditions)
+                gaps += open_factors(forms[-1], self._conditions)
         for gap in gaps:
             short = gap.count_ops() <= _SHORT or not name.is_Symbol
             self._demand(gap, tex_condition(gap) if short else f"{tex(name)} > 0")
@@ -747,12 +747,20 @@ class Book:
         fresh = (
             new.is_Symbol and alone and len(mine) == 1 and not any(each.has(new) for each in others)
         )
-        signed = new.is_nonnegative or new.is_nonpositive
-        value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
-        if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
+        side = 1 if new.is_nonnegative else -1 if new.is_nonpositive else 0
+        if (
+            fresh
+            and not new.is_integer
+            and (not side or any(known_sign(form) == side for form in self._equals(mine[0].rhs)))
+        ):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
         return has_witness(pairs, self._conditions.gaps)
+
+    def _equals(self, expr: sp.Expr) -> list[sp.Expr]:
+        """Return an expression and the forms that a step has proved it to be equal to."""
+        expr = sp.sympify(expr)
+        return [expr, *(right for left, right in self._exact if left == expr)]
 
     def _placed(
         self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]

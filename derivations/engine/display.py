@@ -92,7 +92,8 @@ def _tokens(latex: str) -> list[str]:
     waiting = 0
     for index, token in enumerate(raw):
         opened = index and raw[index - 1] in "_^"
-        if (waiting or opened) and token not in ("{", "["):
+        option = waiting and "[" in raw[index - 1 : index + 1]  # of a root: its order
+        if (waiting or opened) and not option and token not in "{]":
             if token[:1].isdigit() and len(token) > 1:
                 raise UnreadableError(
                     f"{token} needs braces in {latex}: LaTeX takes its first digit alone"

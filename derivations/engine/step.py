@@ -161,15 +161,17 @@ class Proof(Guarded):
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
         self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
         known = defined or lhs == whole
-        premise = None if known else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        premise = None if known else Premise(lhs, wanted, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
         inside = self._conditions.with_interval((variable, low, high))
-        ordered = proves_positive(high - low, self._conditions)
         sure = lhs.is_nonnegative and not lhs.is_integer
-        if not (sure and ordered and proves_positive(inner, inside)):
+        if not sure or not (
+            proves_positive(wanted)
+            or (proves_positive(high - low, self._conditions) and proves_positive(inner, inside))
+        ):
             self._imply(lhs)
         self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
