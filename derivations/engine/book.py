@@ -19,6 +19,7 @@ from .conditions import (
     Conditions,
     Interval,
     demands,
+    is_square,
     known_sign,
     open_factors,
     proves_nonnegative,
@@ -27,6 +28,7 @@ from .conditions import (
     proves_real,
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
+from .forms import expanded, factors
 from .identity import letters_of
 from .language import foreign, parts
 from .letters import letters, printed, told
@@ -212,12 +214,16 @@ def tex_within(over: Interval) -> str:
 
 
 def tex_condition(gap: sp.Expr) -> str:
-    """Print that an expression is positive.
+    r"""Print that an expression is positive; of a square, that its base does not vanish.
 
     >>> x, y = sp.symbols("x y")
-    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1)]
-    ['x < 1', 'x > y', 'x y - 1 > 0']
+    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1, (x - y) ** 2)]
+    ['x < 1', 'x > y', 'x y - 1 > 0', 'x \\neq y']
     """
+    if is_square(gap):
+        terms = sp.Add.make_args(gap.base)
+        first, *rest = sorted(terms, key=lambda each: each.could_extract_minus_sign())
+        return rf"{tex(first)} \neq {tex(-sp.Add(*rest))}"
     for symbol in sorted(gap.free_symbols, key=str):
         rest = sp.expand(gap - symbol), sp.expand(gap + symbol)
         if not rest[1].has(symbol):
@@ -720,6 +726,23 @@ class Book:
         if gap not in known.positive:
             self._conditions = Conditions(known.intervals, (*known.positive, gap))
             self._domain = tuple(dict.fromkeys((*self._domain, latex)))
+
+    def _exclude(self, base: sp.Expr, claim: "Said | str") -> None:
+        """Let an expression not vanish from here on: the condition is printed; refuse where it must.
+
+        Only of letters: what a function or an integral may be is for the author to say.
+        """
+        parts = [each.as_base_exp()[0] for each in factors(base)]
+        for part in map(expanded, parts):
+            if proves_nonzero(part, self._conditions):
+                continue
+            if part == 0 or part.has(AppliedUndef, sp.Integral, sp.Derivative, sp.Abs):
+                raise StepError(f"{self.label}: {claim}: {part} may vanish; say where it does not")
+            self._demand(part**2, tex_condition(sp.Pow(part, 2, evaluate=False)))
+            premises = merged(fact.premises for fact in self._origins.values())
+            pairs = tuple((each.lhs, each.rhs) for each in premises)
+            if not has_witness(pairs, self._conditions.gaps):
+                raise StepError(f"{self.label}: {claim}: {part} vanishes where all else holds")
 
     def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
         """Keep a definition as a premise of every step that will use it."""
