@@ -371,6 +371,11 @@ FALSE = {
         "variable that has a value": steps(define(x, sp.Integer(3)), integral(x, (x, 0, y), 3 * x)),
     },
     "displays": {
+        "letter in braces": (lambda p: p.notation.update({"{q}": 1 - q}), equal(1 - q, 1 - q, left="{q}"), "q = 1 - q"),
+        "function before a letter": equal(y * sin(x), y * sin(x), left=r"\sin x y"),
+        "letter below a line or not": equal(a * b / K, a * b / K, left="a / K b"),
+        "member of a row and a letter": equal(sp.IndexedBase("x", real=True)[1] + sp.Symbol("x_1", real=True),
+                                              sp.Symbol("x_1", real=True) + sp.IndexedBase("x", real=True)[1]),
         "display of other numbers": equal(x, x, left="0", right="1"),
         "display of another right side": equal((y + 1) ** 2, y**2 + 2 * y + 1, right="y^2 + 1"),
         "display of another left side": equal(2 * y, y + y, left="3 y"),

@@ -78,8 +78,8 @@ def forget(prefix: str) -> None:
         del _finished[label]
 
 
-_SAID = "What is used of {} is said in words, and recalled by no step."
-"""Of labels that a record declares to rest on, though no step recalls them."""
+_SAID = "What it also rests on is used in words, and recalled by no step."
+"""Where a record declares labels to rest on of which no step recalls anything."""
 
 
 class StepError(ValueError):
@@ -463,7 +463,8 @@ class Book:
         new = letters(self.label, self._section)
         cited = {step.source for step in steps}
         said = [label for label in self._declared if label not in cited]
-        text = f"{self._text} {ARGUED} {_SAID.format(', '.join(said))}" if said else self._text
+        heading = "" if ARGUED in self._text else f"{ARGUED} "
+        text = f"{self._text} {heading}{_SAID}" if said else self._text
         found = Derivation(
             label=self.label,
             equation=self.equation,
@@ -894,8 +895,9 @@ class Book:
     def _unambiguous(self, *expressions: sp.Expr) -> None:
         """Refuse two symbols or two functions of one proof that are printed alike."""
         for expr in expressions:
-            for symbol in expr.atoms(sp.Symbol) - expr.atoms(sp.Dummy):
+            for symbol in expr.atoms(sp.Symbol, sp.Indexed) - expr.atoms(sp.Dummy):
                 shape = re.sub(r"\\mathrm\{([^{}]*)\}", r"\1", tex(symbol))
+                shape = re.sub(r"\{([^{}])\}", r"\1", shape)
                 if self._letters.setdefault(shape, symbol) != symbol:
                     raise StepError(f"{self.label}: two letters are printed {tex(symbol)}")
             for call in expr.atoms(AppliedUndef):
@@ -925,7 +927,8 @@ class Book:
             rules = [*self._rules, *self._rules.values()]
             names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
             for name, meaning in self.notation.items():
-                here = names.get(name, meaning) if name in latex else meaning
+                bare = name[1:-1] if name[:1] == "{" else name
+                here = names.get(bare, meaning) if name in latex else meaning
                 agrees = self._means(here, meaning)
                 agrees = agrees or (
                     isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)

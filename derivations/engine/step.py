@@ -460,7 +460,9 @@ class Proof(Guarded):
                 self._exclude(base, claim)
         self._displayed(expr, leading, shown)
         self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
-        factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
+        factor = shown.get("right") or (
+            rf"\left({tex(leading)}\right)" if leading.is_Add else tex(leading)
+        )
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
