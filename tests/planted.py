@@ -28,6 +28,7 @@ G = sp.Function("G", positive=True)
 other_x = sp.Symbol("x", positive=True)
 half, third = sp.Rational(1, 2), sp.Rational(1, 3)
 UNIT = (q, 0, 1)
+ROW = sp.IndexedBase("x", real=True)
 DUMMY, TURN = sp.Dummy("x", real=True), sp.Symbol("o", commutative=False)
 NONZERO, FALLEN = sp.Symbol("c_0", real=True, nonzero=True), sp.Symbol("u_0", nonpositive=True)
 _labels = itertools.count()
@@ -371,11 +372,12 @@ FALSE = {
         "variable that has a value": steps(define(x, sp.Integer(3)), integral(x, (x, 0, y), 3 * x)),
     },
     "displays": {
-        "letter in braces": (lambda p: p.notation.update({"{q}": 1 - q}), equal(1 - q, 1 - q, left="{q}"), "q = 1 - q"),
+        "letter in braces":
+            (lambda p: p.notation.update({"{q}": 1 - q}), equal(1 - q, 1 - q, left="{q}"), "q = 1 - q"),
         "function before a letter": equal(y * sin(x), y * sin(x), left=r"\sin x y"),
         "letter below a line or not": equal(a * b / K, a * b / K, left="a / K b"),
-        "member of a row and a letter": equal(sp.IndexedBase("x", real=True)[1] + sp.Symbol("x_1", real=True),
-                                              sp.Symbol("x_1", real=True) + sp.IndexedBase("x", real=True)[1]),
+        "member of a row and a letter":
+            equal(2 * ROW[1] + sp.Symbol("x_1", real=True), sp.Symbol("x_1", real=True) + ROW[1] + ROW[1]),
         "display of other numbers": equal(x, x, left="0", right="1"),
         "display of another right side": equal((y + 1) ** 2, y**2 + 2 * y + 1, right="y^2 + 1"),
         "display of another left side": equal(2 * y, y + y, left="3 y"),
