@@ -9,8 +9,9 @@ retardation length, edges) is computed from the proved closed forms.
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 
 import mpmath
 import sympy as sp
@@ -18,7 +19,10 @@ from mpmath.libmp import prec_to_dps
 from sympy.core.function import AppliedUndef
 
 from . import symbols as sym
+from .chapters import relaxation, viscoelastic
+from .chapters import viscoelastic_ball as ball
 from .chapters.groups import k_s
+from .dimensions import OWN as OWN_UNITS
 from .engine.atoms import atoms, replaced
 from .engine.book import established, tex
 from .engine.letters import letters
@@ -26,7 +30,9 @@ from .engine.nomenclature import BY_LATEX, Symbol
 from .engine.record import Calculation, Claim, Derivation, Step
 from .render.text import relations
 
-Numbers = dict[sp.Symbol, sp.Expr]
+Numbers = dict[sp.Expr, sp.Expr]
+Arms = Iterable[tuple[float, float]]
+"""The stiffness and the relaxation time of each arm of a Prony series."""
 
 DIGITS, CANCELLED = 30, 5.0
 """Forms are evaluated with this many digits, and this many more for each decade between l_r and a, as far
@@ -50,7 +56,7 @@ GIVEN = {
     for symbol in (
         *(sym.R, sym.K, sym.tau, sym.C, sym.V, sym.delta, sym.M, sym.g, k_s, sym.W, sym.F, sym.mu),
         *(sym.delta_0, sym.a_0, sym.W_0, sym.lam, sym.eps, sym.kappa),
-        *(sym.L, sym.exponent, sym.inclination),
+        *(sym.L, sym.exponent, sym.inclination, ball.across),
     )
 }
 """The quantities that a scene may give, by name."""
@@ -68,6 +74,14 @@ ELSEWHERE = {
     False: ("wedge-edge", "wedge-peeling", "wedge-low", "wedge-weight-peeling"),
 }
 """The records about a wedge that do not hold, by whether l < 1."""
+
+ON_ARMS = {
+    "parabola": ("F17", "F18", "eq26", "eq28"),
+    "sphere": ("eq26", "eq28", "F17-strip", "F20-any"),
+}
+"""The records, and families of records, that hold on a Prony series, by the shape."""
+OTHER_LAWS = ("springpot", "kelvin-voigt")
+"""Ends of the labels of records about other laws."""
 
 CONSTANTS = (sym.R, sym.M, sym.K, sym.C, sym.tau, sym.g, sym.a_0, sym.delta_0, sym.W_0)
 """The constants of a scene, the same in every state."""
@@ -91,28 +105,39 @@ _NUMBER = re.compile(r"(-?[\d.]+)e([+-]\d+)")
 
 
 def with_numbers(
-    derivations: Iterable[Derivation], quantities: Mapping[str, float], shape: str
+    derivations: Iterable[Derivation],
+    quantities: Mapping[str, float],
+    shape: str,
+    arms: Arms = (),
 ) -> Iterator[Derivation]:
     """Give each derivation about this shape its closed forms, as `known_quantities` returns them."""
-    known = known_quantities(quantities, shape)
+    known = known_quantities(quantities, shape, arms=arms)
     other = ELSEWHERE[bool(known[sym.l] < 1)] if shape == "wedge" else ()
     for derivation in derivations:
-        holds = _concerns(derivation.label, shape) and derivation.label not in other
+        holds = _concerns(derivation.label, shape, arms) and derivation.label not in other
         yield replace(derivation, numbers=_calculations(derivation, known) if holds else ())
 
 
-def _concerns(label: str, shape: str) -> bool:
+def _concerns(label: str, shape: str, arms: Arms = ()) -> bool:
     family = label.split("-", maxsplit=1)[0]
+    if arms:
+        return bool({family, label} & {*ON_ARMS[shape]}) and not label.endswith(OTHER_LAWS)
     if shape in OWN:
         return family == OWN[shape] or label in SHARED[shape]
     return family not in OWN.values()
 
 
 def known_quantities(
-    quantities: Mapping[str, float], shape: str = "parabola", digits: int = DIGITS
+    quantities: Mapping[str, float],
+    shape: str = "parabola",
+    digits: int = DIGITS,
+    arms: Arms = (),
 ) -> Numbers:
     """Return the quantities (in SI, by the names of `GIVEN`) with what follows from them."""
     known: Numbers = {GIVEN[name]: sp.Float(value, digits) for name, value in quantities.items()}
+    if arms:
+        with mpmath.workdps(digits + GUARD):
+            return known | _on_arms(known, arms)
     forms = {symbol: established(label, symbol) for label, symbol in FOLLOWING}
     n, l, q = sym.exponent, sym.l, sym.q
     forms[l] = sym.l_r / sym.a
@@ -137,6 +162,46 @@ def known_quantities(
     return known
 
 
+def _on_arms(known: Numbers, arms: Arms) -> Numbers:
+    """Return what F17 says of a Prony series; of a ball in its middle plane, and the sums of F20-any.
+
+    G_n is the integral of G repeated n times; the length c of the contact is the root of a G_1 = G_2.
+    """
+    K, V, R, depth = (mpmath.mpmathify(known[each]) for each in (sym.K, sym.V, sym.R, sym.delta))
+    series = [(K, mpmath.inf), *((mpmath.mpf(k), V * mpmath.mpf(tau)) for k, tau in arms)]
+
+    def repeated(n: int, c: mpmath.mpf) -> mpmath.mpf:
+        return sum(
+            k * c**n * mpmath.hyp1f1(1, n + 1, -c / l) for k, l in series
+        ) / mpmath.factorial(n)
+
+    half = mpmath.sqrt(2 * R * depth)
+    c = mpmath.findroot(
+        lambda c: repeated(2, c) - half * repeated(1, c), (half, 2 * half), solver="anderson"
+    )
+    found = {sym.a: half, sym.x_le: -half, sym.x_te: c - half, relaxation.c: c}
+    found |= {viscoelastic.b: half / c, viscoelastic.e: half / c - mpmath.mpf(1) / 2}
+    memory = relaxation.G(relaxation.c), *(part(relaxation.c) for part in relaxation.repeated)
+    for names in (memory, (viscoelastic.relaxation, *viscoelastic.primitives)):
+        found |= {name: repeated(n, c) for n, name in enumerate(names)}
+    if len(series) == 2:  # else the letters of an arm stand for several
+        found[viscoelastic.arm_number] = c / series[1][1]
+    if ball.across in known:
+        stretch = mpmath.sqrt(mpmath.mpmathify(known[ball.across]) / R)
+
+        def gained(weight: Callable[[mpmath.mpf], mpmath.mpf], c: mpmath.mpf) -> mpmath.mpf:
+            G, G_1, G_2 = (repeated(n, c) for n in range(3))
+            place = stretch * mpmath.sqrt(half**2 - (G_2 / G_1) ** 2)
+            return 2 * place * (1 - G_2 * G / G_1**2) * weight(2 * G_2 / G_1 - c) * G_2 / R
+
+        found[ball.middle] = c
+        rates = (ball.LOAD_RATE, lambda arm: 1), (ball.FRICTION_RATE, lambda arm: arm / R)
+        for rate, weight in rates:
+            form = ball.strip_place(ball.c) * rate * sp.Derivative(sym.a, ball.c)
+            found[2 * sp.Integral(form, ball.ALONG)] = mpmath.quad(partial(gained, weight), [0, c])
+    return {name: sp.Float(value, mpmath.mp.dps) for name, value in found.items()}
+
+
 def _trailing_edge(n: sp.Float, l: sp.Float, digits: int) -> sp.Float:
     """Return q of a power law: ln q is the root of an increasing, convex function (F19-edge)."""
     with mpmath.workdps(digits + GUARD):
@@ -148,9 +213,11 @@ def _trailing_edge(n: sp.Float, l: sp.Float, digits: int) -> sp.Float:
         return sp.Float(mpmath.exp(found), digits)
 
 
-def shown_quantities(quantities: Mapping[str, float], shape: str) -> dict[str, str]:
+def shown_quantities(
+    quantities: Mapping[str, float], shape: str, arms: Arms = ()
+) -> dict[str, str]:
     """Return the known quantities in LaTeX by the LaTeX of their symbol, as far as they are listed."""
-    return _listed(known_quantities(quantities, shape))
+    return _listed(known_quantities(quantities, shape, arms=arms))
 
 
 def _latex(symbol: sp.Symbol) -> str:
@@ -160,7 +227,7 @@ def _latex(symbol: sp.Symbol) -> str:
 def _listed(known: Numbers) -> dict[str, str]:
     values = {}
     for symbol, value in known.items():
-        latex = _latex(symbol)
+        latex = _latex(symbol) if symbol.is_Symbol else ""
         if latex in BY_LATEX:
             values[latex] = shown(float(value), BY_LATEX[latex].unit)
     return values
@@ -174,7 +241,14 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
     where it does so in an equation of its own, its symbols are not those of the scene.
     """
     own = letters(derivation.label, derivation.section)  # here these stand for something else
-    known, found = {symbol: given[symbol] for symbol in given if _latex(symbol) not in own}, {}
+    known, found = (
+        {
+            symbol: given[symbol]
+            for symbol in given
+            if not symbol.is_Symbol or _latex(symbol) not in own
+        },
+        {},
+    )
     for step in derivation.steps:
         claim = step.claim
         if claim is None or step.relation != "=" or claim.check not in (*_CHECKS, "recall"):
@@ -184,11 +258,13 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
         before = known.get(claim.lhs)
         same = before is None or value is None or _agree(value, before)
         restated = claim.check == "define" and claim.lhs in given and step.latex != derivation.latex
+        restated = restated and not claim.rhs.has(AppliedUndef)
         wanted = _row(step) is not None and claim.lhs not in COORDINATES
         if value is not None and wanted and not (step.source or restated):
             if not (same or asymptote or claim.check == "root"):
                 return ()
-            found[step.left, asymptote] = _calculation(step, claim, value, before, known)
+            units = OWN_UNITS.get(derivation.label, {})
+            found[step.left, asymptote] = _calculation(step, claim, value, before, known, units)
         if not isinstance(claim.lhs, sp.Symbol) or asymptote:
             continue
         if step.source and not same:
@@ -216,7 +292,12 @@ def _agree(one: sp.Expr, other: sp.Expr) -> bool:
 
 def _value(form: sp.Expr, known: Numbers) -> sp.Expr | None:
     """Return the value of a form, or None if it contains a symbol without a value."""
-    if not form.free_symbols <= known.keys() or form.has(AppliedUndef, sp.Integral, sp.Derivative):
+    if form in known:
+        return known[form]
+    if form.has(sp.Integral, sp.Derivative):
+        return None
+    form = form.xreplace({each: known[each] for each in form.atoms(AppliedUndef) & known.keys()})
+    if not form.free_symbols <= known.keys() or form.has(AppliedUndef):
         return None
     digits = prec_to_dps(max(value._prec for value in known.values() if value.is_Float))
     value = form.subs(known).evalf(digits)
@@ -224,7 +305,12 @@ def _value(form: sp.Expr, known: Numbers) -> sp.Expr | None:
 
 
 def _calculation(
-    step: Step, claim: Claim, value: sp.Expr, exact: sp.Expr | None, known: Numbers
+    step: Step,
+    claim: Claim,
+    value: sp.Expr,
+    exact: sp.Expr | None,
+    known: Numbers,
+    units: Mapping[str, str],
 ) -> Calculation:
     formula = relations(step.right)[-1].removeprefix("=").strip()
     note = ""
@@ -234,7 +320,7 @@ def _calculation(
         if exact:
             note += f", {float(value / exact - 1):+.3%} off the exact value"
     row = _row(step)
-    unit = row.unit if row else "1"
+    unit = units.get(row.latex, row.unit) if row else "1"
     return Calculation(
         symbol=step.left,
         formula=formula,

@@ -11,7 +11,8 @@ import sympy as sp
 
 from .chapters.model import C, K, V, delta, h, x
 from .chapters.steady import F, W, a, l_r, mu, p, q
-from .engine.book import forget, tex
+from .engine.book import established, forget, tex
+from .engine.forms import reduced
 from .engine.nomenclature import Symbol, symbol
 from .engine.record import Derivation
 from .engine.step import Proof, StepError
@@ -197,28 +198,49 @@ class _Chapter:
     ) -> Derivation:
         proof = self._proof(label, "Load" if force == W else "Friction force", _SIDES)
         self._state(proof)
-        total = sp.S.Zero
-        for side, sign, end, name in (
-            (ahead, 1, a, "ahead of"),
-            (behind, -1, self.trailing, "behind"),
+        values = self._halves(force)
+        for side, sign, end, name, value in (
+            (ahead, 1, a, "ahead of", values[0]),
+            (behind, -1, self.trailing, "behind", values[1]),
         ):
             weight = sp.S.One if force == W else sign * self.slope
             inner = sp.expand(weight * K * (delta - self.rise + sign * l_r * self.slope))
-            primitive = sp.Add(*(_primitive(term) for term in sp.Add.make_args(inner)))
-            value = self._at(primitive, end)
-            proof.integral(side, inner, (distance, 0, end), primitive, f"{name} the lowest line",
+            proof.integral(side, inner, (distance, 0, end), _integral(inner), f"{name} the lowest line",
                            value=value)  # fmt: skip
-            total += value
+        if force == F:
+            level = self._at(self.rise, self.trailing)
+            squares = _integral(sp.expand(self.slope**2))
+            lost = sum(self._at(squares, end) for end in (a, self.trailing))
+            proof.equal(ahead + behind, K * (delta - level) ** 2 / 2 + K * l_r * lost,
+                        "the sum of both, which is positive")  # fmt: skip
         proof.define(force, ahead + behind, "both sides")
-        result = _tidy(proof._resolve(total))
+        result = _tidy(proof._resolve(sum(values)))
         proof.equal(force, result, "with the edges inserted")
         return proof.done(force, result)
+
+    def _halves(self, force: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+        """Return what both sides carry, in terms of which as few as can be are negative.
+
+        The load behind is that by parts, the integral of -x p', as there is no pressure at the edge.
+        """
+        level = self._at(self.rise, self.trailing)
+        if force == F:
+            squares = _integral(sp.expand(self.slope**2))
+            lost = (K * l_r * self._at(squares, end) for end in (a, self.trailing))
+            kept = K * delta**2 / 2, -K * (delta * level - level**2 / 2)
+            return tuple(sum(parts) for parts in zip(kept, lost, strict=True))
+        inside = _integral(sp.expand(distance * self.slope))
+        curved = _integral(sp.expand(distance * sp.diff(self.slope, distance)))
+        return (
+            K * (self._at(inside, a) + l_r * delta),
+            K * self._at(inside + l_r * curved, self.trailing),
+        )
 
     def _coefficient(self) -> Derivation:
         proof = self._proof("coefficient", "Friction coefficient")
         self._recall_forces(proof)
         proof.define(mu, F / W, "Eq. (37)")
-        result = _tidy(proof._resolve(mu))
+        result = established("shape-friction", F) / established("shape-load", W)
         proof.equal(mu, result, "common factors cancel")
         return proof.done(mu, result)
 
@@ -307,15 +329,26 @@ def _integral(form: sp.Expr) -> sp.Expr:
 
 
 def _tidy(form: sp.Expr) -> sp.Expr:
-    """Return the product of factors, with 1 - q rather than q - 1, which is negative."""
-    product = sp.factor(sp.powsimp(sp.expand(form)))
-    factors = sp.Mul.make_args(product)
-    for variable in (q, q_root):
-        if variable - 1 in factors:
-            return sp.Mul(*(-1 if each == variable - 1 else each for each in factors)) * (
-                1 - variable
-            )
-    return product
+    """Return the product of factors, with 1 - q rather than q - 1, which is negative.
+
+    Of a sum of powers only letters and powers of 1 - q and 1 + q are looked for: to find all takes long.
+    """
+    parts = sp.fraction(reduced(sp.powsimp(sp.expand(form))))
+    return sp.Mul(*(_factored(part) ** side for part, side in zip(parts, (1, -1), strict=True)))
+
+
+def _factored(form: sp.Expr) -> sp.Expr:
+    """Return a polynomial as a product."""
+    found, rest = sp.factor_terms(form).as_independent(sp.Add, as_Add=False)
+    if len(rest.free_symbols) == 1:
+        return found * sp.factor(rest)
+    for factor in (side + sign * each for each in (q, q_root) for side, sign in ((1, -1), (1, 1))):
+        while rest.has(*factor.free_symbols):
+            quotient, left = sp.div(rest, factor, *factor.free_symbols)
+            if left != 0:
+                break
+            found, rest = found * factor, quotient
+    return found * sp.factor_terms(rest)
 
 
 def _power_root(shape: Shape, level: sp.Expr) -> sp.Expr | None:

@@ -26,6 +26,8 @@ LONGEST, MOST_TERMS, HIGHEST = 200, 6, 12
 """Characters of a shape, terms of its sum, and its highest power."""
 MOST_SPREAD, MOST_BITS = 200, 1000
 """Terms of a product that is multiplied out on the way, and bits of a number."""
+MOST_WORK = 250
+"""Of the closed forms of a sum: the square of its terms and letters, times the highest power of q in it."""
 TAKEN = {
     *"adehipquxCFKOVW", r"\delta", r"\mu", r"\tau", r"\pi", r"\infty", r"\barx", r"\hatq",
     "l_r", "x_LE", "x_TE", "W_a", "W_b", "F_a", "F_b",
@@ -97,7 +99,14 @@ def read_shape(text: str) -> Shape:
             f'the shape "{text}" has {len(powers)} terms; at most {MOST_TERMS} are read'
         )
     parameters = tuple(sorted(rise.free_symbols - {distance}, key=str))
-    return Shape(text, rise, parameters, powers)
+    shape = Shape(text, rise, parameters, powers)
+    degree = int(shape.root_order * powers[-1])
+    if len(powers) > 1 and (len(powers) + len(parameters)) ** 2 * degree > MOST_WORK:
+        raise ValueError(
+            f'the shape "{text}": {len(powers)} terms with {len(parameters)} parameters give forms with '
+            f"powers up to {degree}, which are too long; take fewer terms, or lower and whole powers"
+        )
+    return shape
 
 
 def _python(text: str) -> str:

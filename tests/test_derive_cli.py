@@ -198,6 +198,48 @@ def test_numbers_are_of_records_about_this_shape_and_others_are_named(tmp_path):
         assert f"no numbers of this scene in {len(records) - len(found)}" in told.stderr
 
 
+ARMS = 'foundation.arms=[["50 GN/m^3", "100 ms"], ["20 GN/m^3", "5 ms"]]'
+
+
+@pytest.mark.parametrize("shape", ["parabola", "sphere"])
+def test_numbers_on_a_prony_series_are_those_of_the_scene(tmp_path, shape):
+    """Also where the load follows by quadrature over the strips; what is about dashpots has none."""
+    overrides = ["foundation.kind=generalized-maxwell", "foundation.stiffness=5 GN/m^3", ARMS,
+                 f"indenter.shape={shape}", "indenter.radius=10 mm", "drive.velocity=50 mm/s"]  # fmt: skip
+    if shape == "sphere":
+        overrides += ["support.mass=1 kg", "indenter.radius_across=20 mm"]
+    labels = "28,29,F1,F17-growth,F17-kelvin-voigt,F17-moments,F20,F20-any"
+    records = derived(tmp_path, labels, "--numbers", overrides=overrides)
+    found = {
+        (label, row["symbol"]): row["value"]
+        for label, record in records.items() for row in record["numbers"]
+    }  # fmt: skip
+    state = kv.steady(kv.load_scene(None, overrides))
+    expected = {
+        "parabola": {("F17-growth", "a"): state.half_length, ("F17-growth", "W"): state.load},
+        "sphere": {
+            ("F20-any", r"W_{\mathrm{s}}"): state.load,
+            ("F20-any", r"F_{\mathrm{s}}"): state.friction_force,
+        },
+    }[shape]
+    geometry = {("eq28", "a"): state.half_length, ("eq28", r"\delta"): state.depth}
+    assert found == pytest.approx(geometry | expected, rel=1e-10)
+
+
+def test_an_arm_has_numbers_where_it_is_the_only_one(tmp_path):
+    overrides = ["foundation.kind=generalized-maxwell", "drive.velocity=50 mm/s",
+                 'foundation.arms=[["50 GN/m^3", "100 ms"]]']  # fmt: skip
+    records = derived(tmp_path, "F17-load,F17", "--numbers", overrides=overrides)
+    load, friction = (records[label]["numbers"][-1]["value"] for label in ("F17-load", "F17"))
+    state = kv.steady(kv.load_scene(None, overrides))
+    length = state.trailing_edge - state.leading_edge
+    a, c, K = state.half_length, length, 10e9
+    spring = K * (c**3 / 12 + (a / c - 0.5) * c**3 / 2) / 0.01
+    assert 50e9 * c**3 / 0.01 * load + spring == pytest.approx(state.load, rel=1e-9)
+    work = K * (a / c - 0.5) ** 2 * c**4 / 2 + 50e9 * c**4 * friction
+    assert work / 0.01**2 == pytest.approx(state.friction_force, rel=1e-9)
+
+
 def test_numbers_hold_far_from_the_scale_of_a_contact(tmp_path):
     """The trailing edge is 1e-294 m, where its closed form cancels to hundreds of digits."""
     overrides = ["foundation.stiffness=1e300 N/m^3"]

@@ -56,7 +56,8 @@ POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", q_root: "0.6", s.C: "1", s.V: "1"}
 
 
 @pytest.mark.parametrize(
-    "text", ["c*x**4", "c*abs(x)", "x**2/(2*R)", "c*|x| + 2*x^2", "c*|x|**1.5"]
+    "text",
+    ["c*x**4", "c*abs(x)", "x**2/(2*R)", "c*|x| + 2*x^2", "c*|x|**1.5", "b*x**2 + c*|x|**1.5"],
 )
 def test_load_and_friction_are_the_integrals_of_the_pressure(text):
     found, forms = results(text)
@@ -120,6 +121,20 @@ def test_it_says_where_closed_forms_end():
 def test_what_is_no_shape_is_refused(text):
     with pytest.raises(ValueError, match="shape"):
         derive_shape(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a1*x**2 + b1*x**4 + c1*x**6 + d1*x**8 + f1*x**10 + g1*x**12", "b*|x|**(7/5) + c*|x|**(9/7)",
+        "b*|x|**(15/11) + c*|x|**(13/12) + x**2", "|x|**1.1 + |x|**1.3 + |x|**1.7 + |x|**1.9 + x**12 + x**2",
+        "(a1+a2+a3+b1+b2)*x**2 + c*x**4", "|x| + x**2 + |x|**3 + x**4 + |x|**5 + x**12",
+    ],
+)  # fmt: skip
+def test_sums_whose_closed_forms_would_be_endless_are_refused(text):
+    """By their terms, letters and powers, not by a clock."""
+    with pytest.raises(ValueError, match="which are too long; take fewer terms"):
+        read_shape(text)
 
 
 def test_the_nomenclature_is_that_of_the_shape():

@@ -245,7 +245,7 @@ def test_a_title_that_words_prove_is_argued_and_its_lines_are_proved():
 
     words, resting, naming = result.derive()
     assert (naming.status, naming.steps[0].status) == ("argued", "proved")
-    assert "What is used of words is said in words" in naming.text
+    assert "What it also rests on is used in words" in naming.text
     assert words.status == "argued"
     assert words.text == "Twice. Argued, not checked by machine. It is seen in a plot."
     assert {words.steps[0].status, resting.status} == {"proved"}

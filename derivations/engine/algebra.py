@@ -29,7 +29,7 @@ from .forms import (
     sign_of_terms,
 )
 from .identity import is_rational, vanishes
-from .series import leading_of_series
+from .series import leading_of_series, without_root
 
 
 class UndecidedError(ArithmeticError):
@@ -358,7 +358,7 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
         coefficient, exponent = local.leadterm(h)
     except (ValueError, NotImplementedError, sp.PoleError) as error:
         raise UndecidedError(f"{local} has no leading power of {h}") from error
-    return sp.radsimp(coefficient), exponent
+    return without_root(coefficient), exponent
 
 
 def _arc(tangent: sp.Expr, h: sp.Symbol) -> sp.Expr:
@@ -476,8 +476,6 @@ def next_order(
     the last one that is written bounds the rest.
     """
     approached = sides(variable, point, known)
-    for side in approached:
-        _uniform(ratio, variable, point, side, known)
     found = [_next_on(ratio, eps, variable, point, side) for side in approached]
     c, k, rest, _ = found[0]
     if not any(positive for *_, positive in found):
@@ -488,21 +486,21 @@ def next_order(
     return c, k, rest
 
 
-def _uniform(
-    ratio: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, side: int, known: Conditions
-) -> None:
-    """Refuse a ratio in which something begins with a coefficient that vanishes for some parameters.
+def first_coefficients(
+    ratio: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, known: Conditions
+) -> list[sp.Expr]:
+    """Return the coefficients with which anything begins below a line or a root, if they may vanish.
 
-    There it would begin with another power, and what was left out be larger.
+    Where one does, it begins with another power, and what was left out is larger.
     """
     nonzero, nonnegative = demands(ratio)
-    for base in nonzero | nonnegative:
-        if base.has(variable) and base != variable:
-            first = _leading(near(base, variable, point, DISTANCE, side), DISTANCE)[0]
-            if not proves_nonzero(first, known):
-                raise UndecidedError(
-                    f"{first} may vanish, with which {base} begins; say where it does not"
-                )
+    found = [
+        _leading(near(base, variable, point, DISTANCE, side), DISTANCE)[0]
+        for side in sides(variable, point, known)
+        for base in sorted(nonzero | nonnegative, key=str)
+        if base.has(variable) and base != variable
+    ]
+    return [each for each in found if not proves_nonzero(each, known)]
 
 
 def _next_on(
@@ -524,7 +522,7 @@ def _next_on(
     if not (eps_c.is_nonzero and eps_c.is_real and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
-    c = sp.radsimp(next_c / eps_c**k)
+    c = without_root(next_c / eps_c**k)
     if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
     return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)

@@ -19,6 +19,7 @@ from .conditions import (
     Conditions,
     Interval,
     demands,
+    is_square,
     known_sign,
     open_factors,
     proves_nonnegative,
@@ -27,6 +28,7 @@ from .conditions import (
     proves_real,
 )
 from .display import Meaning, UnreadableError, names_in, read_chain
+from .forms import expanded, factors
 from .identity import letters_of
 from .language import foreign, parts
 from .letters import letters, printed, told
@@ -76,8 +78,8 @@ def forget(prefix: str) -> None:
         del _finished[label]
 
 
-_SAID = "What is used of {} is said in words, and recalled by no step."
-"""Of labels that a record declares to rest on, though no step recalls them."""
+_SAID = "What it also rests on is used in words, and recalled by no step."
+"""Where a record declares labels to rest on of which no step recalls anything."""
 
 
 class StepError(ValueError):
@@ -212,12 +214,16 @@ def tex_within(over: Interval) -> str:
 
 
 def tex_condition(gap: sp.Expr) -> str:
-    """Print that an expression is positive.
+    r"""Print that an expression is positive; of a square, that its base does not vanish.
 
     >>> x, y = sp.symbols("x y")
-    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1)]
-    ['x < 1', 'x > y', 'x y - 1 > 0']
+    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1, (x - y) ** 2)]
+    ['x < 1', 'x > y', 'x y - 1 > 0', 'x \\neq y']
     """
+    if is_square(gap):
+        terms = sp.Add.make_args(gap.base)
+        first, *rest = sorted(terms, key=lambda each: each.could_extract_minus_sign())
+        return rf"{tex(first)} \neq {tex(-sp.Add(*rest))}"
     for symbol in sorted(gap.free_symbols, key=str):
         rest = sp.expand(gap - symbol), sp.expand(gap + symbol)
         if not rest[1].has(symbol):
@@ -456,7 +462,8 @@ class Book:
         new = letters(self.label, self._section)
         cited = {step.source for step in steps}
         said = [label for label in self._declared if label not in cited]
-        text = f"{self._text} {ARGUED} {_SAID.format(', '.join(said))}" if said else self._text
+        heading = "" if ARGUED in self._text else f"{ARGUED} "
+        text = f"{self._text} {heading}{_SAID}" if said else self._text
         found = Derivation(
             label=self.label,
             equation=self.equation,
@@ -704,11 +711,11 @@ class Book:
         if name.is_nonnegative or name.is_nonpositive:
             forms = [
                 each if name.is_nonnegative else -each
-                for each in (sp.sympify(self._rules[name]), value)
+                for each in (*self._equals(self._rules[name]), value)
             ]
             proves = proves_positive if name.is_nonzero else proves_nonnegative
             if not any(proves(form, self._conditions) for form in forms):
-                gaps += open_factors(forms[1], self._conditions)
+                gaps += open_factors(forms[-1], self._conditions)
         for gap in gaps:
             short = gap.count_ops() <= _SHORT or not name.is_Symbol
             self._demand(gap, tex_condition(gap) if short else f"{tex(name)} > 0")
@@ -719,6 +726,23 @@ class Book:
         if gap not in known.positive:
             self._conditions = Conditions(known.intervals, (*known.positive, gap))
             self._domain = tuple(dict.fromkeys((*self._domain, latex)))
+
+    def _exclude(self, base: sp.Expr, claim: "Said | str") -> None:
+        """Let an expression not vanish from here on: the condition is printed; refuse where it must.
+
+        Only of letters: what a function or an integral may be is for the author to say.
+        """
+        parts = [each.as_base_exp()[0] for each in factors(base)]
+        for part in map(expanded, parts):
+            if proves_nonzero(part, self._conditions):
+                continue
+            if part == 0 or part.has(AppliedUndef, sp.Integral, sp.Derivative, sp.Abs):
+                raise StepError(f"{self.label}: {claim}: {part} may vanish; say where it does not")
+            self._demand(part**2, tex_condition(sp.Pow(part, 2, evaluate=False)))
+            premises = merged(fact.premises for fact in self._origins.values())
+            pairs = tuple((each.lhs, each.rhs) for each in premises)
+            if not has_witness(pairs, self._conditions.gaps):
+                raise StepError(f"{self.label}: {claim}: {part} vanishes where all else holds")
 
     def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
         """Keep a definition as a premise of every step that will use it."""
@@ -746,12 +770,20 @@ class Book:
         fresh = (
             new.is_Symbol and alone and len(mine) == 1 and not any(each.has(new) for each in others)
         )
-        signed = new.is_nonnegative or new.is_nonpositive
-        value = -mine[0].rhs if fresh and new.is_nonpositive else mine[0].rhs if fresh else new
-        if fresh and not new.is_integer and (not signed or known_sign(value) == 1):
+        side = 1 if new.is_nonnegative else -1 if new.is_nonpositive else 0
+        if (
+            fresh
+            and not new.is_integer
+            and (not side or any(known_sign(form) == side for form in self._equals(mine[0].rhs)))
+        ):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
         return has_witness(pairs, self._conditions.gaps)
+
+    def _equals(self, expr: sp.Expr) -> list[sp.Expr]:
+        """Return an expression and the forms that a step has proved it to be equal to."""
+        expr = sp.sympify(expr)
+        return [expr, *(right for left, right in self._exact if left == expr)]
 
     def _placed(
         self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
@@ -862,8 +894,9 @@ class Book:
     def _unambiguous(self, *expressions: sp.Expr) -> None:
         """Refuse two symbols or two functions of one proof that are printed alike."""
         for expr in expressions:
-            for symbol in expr.atoms(sp.Symbol) - expr.atoms(sp.Dummy):
+            for symbol in expr.atoms(sp.Symbol, sp.Indexed) - expr.atoms(sp.Dummy):
                 shape = re.sub(r"\\mathrm\{([^{}]*)\}", r"\1", tex(symbol))
+                shape = re.sub(r"\{([^{}])\}", r"\1", shape)
                 if self._letters.setdefault(shape, symbol) != symbol:
                     raise StepError(f"{self.label}: two letters are printed {tex(symbol)}")
             for call in expr.atoms(AppliedUndef):
@@ -893,7 +926,8 @@ class Book:
             rules = [*self._rules, *self._rules.values()]
             names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
             for name, meaning in self.notation.items():
-                here = names.get(name, meaning) if name in latex else meaning
+                bare = name[1:-1] if name[:1] == "{" else name
+                here = names.get(bare, meaning) if name in latex else meaning
                 agrees = self._means(here, meaning)
                 agrees = agrees or (
                     isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)

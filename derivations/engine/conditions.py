@@ -100,7 +100,21 @@ def _exists(integrand: sp.Expr, over: Interval, known: Conditions) -> bool:
 def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
     """Tell whether the expression has no zero where the conditions hold."""
     expr = sp.sympify(expr)
-    return sign_of_terms(expr) != 0 or expr.is_nonzero is True or _sign(expr, known) != 0
+    if sign_of_terms(expr) != 0 or expr.is_nonzero is True or _sign(expr, known) != 0:
+        return True
+    excluded = {each.base for each in known.positive if is_square(each)}
+    if not excluded or expr.has(sp.Integral, sp.Derivative):
+        return False
+    excluded |= {-each for each in excluded}
+    bases = (factor.as_base_exp()[0] for factor in factors(expr))
+    return all(
+        expanded(base) in excluded or base.is_nonzero or _sign(base, known) for base in bases
+    )
+
+
+def is_square(gap: sp.Expr) -> bool:
+    """Tell whether a condition is that a square is positive: that its base does not vanish."""
+    return bool(gap.is_Pow and gap.exp == 2)
 
 
 def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:

@@ -29,7 +29,7 @@ _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\S")
 _SPACING = {r"\,", r"\!", r"\;", r"\:", r"\ ", r"\left", r"\right", r"\limits", r"\displaystyle"}
 _ARGUMENTS = {r"\frac", r"\sqrt", r"\dot", r"\ddot", r"\hat", r"\bar", r"\breve", r"\check"}
 _FUNCTIONS = {
-    r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\log": sp.log,
+    r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\ln": sp.log,
     r"\arctan": sp.atan, r"\max": sp.Max, r"\min": sp.Min,
 }  # fmt: skip
 _OPEN, _CLOSE = {"(": ")", "[": "]", "{": "}"}, {")", "]", "}"}
@@ -92,7 +92,8 @@ def _tokens(latex: str) -> list[str]:
     waiting = 0
     for index, token in enumerate(raw):
         opened = index and raw[index - 1] in "_^"
-        if (waiting or opened) and token not in ("{", "["):
+        option = waiting and "[" in raw[index - 1 : index + 1]  # of a root: its order
+        if (waiting or opened) and not option and token not in "{]":
             if token[:1].isdigit() and len(token) > 1:
                 raise UnreadableError(
                     f"{token} needs braces in {latex}: LaTeX takes its first digit alone"
@@ -160,14 +161,18 @@ class _Reader:
         return total
 
     def _term(self) -> sp.Expr:
-        product = self._factor()
+        product, divided = self._factor(), False
         while True:
             token = self._next()
             if token in ("", "+", "-", "=", ",", "|") or token in _CLOSE or self._at_differential():
                 return product
             if self._take("/"):
-                product /= self._factor()
+                product, divided = product / self._factor(), True
                 continue
+            if divided:
+                raise UnreadableError(
+                    f"what stands below the line in {self.latex} needs parentheses"
+                )
             number = self.tokens[self.place - 1][:1].isdigit() and not self._take(r"\cdot")
             if number and (token[:1].isdigit() or (token == r"\frac" and self._at_number())):
                 raise UnreadableError(f"two numbers side by side in {self.latex}")
@@ -232,7 +237,7 @@ class _Reader:
             if braced:
                 raise self._unknown()
             found = [self._factor()]
-            if found[0].is_number and self._at_factor():
+            if self._at_factor():
                 raise UnreadableError(
                     f"what the function in {self.latex} applies to needs parentheses"
                 )

@@ -134,6 +134,7 @@ _DIFFERENTIAL = re.compile(
     r"(?<![A-Za-z\\])d(?=[A-Za-z](?![A-Za-z])|\\(?:xi|zeta|sigma|ell|hat|bar|tilde|breve|check)(?![a-z]))"
 )
 _SPACED = re.compile(r"\\frac\{d((?:\^\{\d+\})?)\}\{d (?=[A-Za-z\\])")
+_FRACTION = re.compile(r"\\frac\{d ((?:[^{}]|\{[^{}]*\})+)\}\{d ")
 _OPERATOR = re.compile(r"\\frac\{d((?:\^\{?\d\}?)?)\}(?=\{\\mathrm\{d\})")
 
 
@@ -154,6 +155,7 @@ def letters(label: str, section: str) -> Mapping[str, str]:
 def printed(latex: str, new: Mapping[str, str]) -> str:
     """Write mathematics in other letters, with upright differentials."""
     spaced = _SPACED.sub(r"\\frac{\\mathrm{d}\1}{\\mathrm{d} ", latex)
+    spaced = _FRACTION.sub(r"\\frac{\\mathrm{d} \1}{\\mathrm{d} ", spaced)
     upright = _OPERATOR.sub(r"\\frac{\\mathrm{d}\1}", _DIFFERENTIAL.sub(r"\\mathrm{d}", spaced))
     return replaced(upright, new.get)
 

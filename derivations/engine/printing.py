@@ -83,9 +83,16 @@ def _rank(factor: sp.Expr) -> tuple[Any, ...]:
     if isinstance(base, sp.Symbol | sp.Indexed):
         letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
         greek = letter.startswith("\\")
-        return 1, 1 if greek else 2 * letter[0].islower(), letter.replace(r"\var", "\\")
+        place = 1 if greek else 2 * letter[0].islower()
+        return (
+            1,
+            place,
+            "k~" if letter == "n" else letter.replace(r"\var", "\\"),
+        )  # l n looks like ln
+    open_ended = isinstance(base, sp.Function) and not isinstance(base, (sp.Abs, sp.Max, sp.Min))
     kinds = (
         (isinstance(base, sp.Add), 4), (isinstance(factor, sp.exp), 6), (isinstance(base, _TALL), 7),
+        (open_ended, 9),
     )  # fmt: skip
     return next((place for found, place in kinds if found), 5), str(base), 0
 
@@ -119,7 +126,11 @@ class Printer(LatexPrinter):
         rising = len(terms) == 2 or (len(letters) == 1 and _is_negative(terms[0]))
         if rising and numbers and expr.is_polynomial(*letters) and len(letters) == 1:
             terms.reverse()
-        elif numbers and (len(terms) == 2 or len(letters) > 1 or _is_negative(terms[0])):
+        elif numbers and (
+            len(terms) == 2
+            or (len(letters) > 1 and not _is_negative(numbers[0]))
+            or _is_negative(terms[0])
+        ):
             terms = [*numbers, *(term for term in terms if term not in numbers)]
         first = next((term for term in terms if not _is_negative(term)), terms[0])
         return [first, *(term for term in terms if term is not first)]
@@ -246,7 +257,7 @@ class Printer(LatexPrinter):
             return False
         base = factor.as_base_exp()[0]
         if isinstance(factor, sp.Derivative):
-            return _is_operator(str(self._print(factor)))
+            return r"\frac" in str(self._print(factor))
         return isinstance(factor, _TALL) or (
             base.is_Add and any(mark in self._sum(base) for mark in (r"\frac", r"\int"))
         )
@@ -431,4 +442,6 @@ def _flat(factors: Iterable[sp.Expr]) -> list[sp.Expr]:
     return [part for each in factors for part in sp.Mul.make_args(each)]
 
 
-_PRINTER = Printer({"symbol_names": TEX, "fold_frac_powers": True, "inv_trig_style": "full"})
+_PRINTER = Printer(
+    {"symbol_names": TEX, "fold_frac_powers": True, "inv_trig_style": "full", "ln_notation": True}
+)

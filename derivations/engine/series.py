@@ -31,7 +31,12 @@ def leading_of_series(expr: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | 
         (one, top), (other, bottom) = (_lowest(part, h) for part in sp.fraction(expr))
     except _NoSeriesError:
         return None
-    return sp.radsimp(sp.cancel(top / bottom)), sp.Integer(one - other)
+    return without_root(sp.cancel(top / bottom)), sp.Integer(one - other)
+
+
+def without_root(number: sp.Expr) -> sp.Expr:
+    """Write a number without roots below its line; the factor that removes those of letters may vanish."""
+    return number if number.free_symbols else sp.radsimp(number)
 
 
 def _lowest(expr: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:

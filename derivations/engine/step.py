@@ -22,6 +22,7 @@ from sympy.printing.latex import LatexPrinter
 from .algebra import (
     UndecidedError,
     difference,
+    first_coefficients,
     is_continuous,
     leading_term,
     next_order,
@@ -161,15 +162,17 @@ class Proof(Guarded):
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
         self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
         known = defined or lhs == whole
-        premise = None if known else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
+        premise = None if known else Premise(lhs, wanted, f"{tex(lhs)} = {tex(whole)}")
         given: Shown = {**shown}
         if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
             self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
         inside = self._conditions.with_interval((variable, low, high))
-        ordered = proves_positive(high - low, self._conditions)
         sure = lhs.is_nonnegative and not lhs.is_integer
-        if not (sure and ordered and proves_positive(inner, inside)):
+        if not sure or not (
+            proves_positive(wanted)
+            or (proves_positive(high - low, self._conditions) and proves_positive(inner, inside))
+        ):
             self._imply(lhs)
         self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
@@ -211,9 +214,7 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim}: {called} is not known to reach this value")
         for base in (each.subs(variable, found) for each in demands(whole)[0]):
             if not base.is_nonzero and not proves_nonzero(base, self._conditions):
-                raise StepError(
-                    f"{self.label}: {claim}: {base} may vanish there; say where it does not"
-                )
+                self._exclude(base, claim)
         try:
             only_root(whole, variable, found, domain_of(variable, over), self._conditions)
         except (UndecidedError, sp.PolynomialError) as error:
@@ -446,6 +447,8 @@ class Proof(Guarded):
                 f"{self.label}: {claim}: a remainder of its own needs eps = {variable} -> 0"
             )
         try:
+            for first in first_coefficients(parts[0] / parts[1], variable, point, self._conditions):
+                self._exclude(first, claim)  # for some parameters it would begin with another power
             c, k, rest = next_order(
                 parts[0] / parts[1], parts[2], variable, point, self._conditions
             )
@@ -454,12 +457,12 @@ class Proof(Guarded):
         # Of a sum the next term must be finite; of a product, its share of the leading one.
         for base in demands(sp.cancel(c * parts[1]) if short else c)[0] - {parts[2], variable}:
             if not proves_nonzero(base, self._conditions):
-                raise StepError(
-                    f"{self.label}: {claim}: {base} may vanish, and with it the leading term"
-                )
+                self._exclude(base, claim)
         self._displayed(expr, leading, shown)
         self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
-        factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
+        factor = shown.get("right") or (
+            rf"\left({tex(leading)}\right)" if leading.is_Add else tex(leading)
+        )
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)
             shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
@@ -493,15 +496,13 @@ class Proof(Guarded):
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
     def _defined_alike(self, integral: sp.Expr, *forms: tuple[sp.Expr, sp.Expr]) -> None:
-        """Refuse an antiderivative or a value with a pole in a parameter that the integral has not."""
+        """Exclude where an antiderivative or a value has a pole in a parameter that the integral has not."""
         shared = {normalise(base) for base in demands(integral)[0]}
         bases = {base for raw, form in forms for base in self._undefined(sp.sympify(raw), form)}
         for base in bases:
             varies = isinstance(integral, sp.Integral) and base.has(*integral.variables)
             if not (varies or normalise(base) in shared or proves_nonzero(base, self._conditions)):
-                raise StepError(
-                    f"{self.label}: {base} may vanish, but not in {integral}; say where it does not"
-                )
+                self._exclude(base, Said(integral, "=", forms[-1][0]))
 
     def _unnamed(self, name: sp.Expr) -> sp.Expr:
         """Return what a name stands for that was given to another name, and use its definitions."""

@@ -51,6 +51,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 % Headings run into the text; entries of the contents are ragged, for their columns are narrow.
 \renewcommand{\subsection}{\@startsection{subsection}{2}{0pt}{2ex plus 1ex}{-0.7em}{\bfseries}}
 \renewcommand{\@tocrmarg}{2.5em plus 1fil}
+\newcommand{\spare}{\par\vskip 0pt plus 9\baselineskip\penalty-200\vskip 0pt plus -9\baselineskip}
 \newcommand{\numbered}[2]{\phantomsection\def\@currentlabel{#2}\label{#1}(#2)}
 % What introduces a line (a heading without text, a sentence) stays on its page.
 \newcommand{\startline}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
@@ -114,7 +115,7 @@ def article(edition: Edition) -> str:
         tabular(table, labels, _WIDTHS[len(table.heads)], environment="longtable"),
     ]
     for section, members in by_section(edition.derivations).items():
-        body.append(rf"\section{{{_heading(section)}}}")
+        body.append(rf"\spare\section{{{_heading(section)}}}")
         if (own := edition.chapter_table(section)).rows:
             body.append(tabular(own, labels, _WIDTHS[3], environment="longtable"))
         body.extend(_derivation(member, edition) for member in members)

@@ -177,19 +177,23 @@ def _formats(formats: str | None) -> list[str]:
     return [name for name in FORMATS if name != "pdf"]
 
 
-def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str, str]:
+Given = tuple[dict[str, float], str, tuple[tuple[float, float], ...], str]
+"""Quantities, the shape, the arms of a Prony series, and a description of the scene."""
+
+
+def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
     """Return the quantities of a scene and of its steady state by the names of `calculation.GIVEN`.
 
-    Also the shape of the indenter, and a description of the scene. Forces, masses and springs of a ball are
-    left out, because the symbols of the derivations stand for those per unit width.
+    Also the shape of the indenter, the arms of the foundation, and a description of the scene. Forces, masses
+    and springs of a ball are left out, because the symbols of the derivations stand for those per unit width.
     """
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
-    from kvtheory.scene.capabilities import lacks_asymptotes, lacks_quadratic
+    from kvtheory.scene.capabilities import lacks_numbers, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
-    if lacking := lacks_asymptotes(scene):
+    if lacking := lacks_numbers(scene):
         raise ValueError(f"--numbers {lacking}")
     velocity = abs(scene.drive.final_velocity)
     if velocity == 0.0:
@@ -220,12 +224,17 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
             quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
     where = UNUSUAL_CHARACTER.sub("_", Path(path).name) if path else "Table 1"
     parts = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
-    return quantities, scene.indenter.shape, f"{where} ({parts})"
+    arms = tuple((arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms)
+    if arms:
+        quantities = {name: value for name, value in quantities.items() if name not in ("C", "tau")}
+    if arms and not line:
+        quantities["R_y"] = scene.indenter.radius * scene.indenter.stretch**2
+    return quantities, scene.indenter.shape, arms, f"{where} ({parts})"
 
 
 def _edition(
     labels: list[str], closure: bool, shape: str | None, notation: dict[str, str], label_prefix: str,
-    given: tuple[dict[str, float], str, str] | None, report: Callable[[float, str], None],
+    given: Given | None, report: Callable[[float, str], None],
 ) -> "Edition":  # fmt: skip
     """Derive what was requested, after a line with the number of records."""
     from kvtheory import __version__
@@ -247,9 +256,9 @@ def _edition(
     click.echo(f"kvtheory: deriving {told}", err=True)
     derived: Iterable[Derivation] = catalogue(needed, report)
     if given:
-        quantities, indenter, where = given
-        derived = with_numbers(derived, quantities, indenter)
-        about |= {"values": shown_quantities(quantities, indenter), "scene": where}
+        quantities, indenter, arms, where = given
+        derived = with_numbers(derived, quantities, indenter, arms)
+        about |= {"values": shown_quantities(quantities, indenter, arms), "scene": where}
     return edition(tuple(derived), labels, with_premises=closure, **about)
 
 

@@ -107,6 +107,7 @@ lacks_continuum = Needs(Scenes(("parabola",), FINITE))
 lacks_rigid_continuum = Needs(Scenes(("parabola",), FINITE, drives=("rigid",)))
 lacks_stability = lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
+lacks_numbers = Needs(Scenes(QUADRATIC, ARMS), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
 lacks_swept_transient = Needs(Scenes(laws=FINITE))
@@ -179,8 +180,8 @@ QUESTIONS = {
         "The scripts of the page know closed forms, and the integral of the circle.",
     ),
     "numbers": Question(
-        "derivations with numbers", "kvtheory derive, with numbers", lacks_asymptotes,
-        "The derivations are of Kelvin-Voigt closed forms.",
+        "derivations with numbers", "kvtheory derive, with numbers", lacks_numbers,
+        "The derivations are of closed forms: on Kelvin-Voigt, and of a parabola and a ball on arms.",
     ),
 }  # fmt: skip
 """The only table of capabilities. For scenes that are not covered, theory is missing."""
