@@ -145,8 +145,8 @@ def _quartic(proof: Proof) -> None:
     _forces_of_start(proof)
     proof.recall("scaled-form")
     proof.recall("F22-scaled")
-    proof.define(d, a**2, "steady sliding")
-    proof.define(d_s, sp.S.Zero, "at a depth that stays")
+    edge = per_rate - a
+    proof.equal(at_motion(right, {d: a**2, d_s: 0}), edge, "the trailing edge in steady sliding")
     proof.where(sp.Gt(place, 0), "the change is small")
     proof.where(sp.Gt(slides, 0), "the foundation slides on")
     proof.where(sp.Gt(place + rate + slides**2, 0), "and the contact remains")
@@ -161,7 +161,7 @@ def _quartic(proof: Proof) -> None:
         motion = acceleration - at_motion(inertia, moving)
         first = sp.Subs(sp.Derivative(motion, small), small, 0)
         proof.equal(
-            *(first, (row[0] * change + row[1] * swing) * sp.exp(sigma * time), _FIRST),
+            *(first, (row[0] * change + row[1] * swing).subs(right, edge) * sp.exp(sigma * time), _FIRST),
             left=rf"\left. \frac{{\partial}}{{\partial \check \theta}} \left[{shown}\right] "
             r"\right|_{\check \theta = 0}",
         )  # fmt: skip

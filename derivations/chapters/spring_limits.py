@@ -34,6 +34,7 @@ from .spring_stability import (
     onset_sum,
     own_rise,
     rise,
+    soft,
     spread,
     support_rate,
     uncoupled,
@@ -128,9 +129,8 @@ def _soft(proof: Proof) -> None:
     proof.define(rise, RISE, "F22-numbers")
     gain = S_z * (slope + damper) / (B_x + damper)
     proof.equal(gain, rise, "what friction and damper gain with velocity")
-    without = sp.Subs(hurwitz, S_x, 0)
-    proof.recall("F22-routh", without)
-    proof.equal(without / sp.Subs(REST, S_x, 0), gain, r"so $\check H$ has this sign")
+    proof.recall("F22-routh", soft)
+    proof.equal(soft / sp.Subs(REST, S_x, 0), gain, r"so $\check H$ has this sign")
     proof.define(kappa, sp.S.Zero, "dead weight")
     proof.define(damper, sp.S.Zero, "no damper")
     proof.equal(rise, DEAD_WEIGHT_RISE, "rational")

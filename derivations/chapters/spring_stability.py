@@ -15,7 +15,7 @@ from .transient_scaling import eps
 
 (
     B_z, B_x, damper_share, T_z, T_x, S_z, S_x, support_rate, S_c, coupling, uncoupled, rise,
-    own_rise, hurwitz, Omega, Omega_plus, Omega_minus, bias, onset_square, spread, onset_sum,
+    own_rise, hurwitz, soft, Omega, Omega_plus, Omega_minus, bias, onset_square, spread, onset_sum,
     lag_plus, c_1, c_2, b_1, b_2,
 ) = symbols(r"""
     B_z      -                 1  damping of the contact across the foundation, scaled
@@ -32,6 +32,7 @@ from .transient_scaling import eps
     e_c      \check e          1  quantity with the sign of $dF/dV$, damper included  real
     e_0      \check e_0        1  $\check e$ of a dead weight without a damper  real
     H_c      \check H          1  determinant of Hurwitz  real
+    H_0      \check H_0        1  determinant of Hurwitz without a spring  real
     Omega    \Omega            1  square of the frequency at onset, times $\tau^2$
     Omega_p  \Omega_{+}        1  larger root $\Omega$ of the quadratic of onset  real
     Omega_m  \Omega_{-}        1  smaller root $\Omega$ of the quadratic of onset  real
@@ -165,7 +166,8 @@ def _routh(proof: Proof) -> None:
     proof.equal(
         hurwitz, form, r"quadratic in $\varrho_x$; its discriminant does not hold $\vartheta_x$"
     )
-    proof.equal(sp.Subs(hurwitz, S_x, 0), rise * sp.Subs(REST, S_x, 0), "without a spring")
+    proof.define(soft, sp.Subs(hurwitz, S_x, 0), "without a spring")
+    proof.equal(soft, rise * sp.Subs(REST, S_x, 0), "it has the sign of the other factor")
     proof.recall("F22-numbers", quartic)
     over = B_z * (B_x + damper)
     proof.equal(quartic / over, series, "of these coefficients: the quartic by powers of the rate")

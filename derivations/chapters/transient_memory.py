@@ -9,7 +9,7 @@ import sympy as sp
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, letter, symbol, symbols
 from ..engine.step import Proof
-from .model import K, N, c, f_z, k, t, tau, u_i
+from .model import K, N, c, compression_rate, f_z, k, tau, u_i
 from .tables import delta_0
 from .theorems import lam
 from .transient_scaling import P, d, d_s, xi
@@ -86,9 +86,9 @@ def _element(proof: Proof) -> None:
     u = compression
     proof.recall("eq12")
     proof.recall("eq22", k, c, tau)
-    proof.define(u_i, delta_0 * u(t / tau), "compression in units of the static depth")
-    proof.define(t, tau * time, "time in units of the retardation time")
     force, rate = N * f_z / (K * delta_0), sp.Derivative(u(time), time)
+    proof.define(u_i, delta_0 * u(time), "compression in units of the static depth")
+    proof.define(compression_rate, delta_0 * rate / tau, "its rate, with $s = t/\\tau$")
     proof.root(force - PUSH(time), rate, PUSH(time) - u(time), "the force per area, never negative")
 
 
@@ -286,8 +286,10 @@ def _landing(proof: Proof) -> None:
     those between them would exceed this condition by at least $\theta (1 - \theta) (e^{s} - e^{s_0}) (X_1 -
     X_2)^2$, whatever $s_1$ is: they would have been compressed before.
     """
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(mix < 1, "between two elements")
     proof.recall("F9", _BETWEEN)
-    proof.where(sp.Gt(_one, _other), "not the same element")
-    proof.holds(_BETWEEN - _CHORD, ">", 0,
+    proof.where(sp.Gt(_one, _other), "that are not the same")
+    proof.holds(_BETWEEN, ">", _CHORD,
                 "if both landed at the same instant, the elements between would have before",
-                left=r"D(\theta X_1 + (1 - \theta) X_2) - [\theta D_1 + (1 - \theta) D_2]")  # fmt: skip
+                left=r"D(\theta X_1 + (1 - \theta) X_2)")  # fmt: skip
