@@ -216,11 +216,12 @@ def _moments(proof: Proof) -> None:
     proof.define(e, a / c - sp.Rational(1, 2), "the excess over half of the contact")
     proof.equal(a, c * (e + sp.Rational(1, 2)), "solved for the half length")
     proof.equal(e, B / A, "no pressure at the trailing edge")
+    edge = {a: G_2(c) / G_1(c)}
     for total, integral, form in (
         (F_z, LOADED, c**3 / R * (D + e * P)), (F_x, WORKED, c**4 / R**2 * (E + e**2 * P)),
     ):  # fmt: skip
-        proof.recall("F17-forces", integral)
-        proof.define(total, integral, "over the contact")
+        proof.recall("F17-forces", integral, at=edge)
+        proof.define(total, integral.subs(edge), "over the contact")
         proof.equal(total, form, "in terms of the moments")
 
 
