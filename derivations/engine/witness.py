@@ -5,6 +5,7 @@ slopes and integrals of unknown functions are letters of their own.
 """
 
 import random
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from itertools import chain
@@ -18,7 +19,7 @@ from .identity import letters_of
 from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
-_TRIES, _DIGITS, _NONE = 200, 120, mpmath.mpf(10) ** -90
+_TRIES, _DIGITS, _NONE = 800, 120, mpmath.mpf(10) ** -90
 _GRID = [
     *(mpmath.mpf(10) ** k for k in range(-20, -4)),
     *(mpmath.mpf(10) ** (mpmath.mpf(k) / 3) for k in range(-12, 13)),
@@ -59,7 +60,10 @@ def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> 
             start = {slack[gap]: _drawn(slack[gap], draw, above) for gap in forced}
             closed = [*laws, *(gap - slack[gap] for gap in forced)]
             draw.shuffle(order)
-            order.sort(key=lambda letter: isinstance(letter, sp.Dummy))
+            # What is in few equations is left to them; else what stands for unknown functions is.
+            held = Counter(letter for law in closed for letter in letters_of(law))
+            last = held.__getitem__ if attempt % 4 > 1 else lambda each: not isinstance(each, sp.Dummy)
+            order.sort(key=last, reverse=True)
             try:
                 points = _extended(start, closed, order, draw, above)
                 if any(_meets(point, gaps, signed) for point in points):
