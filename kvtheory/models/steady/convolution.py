@@ -45,6 +45,8 @@ USED = RULES[2:4]
 """Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
 ENOUGH = 1e-15
 """Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
+LAYER = 30.0
+"""Factor by which halving the step improves a rule at least, where arms are loaded in a thin layer."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -199,7 +201,8 @@ class Contact:
 
     def _error(self, apart: float) -> float:
         """Return the relative error from the difference of both rules."""
-        apart = apart ** (1.0 if getattr(self.shape, "bent", False) else 1.5)
+        if not getattr(self.shape, "bent", False):
+            apart = max(apart**1.5, apart / LAYER)
         error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
         if not error < LIMIT:
             raise QuadratureError(
@@ -286,11 +289,11 @@ class Contact:
         """Return the greatest pressure: at the highest node, or between its neighbours."""
         x, best = self.x, int(self.pressure.argmax())
         low, high = x[max(best - 1, 0)], x[min(best + 1, x.size - 1)]
-        found = minimize_scalar(
-            lambda x: -self.pressure_at(x),
-            bounds=(low, high),
+        found = minimize_scalar(  # over a share, as the layer at the leading edge may be thin
+            lambda share: -self.pressure_at(low + share * (high - low)),
+            bounds=(0.0, 1.0),
             method="bounded",
-            options={"xatol": PEAK_RTOL * (high - low)},
+            options={"xatol": PEAK_RTOL},
         )
         return max(float(self.pressure[best]), -float(found.fun))
 
