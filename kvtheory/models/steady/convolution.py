@@ -60,7 +60,7 @@ STRIDE, PEAK_RTOL = 1e-6, 1e-6
 """Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
 between two nodes; the error of its value is of second order."""
 MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
-"""Safety factor on the differences of both rules, rounding, and error from which a result is refused."""
+"""Safety factor on the estimates of the rules, rounding, and error from which a result is refused."""
 OF_WORK = "friction_force", "friction_coefficient", "dissipated_in_contact"
 CANCELLED = 3.6e-15
 """Rounding, over the order of a springpot, of its work: most of it returns if the order is low."""
