@@ -62,7 +62,9 @@ def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> 
             draw.shuffle(order)
             # What is in few equations is left to them; else what stands for unknown functions is.
             held = Counter(letter for law in closed for letter in letters_of(law))
-            last = held.__getitem__ if attempt % 4 > 1 else lambda each: not isinstance(each, sp.Dummy)
+            last = (
+                held.__getitem__ if attempt % 4 > 1 else lambda each: not isinstance(each, sp.Dummy)
+            )
             order.sort(key=last, reverse=True)
             try:
                 points = _extended(start, closed, order, draw, above)
