@@ -20,16 +20,19 @@ WIDTH = arb(2) ** -300
 
 
 class Prony:
-    """G = K + sum K_i e^(-X/l_i)."""
+    """G = K + sum K_i e^(-X/l_i), and l_C delta(X) of a damper, which is the last of an odd number."""
 
     def __init__(self, K, V, parameters):
         self.K, pairs = K, list(map(arb, parameters))
+        self.damper = abs(V) * pairs.pop() if len(pairs) % 2 else arb(0)
         self.arms = [(k, abs(V) * tau) for k, tau in zip(pairs[0::2], pairs[1::2], strict=True)]
         self.arms = self.arms if V != 0 else []
 
     def integrals(self, X):
         """G_0 to G_4."""
         sums = [self.K * X**n / arb(n).fac() for n in range(5)]
+        for n in range(1, 5):
+            sums[n] += self.damper * X ** (n - 1) / arb(n - 1).fac()
         for stiffness, l in self.arms:
             inner = (-X / l).exp()
             for n in range(5):
@@ -151,18 +154,19 @@ def _peak(R, row, a):
     return (a * sums[1] - sums[2]) / R
 
 
-def random_case(rng, kind):
-    """1 to 20 arms over ten decades, beta from 1e-3 to 1e6, V within twelve decades; any support."""
+def random_case(rng, kind, *, damped=False):
+    """1 to 20 arms over ten decades, beta from 1e-3 to 1e6, V within twelve decades; any support, damper."""
     R, K, time = (float(10.0 ** rng.uniform(*ends)) for ends in ((-4, 0), (6, 12), (-4, 2)))
     weight = float(10.0 ** rng.uniform(0, 5))
     a = (1.5 * R * weight / K) ** (1 / 3)
     V = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-6, 6) * a / time)
-    if rng.random() < 0.2:
+    if rng.random() < 0.2 and not damped:
         law, parameters = laws.Fractional, (time, float(rng.choice([rng.uniform(), 1.0])))
     else:
         law, parameters = laws.Prony, []
         for _ in range(rng.integers(1, 21)):
             parameters += [K * 10.0 ** rng.uniform(-3, 6), time * 10.0 ** rng.uniform(-5, 5)]
+        parameters += [K * time * 10.0 ** rng.uniform(-5, 5)] if damped else []
         parameters = tuple(map(float, parameters))
     given = (law, parameters, R, K, time, V)
     if kind == "fixed":
@@ -177,8 +181,9 @@ def scene_of(case):
     if law is laws.Fractional:
         foundation = kv.FractionalKelvinVoigt(K, *parameters)
     else:
-        pairs = zip(parameters[::2], parameters[1::2], strict=True)
-        foundation = kv.GeneralizedMaxwell(K, arms=list(pairs))
+        arms = list(zip(parameters[::2], parameters[1::2], strict=False))
+        damping = parameters[-1] if len(parameters) % 2 else 0.0
+        foundation = kv.GeneralizedMaxwell(K, arms=arms, damping=damping)
     if len(grip) == 1:
         support = kv.Fixed(*grip)
     else:

@@ -42,7 +42,8 @@ def asked(question, shape, law, support, drive):
     if question == "maxima" and shape not in CLOSED:
         return (shape, law, support, drive) == ("circle", "kelvin-voigt", "fixed", "rigid")
     if question in ("quadrature", "maxima", "sweep"):
-        return (support, drive) == ("fixed", "rigid") and (shape != "revolved" or law == LAWS[0])
+        plain = not shape.startswith("revolved") or law == LAWS[0]  # others take seconds
+        return (support, drive) == ("fixed", "rigid") and plain
     if question in ("elements", "explorer"):
         return (support, drive) == ("dead-weight", "spring")
     return True

@@ -35,11 +35,12 @@ def by_quadrature(foundation, support, indenter, V):
 
 @pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
-def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
-    """1 to 20 arms over ten decades, and springpots."""
+@pytest.mark.parametrize("damped", [False, True])
+def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind, damped):
+    """1 to 20 arms over ten decades, and springpots; arms beside a damper of any size."""
     rng = np.random.default_rng(SUPPORTS.index(kind))
-    for _ in range(3 * SCENES // 40):
-        case = reference_viscoelastic.random_case(rng, kind)
+    for _ in range((2 if damped else 3) * SCENES // 40):
+        case = reference_viscoelastic.random_case(rng, kind, damped=damped)
         for name, error in reference_viscoelastic.errors(case).items():
             assert error <= 1.0, (name, case)
 

@@ -49,8 +49,8 @@ def steady(
         Arrays broadcast against each other.
     method
         ``"exact"`` (parabola and ball on any foundation, power law and wedge on Kelvin-Voigt; the default for
-        them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line contacts that are convex where they
-        touch, the ball, and shapes of this package revolved about their lowest point; the default for the
+        them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it shapes that are convex where they
+        touch, also revolved, which takes seconds, of functions with kinks minutes; the default for the
         others) or ``"asymptote"`` (of the regime of the velocity; shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns

@@ -145,12 +145,9 @@ def plan_of(
     method = method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
     axes = axes_of(scene, over)
-    for axis in axes:
-        if (
-            "foundation.damping" in axis.values
-        ):  # the law of all points is that of the most damped one
-            most = float(axis.values["foundation.damping"].max())
-            scene = scene.replace({"foundation.damping": most})
+    for axis in axes:  # one law for all points: with a damper if any of them has one
+        if (key := "foundation.damping") in axis.values:
+            scene = scene.replace({key: float(axis.values[key].max())})
     sprung = not scene.drive.rigid or any("drive.stiffness" in axis.values for axis in axes)
     if quantities is None and at is None and sprung and not lacks_stability(scene):
         quantities = [*STEADY_UNITS, STABLE]

@@ -249,9 +249,8 @@ def _density(case: Case) -> float:
 def _stability_number(case: Case, step: float) -> float:
     """Return dt C L/M of a time step in s, with the longest contact."""
     extent = float(contact_extent(case.theory, case.now).max())
-    return (
-        step * case.theory.scene.foundation.slow_damping * extent / case.theory.scene.support.mass
-    )
+    scene = case.theory.scene
+    return step * scene.foundation.slow_damping * extent / scene.support.mass
 
 
 def stability(case: Case) -> tuple[float, float, str]:

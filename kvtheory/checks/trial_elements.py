@@ -253,9 +253,7 @@ def _free_rates(scene: Scene) -> Array:
     K, C = scene.foundation.stiffness, scene.foundation.damping
     moduli, times = (part[:, 0, 0, 0] for part in _moduli_and_times(scene))
     fades = np.diag(np.append(0.0, 1.0 / times))
-    sinks = np.append(0.0, 1.0 / times) / (
-        K + moduli.sum()
-    )  # u', as K u' = -sum s_i' without damper
+    sinks = np.append(0.0, 1.0 / times) / (K + moduli.sum())  # without damper K u' = -sum s_i'
     sinks = -np.append(K, np.ones(moduli.size)) / C if C else sinks
     return np.outer(np.append(1.0, moduli), sinks) - fades
 

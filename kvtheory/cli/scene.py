@@ -86,8 +86,9 @@ def scene(
             f"shifted_arms[{i}].relaxation_time": arm.relaxation_time
             for i, arm in enumerate(foundation.arms)
         }
-        if not foundation.arms:
-            quantities["shifted_retardation_time"] = foundation.retardation_time
+        name = "damping" if foundation.arms else "retardation_time"
+        if np.any(shifted := getattr(foundation, name)):
+            quantities[f"shifted_{name}"] = shifted
     numbers = {} if lacks_quadratic(checked) else _dimensionless(checked)
     quantities |= numbers
     notes: tuple[str, ...] = ()

@@ -14,10 +14,9 @@ eta = (P - Q)/(2 (P + Q)) that gives
 
     1/r <= eta_H/eta_G <= r,   1/r <= W_H/W_G <= r,   1/r^2 <= F_H/F_G <= r^2,
 
-(a damper beside the arms adds the same to P, P - Q and E of both), as W = (c^3/R)(D + eta P), F = (c^4/R^2)(E
-+ eta^2 P), eta P = (P - Q)(1/2 + eta)/2 and (1 + r)/2 = 1/(1 -
-eps). Load and friction grow with c: p vanishes at the trailing edge, so that only the growth of a
-contributes, and
+as W = (c^3/R)(D + eta P), F = (c^4/R^2)(E + eta^2 P), eta P = (P - Q)(1/2 + eta)/2 and (1 + r)/2 = 1/(1 -
+eps); a damper beside the arms adds the same to P, P - Q and E of both. Load and friction grow with c: p
+vanishes at the trailing edge, so that only the growth of a contributes, and
 
     dF/dc = (a'/R^2) (a - c/2) int int G(|X - s|/V) dX ds >= 0.
 

@@ -80,7 +80,9 @@ class Needs:
         """Return what the scene lacks."""
         kind = scene.kind
         if kind not in self.told:
-            nearest = min((each.lacking(*kind) for each in reversed(self.sets)), key=len)
+            shape = kind[0]
+            sets = sorted(self.sets, key=lambda s: (shape not in s.shapes, -len(s.laws)))
+            nearest = min((each.lacking(*kind) for each in sets), key=len)
             self.told[kind] = nearest[0] if nearest else ""
         return self.told[kind]
 
@@ -104,8 +106,8 @@ lacks_rigid_continuum = Needs(Scenes(("parabola",), FINITE, drives=("rigid",)))
 lacks_stability = lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
-lacks_quadrature = Needs(Scenes(tuple(SHAPES)[:-1]), Scenes(laws=KELVIN_VOIGT))
-lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], FINITE))
+lacks_quadrature = Needs(Scenes())
+lacks_swept_transient = Needs(Scenes(laws=FINITE))
 lacks_scripts = Needs(
     Scenes(QUADRATIC, (*ONE_OF_BOTH, LAWS[-1])), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
 )
@@ -130,7 +132,8 @@ QUESTIONS = {
     ),
     "quadrature": Question(
         "steady sliding by integration", 'steady(scene, method="quadrature")', lacks_quadrature,
-        "Beyond Kelvin-Voigt one interval of contact in every strip is proved for convex profiles only.",
+        "Beyond Kelvin-Voigt one interval of contact is proved for convex profiles only: functions that are "
+        "not convex are refused when they are solved.",
     ),
     "asymptote": Question(
         "steady sliding by asymptotes", 'steady(scene, method="asymptote")', lacks_asymptotes,

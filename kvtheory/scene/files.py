@@ -17,6 +17,7 @@ from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.mistakes import (
+    ELSE,
     MEANT,
     Bare,
     Problems,
@@ -384,7 +385,7 @@ def _hint(section: str, key: str, valid: list[str]) -> str:
     keys = {name: _keys(model) for name, model in MODELS[section].items()}
     meant = key if any(key in own for own in keys.values()) else MEANT.get(key, "")
     having = [f'"{name}"' for name, own in keys.items() if meant in own]
-    if not having or section not in CHOOSERS or MEANT.get(key, key) in known:
+    if not having or section not in CHOOSERS or {MEANT.get(key, key), ELSE.get(key)} & set(known):
         return nearest(key, known)
     return f"{meant} is of {CHOOSERS[section]} = {' or '.join(having)}"
 

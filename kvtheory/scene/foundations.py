@@ -345,7 +345,7 @@ class Foundation(_Relaxed):
     )
 
     @property
-    def damping(self) -> Value:  # type: ignore[override]
+    def damping(self) -> Value:
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
 

@@ -116,6 +116,9 @@ MEANT = {
 """Names by their symbols and synonyms, which similarity of spelling would not find."""
 
 
+ELSE = {"viscosity": "damping", "C": "damping"}
+"""What they mean where the first meaning does not exist."""
+
 MOST_LISTED = 20
 """Most names that a message lists."""
 
@@ -132,11 +135,12 @@ def closest(name: str, valid: Iterable[str]) -> str | None:
     """
     valid = list(valid)
     section, dot, last = name.rpartition(".")
-    meant = section + dot + MEANT.get(last, last)
-    if meant in valid:
-        return meant
-    if not dot and (ends := [each for each in valid if each.endswith(f".{meant}")]):
-        return ends[0]
+    for meaning in (MEANT, ELSE):
+        meant = meaning.get(last, last)
+        if section + dot + meant in valid:
+            return section + dot + meant
+        if not dot and (ends := [each for each in valid if each.endswith(f".{meant}")]):
+            return ends[0]
     return next(iter(difflib.get_close_matches(name, valid, n=1, cutoff=0.5)), None)
 
 

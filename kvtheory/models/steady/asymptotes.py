@@ -80,8 +80,8 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     if not np.any(damped := foundation.damping > 0.0):
         return low, Limit(*spring, slow=False)
     damper = foundation.damping / foundation.slow_damping, 1.0, cf.power_law_high(n), 0.0
-    each = (np.where(damped, *pair)[()] for pair in zip(damper, spring, strict=True))
-    return low, Limit(*each, slow=False)
+    each = [np.where(damped, *pair)[()] for pair in zip(damper, spring, strict=True)]
+    return low, Limit._make([*each, False])
 
 
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
@@ -138,7 +138,8 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     s = elementwise.find_root(excess, (0.0, 1.0), args=given).x
     glassy = s * s * depth, s * a, lift - support.spring * s * s * depth
     pairs = zip(viscous, glassy, strict=True)
-    return tuple(np.where(limit.rise > 0.0, *pair)[()] for pair in pairs)  # type: ignore[return-value]
+    depth, a, load = (np.where(limit.rise > 0.0, *pair)[()] for pair in pairs)
+    return depth, a, load
 
 
 def quantity(scene: Scene, limit: Limit, name: str = "friction_coefficient") -> Value:

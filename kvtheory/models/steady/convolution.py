@@ -17,7 +17,7 @@ where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises an
 import math
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -45,6 +45,8 @@ USED = RULES[2:4]
 """Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
 ENOUGH = 1e-15
 """Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
+LAYER = 30.0
+"""Factor by which halving the step improves a rule at least, where arms are loaded in a thin layer."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -87,9 +89,13 @@ class Arms:
         """Return the share of m that is reached at s."""
         return self._and_damper(np.expm1(-s / self.length) / np.expm1(-X / self.length), 1.0)
 
+    def power(self, rows: Array, _rate: Array) -> Array:
+        """Return what the branches lose per length, from their pressures."""
+        return (rows**2 / self.impulse).sum(axis=0)
+
     def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
         """Return the work of the branches, and the part lost; `left` is their last pressure."""
-        lost, _ = sliding.total((sliding.rows**2 / self.impulse).sum(axis=0))
+        lost = sliding.passed.power
         stored = left[: len(self.length)] ** 2 / (2.0 * self.stiffness)
         return float(stored.sum()) + lost, lost
 
@@ -117,9 +123,13 @@ class Springpot:
         """Return (s/X)^(1 - alpha)."""
         return (s / X) ** self.rest if self.rest else np.ones_like(X)
 
+    def power(self, rows: Array, rate: Array) -> Array:
+        """Return what goes into the springpot per length, from its pressure."""
+        return rate * rows.sum(axis=0)
+
     def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
         """Return the work, and the part lost: 1/2 int int G(s + s') u' u' ds ds' is stored at the end."""
-        work, _ = sliding.total(sliding.rate * sliding.rows.sum(axis=0))
+        work = sliding.passed.power
         if not self.rest:
             return work, work
         s = sliding.ahead
@@ -140,9 +150,18 @@ def memory_of(scene: Scene) -> Memory:
         return None
     if isinstance(foundation, FractionalKelvinVoigt):
         return Springpot(speed * foundation.retardation_time, foundation.order)
-    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
+    pairs = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
+    arms = np.reshape(pairs, (-1, 2))
     K, damper = foundation.stiffness, speed * foundation.damping
     return Arms(arms[:, 0] / K, speed * arms[:, 1], damper / K)
+
+
+class Passed(NamedTuple):
+    """The pressure of each branch, `Memory.power` over the contact, and the relative error of integrals."""
+
+    rows: Array
+    power: float
+    error: float
 
 
 class Contact:
@@ -182,7 +201,8 @@ class Contact:
 
     def _error(self, apart: float) -> float:
         """Return the relative error from the difference of both rules."""
-        apart = apart ** (1.0 if getattr(self.shape, "bent", False) else 1.5)
+        if not getattr(self.shape, "bent", False):
+            apart = max(apart**1.5, apart / LAYER)
         error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
         if not error < LIMIT:
             raise QuadratureError(
@@ -192,24 +212,28 @@ class Contact:
         return error
 
     @cached_property
-    def passed(self) -> tuple[Array, float]:
-        """The pressure of each branch at the nodes, and the error of integrals over it."""
+    def passed(self) -> "Passed":
+        """The pressure of each branch at the nodes, and integrals over it."""
         rows, apart = self.remembered(self.x)
         pressure = self.depth - self.shape.height(self.x) + rows.sum(axis=0)
         load, load_apart = self.total(pressure)
-        return rows, max(self._error(apart + load_apart / load), self.load_error)
+        power, power_apart = 0.0, 0.0
+        if self.memory is not None:
+            power, power_apart = self.total(self.memory.power(rows, self.rate))
+        apart += load_apart / load + power_apart / max(power, TINY)
+        return Passed(rows, power, max(self._error(apart), self.load_error))
 
     @property
     def finer(self) -> "Contact | None":
         """The contact by the finer rule if pressures need it."""
-        if self.passed[1] < ENOUGH or self.rule + 1 == len(USED):
+        if self.passed.error < ENOUGH or self.rule + 1 == len(USED):
             return None
         return Contact(self.shape, self.memory, self.depth, self.rule + 1)
 
     @property
     def rows(self) -> Array:
         """The pressure of each branch at the nodes."""
-        return self.passed[0]
+        return self.passed.rows
 
     @property
     def pressure(self) -> Array:
@@ -265,11 +289,11 @@ class Contact:
         """Return the greatest pressure: at the highest node, or between its neighbours."""
         x, best = self.x, int(self.pressure.argmax())
         low, high = x[max(best - 1, 0)], x[min(best + 1, x.size - 1)]
-        found = minimize_scalar(
-            lambda x: -self.pressure_at(x),
-            bounds=(low, high),
+        found = minimize_scalar(  # over a share, as the layer at the leading edge may be thin
+            lambda share: -self.pressure_at(low + share * (high - low)),
+            bounds=(0.0, 1.0),
             method="bounded",
-            options={"xatol": PEAK_RTOL * (high - low)},
+            options={"xatol": PEAK_RTOL},
         )
         return max(float(self.pressure[best]), -float(found.fun))
 
@@ -279,7 +303,7 @@ class Contact:
             return 0.0, 0.0, self.load_error
         if finer := self.finer:
             return finer.friction()
-        error = self.passed[1]
+        error = self.passed.error
         left, _ = self.remembered(np.array([self.x_te]))
         work, lost = self.memory.works(self, left)
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
@@ -315,8 +339,14 @@ class ViscoelasticLine:
         self.shape, self.memory, self.l_r, self.reach = shape, memory, l_r, shape.reach
 
     def strips(self, strip: Any) -> "ViscoelasticLine":
-        """Return the line contact of one strip."""
-        strip.kinks = self.shape.kinks  # next to a tip, the strip has one nearly as sharp
+        """Return the line contact of one strip, which has the kinks of the profile at their radii."""
+        y, shape = strip.y, self.shape
+        cuts = {math.sqrt((x - y) * (x + y)) for x in map(abs, shape.kinks) if x > y}
+        # Next to a tip, the strip has one nearly as sharp.
+        strip.kinks = *({0.0} & set(shape.kinks)), *(side * x for x in cuts for side in (-1.0, 1.0))
+        if isinstance(shape, ConvexProfile):
+            strip.kinks = *strip.kinks, *((-y, y) if 0.0 in shape.kinks else ())
+            strip.bent, strip.noise = shape.bent, shape.noise
         return ViscoelasticLine(strip, self.memory, self.l_r)
 
     @property

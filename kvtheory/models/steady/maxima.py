@@ -158,9 +158,7 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
     relaxing = [arm.relaxation_time for arm in foundation.arms] or [foundation.retardation_time]
     slow = np.maximum.reduce(np.broadcast_arrays(*relaxing, foundation.retardation_time))
     fast = np.minimum.reduce(np.broadcast_arrays(*relaxing))
-    if (
-        np.any(foundation.damping) and foundation.arms
-    ):  # a damper beside a spring of the glassy stiffness
+    if foundation.arms and np.any(foundation.damping):  # that resists as much as all springs do
         glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
         beside = np.where(foundation.damping > 0.0, foundation.damping / glassy, np.inf)
         fast = np.minimum(fast, beside)

@@ -33,7 +33,7 @@ from kvtheory.models.steady.double_exponential import ROUNDING, Value, largest, 
 from kvtheory.models.steady.revolved import Strips
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_quadrature
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
 
 UNBALANCED, MARGIN = 1e-6, 2.0
@@ -125,8 +125,6 @@ def _lines(scene: Scene) -> Callable[[Value], Any]:
     """Return the method for the shape and the foundation of a scene, as a function of l_r (0 for rest)."""
     indenter: Any = scene.indenter
     shape = indenter if indenter.per_width else indenter.profile
-    if lacking := lacks_quadrature(scene):
-        raise QuadratureError(lacking)
     memory = memory_of(scene) if (remembers := lacks_kelvin_voigt(scene)) else None
     if not shape.convex:  # it may differ ahead and behind; a body of revolution does not
         side = -1.0 if indenter.per_width and scene.drive.final_velocity < 0.0 else 1.0

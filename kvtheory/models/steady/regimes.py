@@ -147,18 +147,16 @@ def lines(scene: Scene) -> list[Line]:
     if lacks_kelvin_voigt(scene):
         bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
         fast = f"{'2/5' if line else '1/3'} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
-        name, total, numbers = "glassy", "C = sum K_i tau_i", (42, None)
+        name, total, equation = "glassy", "C = sum K_i tau_i", None
         if np.any(scene.foundation.damping):
             there = "" if np.all(scene.foundation.damping) else f"; where C_0 = 0, {fast}"
             fast = formulas[1].replace("C V", "C_0 V") + there
             name, total = "L2", "C = C_0 + sum K_i tau_i, C_0 of the damper"
-            numbers, bounds = (42, LISTED[support][0][2]), (*bounds[:2], None)
+            equation, bounds = LISTED[support][0][2] if line else None, (*bounds[:2], None)
         return [
-            Line(
-                "L1", MU, "low", numbers[0] if line else None, f"C V/(R K), {total}", low, bounds[0]
-            ),
+            Line("L1", MU, "low", 42 if line else None, f"C V/(R K), {total}", low, bounds[0]),
             Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
-            Line(name, MU, "high", numbers[1] if line else None, fast, high, bounds[2]),
+            Line(name, MU, "high", equation, fast, high, bounds[2]),
         ]
     found: list[Line] = []
     for quantity, *numbers in LISTED[support]:
