@@ -41,6 +41,15 @@ def value(record: Any, name: str) -> Any:
     return record[name] if isinstance(record, np.void) else getattr(record, name)
 
 
+def set_fields(record: Any, **values: Any) -> None:
+    """Set fields of a record, interpreted or compiled."""
+    for name, given in values.items():
+        if isinstance(record, np.void):
+            record[name] = given
+        else:
+            setattr(record, name, given)
+
+
 def new(kind: np.dtype[Any], *values: Any) -> Any:
     """Return one object with the fields of a record."""
     return filled(kind, values)

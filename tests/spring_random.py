@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import Trajectory, solve
@@ -108,20 +107,22 @@ def balances(motion):
     books = ledger(motion, times)
     starts = np.array(motion.starts)
 
-    def impulse(columns):
+    def impulse(*names):
         def force(_, s):
-            return motion.states(s.reshape(-1))[:, columns].reshape(*s.shape, len(columns))
+            found = motion.states(s.reshape(-1))
+            return np.stack([found[name] for name in names], axis=-1).reshape(*s.shape, len(names))
 
         index = np.searchsorted(starts, times, side="right") - 1
         whole = integrals(force, starts, np.append(starts[1:], motion.end))
         last = integrals(force, starts[index], times)
         return np.array([whole[:k].sum(axis=0) + part for k, part in zip(index, last, strict=True)])
 
-    f_z, f_x, f_s, d = impulse([e_.NORMAL_FORCE, e_.FRICTION_FORCE, e_.SPRING_FORCE, e_.DEPTH]).T
-    along = given.eps_x * states[:, e_.ALONG_RATE] - (f_x - f_s)
-    up = given.eps * states[:, e_.RATE] - (times - f_z - given.kappa * (d - times))
+    f_z, f_x, f_s, d = impulse("normal_force", "friction_force", "spring_force", "depth").T
+    along = given.eps_x * states["offset_rate"] - (f_x - f_s)
+    up = given.eps * states["depth_rate"] - (times - f_z - given.kappa * (d - times))
     up = 0.0 * times if given.fixed else up
-    size = 1.0 + np.abs(states[:, [e_.RATE, e_.NUMBER]]).max() + np.abs(f_x) + np.abs(f_z)
+    rates = np.array([states[name] for name in ("depth_rate", "sliding_velocity")])
+    size = 1.0 + np.abs(rates).max() + np.abs(f_x) + np.abs(f_z)
     turned_over = 1.0 + np.abs(books.work) + books.kinetic_along
     eps = 0.0 if given.fixed else given.eps
     return {

@@ -48,7 +48,9 @@ def test_the_same_bits(both):
         for name in ("rejected", "evaluations"):
             assert getattr(fast.counts, name) == getattr(slow.counts, name)
         np.testing.assert_array_equal(fast.natural, slow.natural)
-        np.testing.assert_array_equal(fast.states(case.times), slow.states(case.times))
+        one, other = fast.states(case.times), slow.states(case.times)
+        for name in one.dtype.names:
+            np.testing.assert_array_equal(one[name], other[name])
 
 
 def test_a_run_that_goes_on_compiled_gives_the_same_bits(monkeypatch):
@@ -296,7 +298,7 @@ def test_a_motion_whose_kernels_cannot_be_compiled_is_interpreted(on_arms, short
     assert len(told) == 1
     assert not motion.compiled
     states = motion.states([0.5])
-    assert np.isfinite(states["depth"] if on_arms else states).any()
+    assert np.isfinite(states["depth"]).all()
 
 
 def test_many_scenes_whose_kernels_cannot_be_compiled_are_interpreted(short, monkeypatch):

@@ -7,7 +7,6 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum import contact
-from kvtheory.models.continuum.evaluation import DEPTH
 from kvtheory.models.continuum.memory_chains import margin
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height, integrals
@@ -21,7 +20,7 @@ def ends_of_intervals(motion, given, s, sigma):
     """The intervals to which the instants `sigma` confine the contact at `s` (theorem F9)."""
     now = motion.at(s)
     Y, _, _ = given.at(s)
-    d_0 = motion.states(sigma)[:, DEPTH]
+    d_0 = motion.states(sigma)["depth"]
     shift = Y - np.array([given.displacement(t) for t in sigma])
     q, m = np.exp(sigma - s), -np.expm1(sigma - s)
     b, c = q * shift / m, now.depth + q * (now.depth - d_0 + shift**2) / m
@@ -80,7 +79,7 @@ def test_flight_stays_above_all_that_was_left_and_ends_where_it_meets_that(point
     hops = [event.s for event in motion.events if event.kind in ("take-off", "landing")]
     sigma = np.unique([*np.linspace(0.0, hops[0], 401), *(s for s, _ in points)])
     sigma = sigma[sigma <= hops[0]]
-    d, Y_0 = motion.states(sigma)[:, DEPTH, None], np.array([given.at(s)[:1] for s in sigma])
+    d, Y_0 = motion.states(sigma)["depth"][:, None], np.array([given.at(s)[:1] for s in sigma])
     for s in np.linspace(*hops[:2], 5)[1:]:
         Y, X, width = given.at(s)[0], -given.at(s)[0], 1.2
         for _ in range(4):
@@ -123,7 +122,7 @@ def highest(motion, given, xi, s):
 
     def left(sigma):
         flat = sigma.reshape(-1)
-        d = motion.states(flat)[:, DEPTH].reshape(sigma.shape)
+        d = motion.states(flat)["depth"].reshape(sigma.shape)
         Y = np.array([given.displacement(t) for t in flat]).reshape(sigma.shape)
         return np.exp(sigma - s) * (d - (X + Y) ** 2)
 

@@ -153,7 +153,9 @@ def test_ground_that_was_left_just_now_is_found():
     motion = solve(drive, 0.26558088605703467, 0.0, end, 1e-8)
     after = [start + np.geomspace(1e-9, 1e-4, 40) for start in motion.starts]
     times = np.append(np.concatenate(after), 1.3465473545522675)
-    assert np.all(np.isfinite(motion.states(times[times < end])))
+    found = motion.states(times[times < end])
+    for name in found.dtype.names:
+        assert np.all(np.isfinite(found[name])), name
 
 
 def edges_by_f8(number, way, s):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.solved_scene import force_maxima
 from kvtheory.models.continuum.solver import solve
@@ -72,7 +71,7 @@ def impulse(motion):
     weights = np.tile(WEIGHTS / 2, 2) * 6 * x * (1 - x)
     low, high = np.array([*itertools.pairwise([*motion.starts, motion.end])]).T[..., None]
     t = np.minimum(low + (high - low) * x * x * (3 - 2 * x), high)
-    f_z = motion.states(t.reshape(-1))[:, e_.NORMAL_FORCE].reshape(t.shape)
+    f_z = motion.states(t.reshape(-1))["normal_force"].reshape(t.shape)
     gains = 4 / 3 * ((high - low) * np.exp(t - high) * f_z) @ weights
     U = scale = 4 / 3
     worst = 0.0

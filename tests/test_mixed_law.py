@@ -302,19 +302,14 @@ def test_the_symbol_of_the_damper_is_understood(key):
         )
 
 
-def test_what_follows_motion_by_the_continuum_refuses_it_in_one_sentence():
-    told = (
-        r"holds for foundation\.kind = .* only, not for arms beside foundation\.damping; `elements`"
-    )
-    with pytest.raises(ValueError, match=told):
-        kv.transient(scene())
+def test_without_a_damper_it_is_of_another_kind():
     assert scene().kind[1] == DAMPED
     assert scene(foundation=replace(MIXED, damping=0.0)).kind[1] == "generalized-maxwell"
 
 
-def test_solve_takes_elements():
+def test_solve_takes_the_continuum():
     found = kv.solve(scene(), at=[2e-3, 20e-3], rtol=0.02)
-    assert found.model == "elements"
+    assert found.model == "continuum"
     assert found.depth == pytest.approx([0.289390e-3, 0.172051e-3], rel=1e-3)
 
 

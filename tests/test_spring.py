@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.collocation import balances as balances_at
 from kvtheory.models.continuum.contact import motion
 from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.energy import ledger
-from kvtheory.models.continuum.radau_iia import balances as balances_at
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
@@ -23,8 +22,8 @@ from tests.test_transient_reference import worst
 
 TABLE = json.loads(ref.TABLE.read_text())
 COLUMNS = {
-    "d": e_.DEPTH, "v": e_.RATE, "x": e_.ALONG, "w": e_.ALONG_RATE,
-    "f_z": e_.NORMAL_FORCE, "f_x": e_.FRICTION_FORCE, "left": e_.LEFT, "right": e_.RIGHT,
+    "d": "depth", "v": "depth_rate", "x": "offset", "w": "offset_rate",
+    "f_z": "normal_force", "f_x": "friction_force",
 }  # fmt: skip
 
 
@@ -81,20 +80,20 @@ def test_energy_and_both_impulses_balance(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_a_reversed_drive_is_the_mirror_image(seed):
     there, back = (random_case(seed, sign).solved(1e-9).states([0.3, 1.0]) for sign in (1, -1))
-    for column in (e_.NUMBER, e_.ALONG, e_.SPRING_FORCE, e_.FRICTION_FORCE):
-        np.testing.assert_allclose(there[:, column], -back[:, column], atol=1e-6, rtol=0)
-    np.testing.assert_allclose(there[:, e_.DEPTH], back[:, e_.DEPTH], atol=1e-6, rtol=0)
+    for column in ("sliding_velocity", "offset", "spring_force", "friction_force"):
+        np.testing.assert_allclose(there[column], -back[column], atol=1e-6, rtol=0)
+    np.testing.assert_allclose(there["depth"], back["depth"], atol=1e-6, rtol=0)
 
 
 def test_a_spring_so_stiff_that_only_a_damper_saves_it_from_ringing():
     """Ten decades either side: the quasi-static limit along x, and a mass that hardly moves."""
     given = BaseMotion.constant(3.0, 2.0)
     stiff = solve(given, 0.05, 0.0, 2.0, 1e-8, spring=Spring(1e-3, 1e4, 1e10)).states([2.0])[0]
-    assert stiff[e_.SPRING_FORCE] == pytest.approx(stiff[e_.FRICTION_FORCE], abs=1e-4)
+    assert stiff["spring_force"] == pytest.approx(stiff["friction_force"], abs=1e-4)
     rigid = solve(given, 0.05, 0.0, 2.0, 1e-8).states([2.0])[0]
     heavy = solve(given, 0.05, 0.0, 2.0, 1e-8, spring=Spring(1e10, 0.0, 1.0)).states([2.0])[0]
     for row in (stiff, heavy):
-        assert row[e_.DEPTH] == pytest.approx(rigid[e_.DEPTH], abs=1e-7)
+        assert row["depth"] == pytest.approx(rigid["depth"], abs=1e-7)
 
 
 def test_events_of_one_swing_after_the_other_are_not_those_of_one_instant():

@@ -17,7 +17,7 @@ from kvtheory.api import elements
 from kvtheory.charts import naive
 from kvtheory.charts.naive import Array, Piece, scaled_scene
 from kvtheory.charts.work_precision import MISSED, NO_LIMIT, WRONG, Clock, Reference
-from kvtheory.models.continuum import evaluation, solver
+from kvtheory.models.continuum import solver
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion
@@ -192,13 +192,14 @@ def by_continuum(
     s = np.minimum(problem.times / units.time, drive.end)
     how: Any = {"fast": fast, "progress": clock.check}
     if problem.arms:
+        foundation = problem.scene.foundation
+        how["damper"] = foundation.damping / (foundation.stiffness * units.time)
         run: Any = trajectory.solve(drive, problem.arms, numbers, drive.end, rtol, **how)
         found = run.states(s, peaks=False)
         return Curves(found["depth"], found["friction_force"]), run.counts.evaluations
     motion = solver.solve(drive, *numbers, drive.end, rtol, **how)
-    found = motion.states(s).T
-    curves = Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE])
-    return curves, motion.counts.evaluations
+    found = motion.states(s)
+    return Curves(found["depth"], found["friction_force"]), motion.counts.evaluations
 
 
 def by_two_states(

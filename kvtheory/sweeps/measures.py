@@ -5,6 +5,7 @@ where nothing is compiled or events are requested, are solved one by one, into t
 """
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from time import thread_time
 from typing import Any
@@ -12,14 +13,16 @@ from typing import Any
 import numpy as np
 
 from kvtheory.compilation import ALIKE, Kernel
-from kvtheory.models.continuum import bulk, compiled, deviation, maxima
+from kvtheory.models.continuum import bulk, compiled, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
+from kvtheory.models.continuum.deviation import DEVIATION
+from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import solved_scene as on_arms
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import ROOM, begin, with_more_room
-from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
+from kvtheory.models.continuum.solved_scene import SERIES, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
 from kvtheory.records import readable
@@ -32,7 +35,7 @@ from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, UNSETTLED, Array, Column,
 from kvtheory.sweeps.prony_motion import PronyMotion
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
-PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
+PEAK = "friction_force", maxima.MAGNITUDE
 CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "friction_force"}
 """Scale of a value of the cycle, by its unit."""
 SETTLED = 0.01
@@ -58,6 +61,14 @@ def kernel_of(scene: Scene) -> Kernel:
     return trajectory.KERNEL if scene.foundation.arms else compiled.KERNEL
 
 
+def unknown(shape: tuple[int, ...]) -> Any:
+    """Return states of which no quantity is known."""
+    found = np.zeros(shape, STATE)
+    for name in SERIES:
+        found[name] = math.nan
+    return found
+
+
 def relative(statement: str) -> str:
     """Return a statement on errors for a table that also holds values of other models."""
     return f"{statement}; relative to {AT_REST}"
@@ -68,7 +79,7 @@ class _Motions:
 
     def __init__(self, plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> None:
         size = len(friction)
-        wanted = {(COLUMNS[c.base], SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
+        wanted = {(c.base, SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
         wanted |= {PEAK for c in plan.columns if c.measure == "peak_to_steady_friction"}
         self.plan, self.wanted = plan, sorted(wanted)
         names = estimate.unknown("", sprung=True).relative_error
@@ -81,13 +92,17 @@ class _Motions:
         self.found = bulk.Results(
             status=np.full(size, -1),
             other=np.full(size, -1),
-            deviations=np.zeros((size, deviation.SIZE)),
-            largest=np.full((size, len(self.wanted), 2), np.nan),
-            states=np.full((size, len(plan.times or ()), e_.SIZE), np.nan),
+            deviations=np.zeros(size, DEVIATION),
+            largest=np.zeros((size, len(self.wanted)), maxima.EXTREME),
+            states=unknown((size, len(plan.times or ()))),
             settled=np.full(size, np.nan),
             take_offs=np.zeros(size, dtype=np.int64),
-            last=np.full((size, e_.SIZE), np.nan),
+            last=unknown((size,)),
         )
+        extremes = self.found.largest
+        extremes["time"] = extremes["value"] = np.nan
+        extremes["quantity"] = [e_.MEASURED.index(name) for name, _ in self.wanted]
+        extremes["sense"] = [sense for _, sense in self.wanted]
         for index, scene in scenes.items():
             try:
                 units = scaled(scene)
@@ -143,19 +158,18 @@ class _Motions:
             np.cumsum([0, *(len(drive.pieces) for drive in drives)]),
             np.concatenate([drive.rows for drive in drives]),
         )
-        columns, senses = np.array(self.wanted, dtype=np.int64).reshape(-1, 2).T.copy()
         at = np.array(self.plan.times or (), dtype=float)
         times = np.minimum(at / np.array([[u.time] for u in units]), ends[:, None])
         samples = (maxima.SAMPLES + 1) * ROOM * 2**DOUBLINGS
-        instants, states = np.zeros((2, samples)), np.zeros((2, samples, e_.SIZE))
-        rows = np.zeros((2, e_.SIZE))
+        instants, states = np.zeros((2, samples)), np.zeros((2, samples), STATE)
+        rows = np.zeros(2, STATE)
         room = bulk.Workspace(instants[0], states[0], instants[1], states[1], rows)
         found = bulk.Results(*(array[indices] for array in self.found))
-        request = bulk.Request(columns, senses, times, SETTLED)
+        request = bulk.Request(times, SETTLED)
         compiled.follow(bulk.Bulk(scenes, request, room, found), runs[0], runs[1], STEP_LIMIT)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
-        deviations, given = found.deviations.T, readable(runs[0].given[0])
+        deviations, given = found.deviations, readable(runs[0].given[0])
         tolerance = max(scene.drive.tolerance for scene, _, _ in kept)
         errors = estimate.errors(
             deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
@@ -202,19 +216,20 @@ class _Motions:
         if measure == EVENTS:
             return self.texts
         if measure == "series":
-            values = found.states[..., COLUMNS[name]]
+            values = found.states[name]
         elif measure == "end":
-            values = found.last[:, COLUMNS[name]]
+            values = found.last[name]
         elif measure in SENSES:
-            when, values = found.largest[:, self.wanted.index((COLUMNS[name], SENSES[measure]))].T
+            extreme = found.largest[:, self.wanted.index((name, SENSES[measure]))]
+            values = extreme["value"]
             if measure == "time_of_max":
-                values, scale = when, "time"
+                values, scale = extreme["time"], "time"
         elif measure in CYCLE:
             values = self.cycles[:, list(CYCLE).index(measure)]
             scale = CYCLE_SCALES.get(column.unit, "")
         elif measure == "peak_to_steady_friction":  # not defined at rest
             steady = np.where(self.friction == 0.0, np.nan, np.abs(self.friction))
-            values = found.largest[:, self.wanted.index(PEAK), 1] / steady
+            values = found.largest["value"][:, self.wanted.index(PEAK)] / steady
             if np.isnan(found.settled[np.isfinite(values)]).any():
                 self.measured.statements.add(UNSETTLED)
         elif measure == "settling_time":  # counted from the last change of the drive

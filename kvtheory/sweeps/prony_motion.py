@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima
+from kvtheory.models.continuum.evaluation import MEASURED
 from kvtheory.models.continuum.prony.solved_scene import SolvedPronyScene
-from kvtheory.models.continuum.solved_scene import COLUMNS
 from kvtheory.sweeps.plan import Array
 
 GRID, ZOOMS, BESIDE = 65, 2, 2
@@ -19,7 +18,7 @@ two, as a step ends where the next starts. The time is known to 1/256 of the dis
 
 
 class PronyMotion:
-    """A solved motion with the interface of `continuum.solver.Trajectory`, and its columns of states."""
+    """A solved motion with the interface of `continuum.solver.Trajectory`."""
 
     def __init__(self, solution: SolvedPronyScene, peaks: bool) -> None:
         self.solution, self.peaks, self.end = solution, peaks, solution.end
@@ -30,33 +29,35 @@ class PronyMotion:
         """The events of the contact, and the force maxima."""
         return self.solution.events
 
-    def states(self, s: Any) -> Array:
+    def states(self, s: Any) -> Any:
         """Return the states at an array of scaled times; peak pressures only if they are wanted."""
         there = self.solution.motion.states(s, peaks=self.peaks)
-        found = np.full((there.size, e_.SIZE), math.nan)
         for name, values in self.solution.scaled_series(there, np.asarray(s)).items():
-            found[:, COLUMNS[name]] = values
-        found[:, e_.ALONG], found[:, e_.ALONG_RATE] = there["offset"], there["offset_rate"]
-        return found
+            there[name] = values
+        return there
 
     @cached_property
-    def samples(self) -> tuple[Array, Array, int]:
+    def samples(self) -> tuple[Array, Any, int]:
         """Times that divide each step, the last just before its end; the states there; the number of both."""
-        starts = self.solution.motion.steps["start"]
-        ends = np.append(starts[1:] * maxima.JUST_BEFORE, self.solution.motion.counts.s)
+        motion = self.solution.motion
+        starts = motion.steps["time"][motion.steps["lasts"] > 0.0]
+        ends = np.append(starts[1:] * maxima.JUST_BEFORE, motion.end)
         parts = np.linspace(0.0, 1.0, maxima.SAMPLES + 1)
         times = np.minimum(starts[:, None] + (ends - starts)[:, None] * parts, ends[:, None])
         times = np.minimum(times.reshape(-1), self.end)
         return times, self.states(times), times.size
 
-    def largest(self, *wanted: tuple[int, int]) -> Array:
-        """Return time and value of the extreme for each column of the states and sense, see `maxima`."""
-        return np.array([self._largest(*each) for each in wanted]).reshape(-1, 2)
+    def largest(self, *wanted: tuple[str, int]) -> Any:
+        """Return the extreme of each quantity in a sense, see `maxima.EXTREME`."""
+        found = [
+            (MEASURED.index(name), sense, *self._largest(name, sense)) for name, sense in wanted
+        ]
+        return np.array(found, maxima.EXTREME)
 
-    def _largest(self, column: int, sense: int) -> tuple[float, float]:
+    def _largest(self, name: str, sense: int) -> tuple[float, float]:
         times, found, _ = self.samples
         for _ in range(ZOOMS + 1):
-            values = found[:, column]
+            values = found[name]
             measured = np.abs(values) if sense == maxima.MAGNITUDE else sense * values
             k = int(
                 np.argmax(np.nan_to_num(measured, nan=-math.inf))
@@ -72,8 +73,8 @@ class PronyMotion:
         """Return the time from which friction stays within a share of `force`; NaN if it does not settle."""
         times, found, _ = self.samples
 
-        def outside(states: Array) -> Any:
-            return np.abs(states[:, e_.FRICTION_FORCE] - force) > share * abs(force)
+        def outside(states: Any) -> Any:
+            return np.abs(states["friction_force"] - force) > share * abs(force)
 
         late = np.flatnonzero(outside(found))
         if force == 0.0 or outside(found)[-1]:

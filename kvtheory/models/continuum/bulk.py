@@ -9,6 +9,7 @@ from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima as m_
 from kvtheory.models.continuum.run import Run
 from kvtheory.models.continuum.stepping import DONE, TAKE_OFF, walk
+from kvtheory.records import record
 
 
 class Scenes(NamedTuple):
@@ -26,13 +27,11 @@ class Scenes(NamedTuple):
 
 
 class Request(NamedTuple):
-    """What to measure: extremes of columns, each in a sense (see `maxima`), and states at scaled times.
+    """What to measure beside the extremes of the results: states at scaled times.
 
     `times` has a row for each scene. A motion is settled if friction stays within `share` of the steady one.
     """
 
-    columns: Any
-    senses: Any
     times: Any
     share: float
 
@@ -48,7 +47,7 @@ class Workspace(NamedTuple):
 
 
 class Results(NamedTuple):
-    """Status of both runs, deviations, extremes with their times, states at the times and at the end."""
+    """Status of both runs, deviations, extremes, states at the times and at the end, by scene."""
 
     status: Any
     other: Any
@@ -69,17 +68,19 @@ class Bulk(NamedTuple):
     results: Results
 
 
+SETTLING = record(force="f8", share="f8", time="f8")
+"""When friction stays within a share of a force."""
 WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 """Tasks of `perform`."""
 
 
 def perform(  # noqa: PLR0912  # a branch for each task
-    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any,
-    count: int, bulk: Bulk,
+    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, worst: Any, extremes: Any,
+    settling: Any, count: int, bulk: Bulk,
 ) -> int:  # fmt: skip
     """Perform a task: the only entry to the kernels, so that each of them is compiled once.
 
-    Arguments that a task does not need are blank. `values` is both input and output. The last task is to
+    Arguments that a task does not need are blank. The last task is to
     solve the scenes of `bulk` by the methods of both runs, in at most `count` steps each, and to measure the
     solutions; the status of a scene tells if it did not reach its end, or ran out of room. It stands here
     because numba would generate the code of all kernels once more for a function of its own.
@@ -93,15 +94,15 @@ def perform(  # noqa: PLR0912  # a branch for each task
     elif task == NATURAL:
         return e_.natural(one, times, states)
     elif task == DEVIATIONS:
-        d_.deviations(times, states, one, two, rows, values)
+        d_.deviations(times, states, one, two, rows, worst[0])
     elif task == SAMPLE:
         return m_.sample(one, times, states)
     elif task == LARGEST:
-        for i in range(0, len(values), 2):
-            column, sense = int(values[i]), int(values[i + 1])
-            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
+        for i in range(len(extremes)):
+            m_.find(one, times, states, count, extremes[i], rows[0])
     elif task == SETTLED:
-        values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
+        asked = settling[0]
+        asked.time = m_.settled(one, times, states, count, asked.force, asked.share, rows[0])
     if task != FOLLOW:
         return 0
 
@@ -122,9 +123,8 @@ def perform(  # noqa: PLR0912  # a branch for each task
             d_.deviations(natural, of_them, one, two, room.rows, results.deviations[i])
         times, states, row = room.times, room.samples, room.rows[0]
         found = m_.sample(one, times, states)
-        for k in range(len(request.columns)):
-            column, sense, extreme = request.columns[k], request.senses[k], results.largest[i][k]
-            extreme[0], extreme[1] = m_.largest(one, times, states, found, column, sense, row)
+        for k in range(len(results.largest[i])):
+            m_.find(one, times, states, found, results.largest[i][k], row)
         results.settled[i] = m_.settled(
             one, times, states, found, scenes.friction[i], request.share, row
         )
@@ -137,12 +137,14 @@ def perform(  # noqa: PLR0912  # a branch for each task
 
 
 _ROW, _ROWS, _COUNTS = np.zeros(0), np.zeros((0, 0)), np.zeros(0, dtype=np.int64)
+_STATES = np.zeros(0, e_.STATE)
 NO_BULK = Bulk(
     Scenes(_ROW, _ROW, _ROW, _ROW, _COUNTS, _ROWS),
-    Request(_COUNTS, _COUNTS, _ROWS, 0.0),
-    Workspace(_ROW, _ROWS, _ROW, _ROWS, _ROWS),
+    Request(_ROWS, 0.0),
+    Workspace(_ROW, _STATES, _ROW, _STATES, _STATES),
     Results(
-        _COUNTS, _COUNTS, _ROWS, np.zeros((0, 0, 2)), np.zeros((0, 0, 0)), _ROW, _COUNTS, _ROWS
+        _COUNTS, _COUNTS, np.zeros(0, d_.DEVIATION), np.zeros((0, 0), m_.EXTREME),
+        np.zeros((0, 0), e_.STATE), _ROW, _COUNTS, _STATES,
     ),
-)
+)  # fmt: skip
 """Placeholder for the tasks that need no scenes."""

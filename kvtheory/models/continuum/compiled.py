@@ -1,7 +1,7 @@
 """The kernels compiled by numba, from the same source that runs interpreted without it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,8 +9,10 @@ from kvtheory import records
 from kvtheory.compilation import Kernel
 from kvtheory.models.continuum import (
     bulk,
+    collocation,
     contact,
     deviation,
+    edge_states,
     evaluation,
     maxima,
     memory_chains,
@@ -22,16 +24,33 @@ from kvtheory.models.continuum import (
 from kvtheory.scene import base_motion
 
 MODULES = (
-    *(records, base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
-    *(evaluation, maxima, deviation, bulk),
+    *(records, base_motion, edge_states, radau_iia, run, contact, collocation, memory_chains),
+    *(trial_step, stepping, evaluation, maxima, deviation, bulk),
 )
 """Modules that contain kernels."""
 
-INLINED = base_motion, contact, radau_iia, "sliding_now", "_slack", "_probe"
+INLINED = base_motion, contact, collocation, "sliding_now", "_slack", "_probe"
 """Modules of short kernels that are called most often, and such functions of the others."""
 SECONDS = 14.0
 """Time to compile, once per installation."""
 
+
+class Arguments(NamedTuple):
+    """Times, states, two states of workspace, deviations, extremes and settling, see `bulk.perform`."""
+
+    times: Any
+    states: Any
+    rows: Any
+    worst: Any
+    extremes: Any
+    settling: Any
+
+
+NOTHING = Arguments(
+    np.zeros(0), np.zeros(0, evaluation.STATE), np.zeros(0, evaluation.STATE),
+    np.zeros(0, deviation.DEVIATION), np.zeros(0, maxima.EXTREME), np.zeros(0, bulk.SETTLING),
+)  # fmt: skip
+"""Those of a task that needs none."""
 KERNEL = Kernel(bulk.perform, MODULES, SECONDS, INLINED)
 
 
@@ -47,15 +66,9 @@ def chosen(run: Any) -> Callable[..., int]:
 
 def prepared(run: Any) -> bool:
     """Load or compile the kernels, for a run whose records are arrays; return whether that worked."""
-    room = bulk.NO_BULK.workspace
-    return KERNEL.prepared(
-        bulk.WALK, run, run, room.times, room.samples, room.rows, room.times, 0, bulk.NO_BULK
-    )
+    return KERNEL.prepared(bulk.WALK, run, run, *NOTHING, 0, bulk.NO_BULK)
 
 
 def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
     """Solve many scenes with compiled kernels, see `bulk.perform`."""
-    room = all_of.workspace
-    KERNEL(
-        bulk.FOLLOW, fine, other, room.times, room.samples, room.rows, np.zeros(2), steps, all_of
-    )
+    KERNEL(bulk.FOLLOW, fine, other, *NOTHING, steps, all_of)

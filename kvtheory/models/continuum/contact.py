@@ -23,15 +23,9 @@ right one; `run` describes the records.
 import math
 from typing import Any
 
+from kvtheory.models.continuum.edge_states import PEELING, SIDES
+from kvtheory.models.continuum.run import Run
 from kvtheory.scene.base_motion import evaluate
-
-PEELING, TOUCHING, FREE = 0, 1, 2
-"""States of an edge; both edges are free in flight."""
-
-SIDES = (-1.0, 1.0)
-"""Outward directions."""
-FAR = 1e150
-"""Outer end of undisturbed ground; its square is finite."""
 
 SWEEP_ERROR, FARTHEST_GUESS = 1e-15, 0.75
 """Allowed error of an edge due to that of sigma, in which it is stationary; largest fraction of a sweep, from
@@ -44,8 +38,6 @@ ROUNDING = 1e-15
 
 Instant = tuple[float, float, float, float, float, float]
 """d, v, v', Y, lambda, lambda' at one time."""
-Run = Any
-"""A `run.Run`; here its steps, its nodes and the pieces of its drive are read."""
 
 
 def motion(step: Any, s: float) -> tuple[float, float, float]:

@@ -16,9 +16,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima
+from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.solver import Trajectory
+from kvtheory.records import structured
 
 Array = NDArray[np.float64]
 
@@ -60,12 +61,13 @@ def cycle(motion: Trajectory) -> Cycle:
     if not motion.given.sprung:
         raise ValueError("a cycle needs a drive with a spring: `drive.stiffness`")
     times, found, count = motion.samples
-    s, states = np.array(times[:count]), np.array(found[:count])
-    speed, late = STEADY * np.abs(states[:, e_.NUMBER]).max(), s >= LAST * motion.end
-    if np.all(np.abs(states[late, e_.ALONG_RATE]) <= speed):
-        number, force = (states[-1, column] for column in (e_.NUMBER, e_.FRICTION_FORCE))
+    s, states = np.array(times[:count]), structured(found[:count], STATE)
+    rates, late = states["offset_rate"], s >= LAST * motion.end
+    speed = STEADY * np.abs(states["sliding_velocity"]).max()
+    if np.all(np.abs(rates[late]) <= speed):
+        number, force = (states[name][-1] for name in ("sliding_velocity", "friction_force"))
         return Cycle(1.0, 0.0, math.nan, number, number, force, force)
-    turns, x = _turns(motion, s, states[:, e_.ALONG_RATE])
+    turns, x = _turns(motion, s, rates)
     ends, sizes = _cycles(turns, x)
     stride, limit = _limit(sizes)
     if math.isnan(limit):
@@ -87,9 +89,9 @@ def _turns(motion: Trajectory, s: Array, rate: Array) -> tuple[Array, Array]:
     low, high = s[k], s[k + 1]
     for _ in range(maxima.BISECTIONS if k.size else 0):
         middle = 0.5 * (low + high)
-        same = (motion.states(middle)[:, e_.ALONG_RATE] > 0.0) == up[k]
+        same = (motion.states(middle)["offset_rate"] > 0.0) == up[k]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return high, motion.states(high)[:, e_.ALONG]
+    return high, motion.states(high)["offset"]
 
 
 def _cycles(turns: Array, x: Array) -> tuple[Array, Array]:
@@ -144,7 +146,7 @@ def _aitken(values: Array) -> float:
 
 def _measured(motion: Trajectory, start: float, end: float) -> Array:
     """Return the amplitude, the period and the extremes of one cycle."""
-    within = motion.states(np.linspace(start, end, POINTS)).T
-    x, number, force = within[[e_.ALONG, e_.NUMBER, e_.FRICTION_FORCE]]
+    within = motion.states(np.linspace(start, end, POINTS))
+    x, number, force = (within[name] for name in ("offset", "sliding_velocity", "friction_force"))
     extremes = number.max(), number.min(), force.max(), force.min()
     return np.array([0.5 * np.ptp(x), end - start, *extremes])

@@ -12,24 +12,16 @@ from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.run import Run, step_at
 from kvtheory.models.continuum.stepping import TAKE_OFF
 from kvtheory.models.continuum.trial_step import EVENT_RESOLUTION
+from kvtheory.records import record
 
-DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
-"""Layout of the deviations: of the quantities in scaled form, and of the times of take-offs and landings."""
-EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING, HOP_ROUNDING = range(7, 12)
-"""Effects of rounding: on the edges, and through them on the forces and the peak pressure; through the gap,
-on the time of a landing."""
-NUMBER, SPRING_FORCE, ALONG, DRIVE = range(12, 16)
-"""Sliding velocity of the base; force and elongation of a spring in the drive; the drive itself."""
-SIZES = 16
-"""From here on, the largest magnitude of each quantity; it stays zero for the effects of rounding."""
-SIZE = 2 * SIZES
-PAIRS = (
-    (DEPTH, e_.DEPTH), (RATE, e_.RATE), (NORMAL_FORCE, e_.NORMAL_FORCE),
-    (FRICTION_FORCE, e_.FRICTION_FORCE), (EDGES, e_.LEFT), (EDGES, e_.RIGHT),
-    (PEAK_PRESSURE, e_.PEAK_PRESSURE), (NUMBER, e_.NUMBER), (SPRING_FORCE, e_.SPRING_FORCE),
-    (ALONG, e_.ALONG), (DRIVE, e_.DRIVE),
+_ALL = "f8", (len(e_.MEASURED),)
+DEVIATION = record(
+    apart=_ALL, size=_ALL, hops="f8", edge_rounding="f8", normal_rounding="f8", friction_rounding="f8",
+    peak_rounding="f8", hop_rounding="f8",
 )  # fmt: skip
-"""Each quantity, and its column in a state."""
+"""The largest difference of each of the `MEASURED` quantities, and its largest magnitude; the difference of
+the times of take-offs and landings; effects of rounding: on the edges, and through them on the forces and the
+peak pressure; through the gap, on the time of a landing."""
 
 
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
@@ -44,7 +36,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
         s = times[i]
         while alike and next_f >= 0 and fine.events[next_f].s <= s:
             rounding = _hop_rounding(fine, fine.events[next_f].s, rows[1])
-            worst[HOP_ROUNDING] = max(worst[HOP_ROUNDING], rounding)
+            worst.hop_rounding = max(worst.hop_rounding, rounding)
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
         e_.state_at(other, step_at(other, s), s, rows[0])
@@ -54,7 +46,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
                 if f < 0:
                     continue
                 here, there = fine.events[f].s, other.events[o].s
-                worst[HOPS] = max(worst[HOPS], abs(there - here))
+                worst.hops = max(worst.hops, abs(there - here))
                 if abs(s - here) <= abs(there - here):
                     then = min(max(there + (s - here), 0.0), other.now.s)
                     e_.state_at(other, step_at(other, then), then, rows[1])
@@ -62,7 +54,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
         _raise(worst, found[i], rows[0], rows[shifted])
         if not alike:
             _raise(worst, found[i], found[0], found[0])
-            worst[HOPS] = max(worst[HOPS], other.now.s)
+            worst.hops = max(worst.hops, other.now.s)
 
 
 def hops(run: Run) -> int:
@@ -85,25 +77,27 @@ def _hop_rounding(run: Run, s: float, row: Any) -> float:
     """Return the rounding error of the time of a hop; at a landing, the pressure is the closing rate."""
     index, found = step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
-    if row[e_.PEAK_PRESSURE] > 0.0:
-        Y = row[e_.LEFT] - run.steps[index].sides[0].X
-        found += e_.UNIT * (1.0 + abs(Y)) / row[e_.PEAK_PRESSURE]
+    if row.peak_pressure > 0.0:
+        Y = row.edges[0] - run.steps[index].sides[0].X
+        found += e_.UNIT * (1.0 + abs(Y)) / row.peak_pressure
     return found
 
 
 def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
     """Raise the deviations to those of `row` from the nearer of two other states, in each quantity."""
-    for k, i in PAIRS:
-        value = _known(row[i])
-        worst[SIZES + k] = max(worst[SIZES + k], abs(value))
-        worst[k] = max(worst[k], min(abs(value - _known(one[i])), abs(value - _known(two[i]))))
-    rounding, pressure = row[e_.ROUNDING], row[e_.PEAK_PRESSURE]
-    arm = max(abs(_known(row[e_.LEFT])), abs(_known(row[e_.RIGHT])))
-    worst[EDGE_ROUNDING] = max(worst[EDGE_ROUNDING], rounding)
-    worst[NORMAL_ROUNDING] = max(worst[NORMAL_ROUNDING], 0.75 * pressure * rounding)
-    steepest = 2.0 * (abs(row[e_.NUMBER]) + arm)
-    worst[PEAK_ROUNDING] = max(worst[PEAK_ROUNDING], steepest * rounding)
-    worst[FRICTION_ROUNDING] = max(worst[FRICTION_ROUNDING], 1.5 * arm * pressure * rounding)
+    values, ones, twos = e_.measured(row), e_.measured(one), e_.measured(two)
+    for k in range(len(values)):
+        value = _known(values[k])
+        apart = min(abs(value - _known(ones[k])), abs(value - _known(twos[k])))
+        worst.size[k] = max(worst.size[k], abs(value))
+        worst.apart[k] = max(worst.apart[k], apart)
+    rounding, pressure = row.rounding, row.peak_pressure
+    arm = max(abs(_known(row.edges[0])), abs(_known(row.edges[1])))
+    worst.edge_rounding = max(worst.edge_rounding, rounding)
+    worst.normal_rounding = max(worst.normal_rounding, 0.75 * pressure * rounding)
+    steepest = 2.0 * (abs(row.sliding_velocity) + arm)
+    worst.peak_rounding = max(worst.peak_rounding, steepest * rounding)
+    worst.friction_rounding = max(worst.friction_rounding, 1.5 * arm * pressure * rounding)
 
 
 def _known(value: float) -> float:

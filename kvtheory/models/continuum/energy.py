@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.models.continuum.surface import Array, integrals, kept, relaxing
 
@@ -57,6 +56,9 @@ class Ledger:
         return Ledger(*(unit * entry for entry in astuple(self)))
 
 
+MOVING = "depth", "depth_rate", "offset", "offset_rate"
+
+
 def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape.
 
@@ -71,26 +73,26 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
 
     def powers(_: Any, t: Array) -> Array:
         """Return the power of the drive, and those dissipated in contact, behind it and in the damper."""
-        found = motion.states(t.reshape(-1)).T
-        l, r, v, number, rate = found[[e_.LEFT, e_.RIGHT, e_.RATE, e_.NUMBER, e_.ALONG_RATE]]
+        found = motion.states(t.reshape(-1))
+        (l, r), v, number = found["edges"].T, found["depth_rate"], found["sliding_velocity"]
         thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)
         inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
         rows = (
-            found[e_.DRIVE] * found[e_.FRICTION_FORCE],
+            found["velocity"] * found["friction_force"],
             np.where(np.isnan(l), 0.0, inside),  # in flight there are no edges
             0.75 * relaxing(motion, t.reshape(-1).tolist(), 2, memory),
-            given.damping * rate**2,
+            given.damping * found["offset_rate"] ** 2,
         )
         return np.stack(rows, axis=-1).reshape(*t.shape, len(rows))
 
     sums = accumulated(lambda low, high: integrals(powers, low, high), motion.starts, flat)
-    found = motion.states(flat).T
-    d, l, r = found[[e_.DEPTH, e_.LEFT, e_.RIGHT]]
+    found = motion.states(flat)
+    d, (l, r) = found["depth"], found["edges"].T
     stored = (
         np.where(np.isnan(l), 0.0, _stored(d, l, r)),
         0.375 * relaxing(motion, flat.tolist(), 2, memory),
     )
-    moving = found[[e_.DEPTH, e_.RATE, e_.ALONG, e_.ALONG_RATE]]
+    moving = np.array([found[name] for name in MOVING])
     return entries(given, moving, sums, stored, times.shape)
 
 

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import deviation as d_
+from kvtheory.models.continuum.deviation import DEVIATION
+from kvtheory.models.continuum.evaluation import MEASURED
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.results.certificate import AT_REST, Certificate
@@ -62,7 +63,7 @@ def certificate(
 
 def unknown(why: str, *, sprung: bool = False) -> Certificate:
     """Return the certificate of a transient whose error is unknown."""
-    nothing = [0.0] * d_.SIZE
+    nothing = np.zeros((), DEVIATION)
     names = errors(nothing, nothing, 1.0, False, sprung=sprung, tolerance=1.0)
     return Certificate("estimated", why, dict.fromkeys(names, math.inf) | {"time": 0.0}, AT_REST)
 
@@ -77,29 +78,39 @@ def errors(
     sigma (fact F8): its error comes from the largest error of the depth so far, and from that of the sliding
     distance since then, which includes the position along x. Deviations may be arrays over many scenes.
     """
-    moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), np.asarray(whole[d_.SIZES :])
-    floor = FLOOR * rtol * (1.0 + sizes)
+    moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), _named(whole["size"])
+    apart, ever_apart = _named(here["apart"]), _named(whole["apart"])
+    floors = {name: FLOOR * rtol * (1.0 + size) for name, size in sizes.items()}
     at_times, ever = (
-        np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), floor) for of in (here, whole)
+        {name: np.maximum(MARGIN * each[name], floor) for name, floor in floors.items()}
+        for each in (apart, ever_apart)
     )
-    edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
-    depth, arm = moves * ever[d_.DEPTH], sizes[d_.EDGES]
-    drive = tolerance * (1.0 + sizes[d_.DRIVE])
-    way = slides * 2.0 * ever[d_.ALONG] + drive + 2.0 * whole[d_.EDGE_ROUNDING]
-    sliding = at_times[d_.NUMBER] + drive
-    spring = {"sliding_velocity": sliding, "spring_force": at_times[d_.SPRING_FORCE]}
+    edges = at_times["edges"] + here["edge_rounding"]
+    depth, arm = moves * ever["depth"], sizes["edges"]
+    drive = tolerance * (1.0 + sizes["velocity"])
+    way = slides * 2.0 * ever["offset"] + drive + 2.0 * whole["edge_rounding"]
+    sliding = at_times["sliding_velocity"] + drive
+    spring = {"sliding_velocity": sliding, "spring_force": at_times["spring_force"]}
+    slid = slides * ever["sliding_velocity"] + drive
+    hops = np.maximum(MARGIN * whole["hops"], FLOOR * rtol)
     return {
         "time": 0.0,
         "velocity": drive,
-        "depth": moves * at_times[d_.DEPTH],
-        "depth_rate": moves * at_times[d_.RATE],
-        "normal_force": at_times[d_.NORMAL_FORCE] + here[d_.NORMAL_ROUNDING],
-        "friction_force": at_times[d_.FRICTION_FORCE] + here[d_.FRICTION_ROUNDING],
+        "depth": moves * at_times["depth"],
+        "depth_rate": moves * at_times["depth_rate"],
+        "normal_force": at_times["normal_force"] + here["normal_rounding"],
+        "friction_force": at_times["friction_force"] + here["friction_rounding"],
         "leading_edge": edges,
         "trailing_edge": edges,
-        "peak_pressure": at_times[d_.PEAK_PRESSURE] + here[d_.PEAK_ROUNDING],
-        "pressure": depth + moves * ever[d_.RATE] + 2.0 * arm * (slides * ever[d_.NUMBER] + drive),
+        "peak_pressure": at_times["peak_pressure"] + here["peak_rounding"],
+        "pressure": depth + moves * ever["depth_rate"] + 2.0 * arm * slid,
         "surface": depth + 2.0 * arm * way,
-        "jump_time": moves * (ever[d_.HOPS] + whole[d_.HOP_ROUNDING]),
+        "jump_time": moves * (hops + whole["hop_rounding"]),
         **(spring if sprung else {}),
     }
+
+
+def _named(values: Any) -> dict[str, Array]:
+    """Return values of the measured quantities by name, and the larger one of both edges."""
+    found = dict(zip(MEASURED, np.moveaxis(np.asarray(values), -1, 0), strict=True))
+    return {**found, "edges": np.maximum(found["left_edge"], found["right_edge"])}

@@ -4,17 +4,26 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum.contact import FREE, instant, motion
+from kvtheory.models.continuum.contact import instant, motion
+from kvtheory.models.continuum.edge_states import FREE
 from kvtheory.models.continuum.run import Run, step_at
+from kvtheory.records import record
 from kvtheory.scene.base_motion import END, START, evaluate
 
-DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
-LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
-DRIVE, ALONG, ALONG_RATE, SPRING_FORCE, LEADING, TRAILING = range(12, 18)
-SIZE = 18
-"""Columns of a state, in scaled form; edges are NaN in flight. `NUMBER` is the drive number of the base under
-the indenter, `ROUNDING` the rounding error of an edge, which is large on ground that was left just before.
-`DRIVE` is the drive number; x, x' and the force of spring and damper are zero for a rigid drive."""
+STATE = record(
+    depth="f8", depth_rate="f8", acceleration="f8", sliding_velocity="f8", velocity="f8", way="f8",
+    offset="f8", offset_rate="f8", spring_force="f8", edges=("f8", (2,)), edge_states=("i8", (2,)),
+    leading_edge="f8", trailing_edge="f8", normal_force="f8", friction_force="f8",
+    peak_pressure="f8", rounding="f8",
+)  # fmt: skip
+"""A state in scaled form: d, d', d'', lambda of the base under the indenter and of the drive, Y, x, x', the
+force of spring and damper, both edges (NaN in flight) and their states, both forces, the largest pressure,
+and the rounding error of an edge, which is large on ground that was left just before."""
+MEASURED = (
+    "depth", "depth_rate", "normal_force", "friction_force", "peak_pressure", "sliding_velocity",
+    "velocity", "offset", "spring_force", "leading_edge", "trailing_edge", "left_edge", "right_edge",
+)  # fmt: skip
+"""Quantities of which extremes and deviations are asked."""
 
 SUBDIVISIONS = 4
 """Points shown for each step; steps are long where the motion is steady."""
@@ -23,8 +32,17 @@ UNIT = 4e-16
 """Rounding of d and Y, relative to 1 + |Y|."""
 
 
+def measured(state: Any) -> Any:
+    """Return the `MEASURED` quantities of a state."""
+    return (
+        state.depth, state.depth_rate, state.normal_force, state.friction_force,
+        state.peak_pressure, state.sliding_velocity, state.velocity, state.offset,
+        state.spring_force, state.leading_edge, state.trailing_edge, state.edges[0], state.edges[1],
+    )  # fmt: skip
+
+
 def states(times: Any, found: Any, run: Run) -> None:
-    """Write the state at each of the `times` into a row of `found`.
+    """Write the state at each of the `times` into a record of `found`.
 
     Where the drive jumps, it is the state just after the jump.
     """
@@ -69,20 +87,21 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
             rounding = UNIT * (1.0 + abs(Y)) * max(abs(l_d), abs(r_d))
         f_z, f_x = c_.forces(l, r, d, v, number)
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
-    found[DEPTH], found[RATE], found[ACCELERATION], found[NUMBER] = d, v, dv, number
-    found[LEFT], found[RIGHT] = l, r
+    found.depth, found.depth_rate, found.acceleration = d, v, dv
+    found.sliding_velocity, found.velocity, found.way = number, number, Y
+    found.edges[0], found.edges[1] = l, r
     leads = number > 0.0 or (number == 0.0 and forward(run, step, s))
-    found[LEADING], found[TRAILING] = (l, r) if leads else (r, l)
-    found[LEFT_STATE], found[RIGHT_STATE] = left.state, right.state
-    found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
-    found[PEAK_PRESSURE], found[ROUNDING] = p, rounding
-    found[DRIVE], found[ALONG], found[ALONG_RATE], found[SPRING_FORCE] = number, 0.0, 0.0, 0.0
+    found.leading_edge, found.trailing_edge = (l, r) if leads else (r, l)
+    found.edge_states[0], found.edge_states[1] = left.state, right.state
+    found.normal_force, found.friction_force = f_z, f_x
+    found.peak_pressure, found.rounding = p, rounding
+    found.offset, found.offset_rate, found.spring_force = 0.0, 0.0, 0.0
     if run.given.sprung:
         along = run.along[index]
-        found[DRIVE] = evaluate(run.pieces[along.piece], s)[1]
-        found[ALONG], found[ALONG_RATE], _ = motion(along, s)
+        found.velocity = evaluate(run.pieces[along.piece], s)[1]
+        found.offset, found.offset_rate, _ = motion(along, s)
         spring, damping = run.given.spring, run.given.damping
-        found[SPRING_FORCE] = spring * found[ALONG] + damping * found[ALONG_RATE]
+        found.spring_force = spring * found.offset + damping * found.offset_rate
 
 
 def forward(run: Run, step: Any, s: float) -> bool:

@@ -4,7 +4,8 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum.contact import FREE, SIDES, TOUCHING, instant
+from kvtheory.models.continuum.contact import instant
+from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
 from kvtheory.models.continuum.run import Run
 
 SUMMIT_RTOL = 1e-9

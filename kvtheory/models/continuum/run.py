@@ -10,12 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.contact import FAR, FREE, SIDES, TOUCHING
+from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import MOST_PROBES, MOST_STAGES, radau, stages_for
 from kvtheory.records import blanks, filled, new, record, structured
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
+FAR = 1e150
+"""Outer end of undisturbed ground; its square is finite."""
 ROOM = 64
 """Initial capacity in steps; a start from rest takes about thirty."""
 PER_STEP, EVENTS_PER_STEP = 8, 8

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima
+from kvtheory.models.continuum.edge_states import STATE_NAMES
 from kvtheory.models.continuum.energy import Ledger, ledger
 from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
 from kvtheory.models.continuum.run import Spring, StepControl
-from kvtheory.models.continuum.solver import STATE_NAMES, STEP_LIMIT, Trajectory, solve
+from kvtheory.models.continuum.solver import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
@@ -30,13 +30,11 @@ AFTER_END = 1e-12
 TO_A_CHANGE = 0.5 * AFTER_END
 """Share of the run by which it is extended if the drive changes so close to its end that both count as one
 time: the solver then includes the change."""
-COLUMNS = {
-    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
-    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
-    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
-    "leading_edge": e_.LEADING, "trailing_edge": e_.TRAILING,
-}  # fmt: skip
-"""Column of each quantity in the states."""
+SERIES = (
+    "velocity", "sliding_velocity", "spring_force", "depth", "depth_rate", "normal_force",
+    "friction_force", "peak_pressure", "leading_edge", "trailing_edge",
+)  # fmt: skip
+"""The quantities of a series, which are fields of the states."""
 STEPS_A_PIECE = 100
 """Upper bound on the steps for one piece of a drive; a stop takes 25."""
 
@@ -103,20 +101,16 @@ class SolvedScene(ScaledMotion):
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        found, own = self.states(time), scales(self.units)
-        left, right = found[e_.LEFT_STATE], found[e_.RIGHT_STATE]
-        leads = found[e_.LEADING] == found[e_.LEFT]
+        found, own = self.motion.states(self.scaled(time)), scales(self.units)
+        left, right = found["edge_states"].T
+        leads = found["leading_edge"] == found["edges"][:, 0]
         leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
         return {
             "time": np.asarray(time, dtype=float),
-            **{name: found[at] * own[name] for name, at in COLUMNS.items() if name in own},
+            **{name: found[name] * own[name] for name in SERIES if name in own},
             "leading_state": tuple(map(STATE_NAMES.__getitem__, leading.tolist())),
             "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
         }
-
-    def states(self, time: ArrayLike) -> Array:
-        """Return the scaled states at the times (s): a row for each quantity of `states`."""
-        return self.motion.states(self.scaled(time)).T
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
@@ -156,8 +150,8 @@ def transient(
 
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return the times at which f_z and |f_x| are largest, each the first one from s = 0 on."""
-    forces = ((column, maxima.MAGNITUDE) for column in (e_.NORMAL_FORCE, e_.FRICTION_FORCE))
-    normal, friction = motion.largest(*forces)[:, 0].tolist()
+    forces = ((name, maxima.MAGNITUDE) for name in ("normal_force", "friction_force"))
+    normal, friction = motion.largest(*forces)["time"].tolist()
     return normal, friction
 
 

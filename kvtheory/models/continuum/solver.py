@@ -3,7 +3,7 @@ r"""The whole transient without discretizing the foundation: one equation of mot
     eps d'' = 1 - f_z - kappa (d - 1),    d(0) = 1, d'(0) = 0, at rest for s < 0
 
 with f_z in closed form in d, d', lambda and the two edges (fact F11), and another equation along x if the
-drive has a spring (`radau_iia`). Between events the right-hand side is smooth; a step that runs over an
+drive has a spring (`collocation`). Between events the right-hand side is smooth; a step that runs over an
 event is cut there, for its polynomial continues the states of the edges that it began with. A fixed
 indenter, d = 1, needs no equation along z, only events.
 """
@@ -23,9 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, maxima, stepping
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.compiled import NOTHING
+from kvtheory.models.continuum.edge_states import STATE_NAMES, TOUCHING
 from kvtheory.models.continuum.run import Run, Spring, StepControl
-from kvtheory.records import readable, structured, value
+from kvtheory.records import blanks, readable, set_fields, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
@@ -37,7 +38,6 @@ REASONS = {
     stepping.STUCK: "the step length went to zero",
     stepping.INCONSISTENT: "no consistent state of the edges",
 }
-STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 REVERSAL = "sliding reverses"
 """Kind of an event that occurs on a spring only."""
 
@@ -169,23 +169,22 @@ class Trajectory:
 
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
-        row = self.states([s])[0].tolist()
-        for side in (evaluation.LEFT_STATE, evaluation.RIGHT_STATE):
-            row[side] = STATE_NAMES[row[side]]
-        return Moment(s, *row[: evaluation.PEAK_PRESSURE])
+        row = self.states([s])[0]
+        names = (STATE_NAMES[state] for state in row["edge_states"].tolist())
+        motion = (row[name] for name in ("depth", "depth_rate", "acceleration", "sliding_velocity"))
+        forces = row["normal_force"], row["friction_force"]
+        return Moment(s, *map(float, (*motion, *row["edges"])), *names, *map(float, forces))
 
-    def states(self, s: ArrayLike) -> NDArray[np.float64]:
-        """Return the states at an array of times: a row for each, with the columns of `evaluation`."""
+    def states(self, s: ArrayLike) -> NDArray[Any]:
+        """Return the states at an array of times as a structured array, see `evaluation.STATE`."""
         times = np.asarray(s, dtype=float)
         if not ((times >= 0.0) & (times <= self.end)).all():
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        found = self._rows(np.empty((len(times), evaluation.SIZE)))
+        found = self._records(len(times), evaluation.STATE)
         self._perform(bulk.STATES, self._rows(times), found)
-        return np.asarray(found).reshape(-1, evaluation.SIZE)
+        return np.asarray(structured(found, evaluation.STATE))
 
-    def deviations(
-        self, other: "Trajectory", times: NDArray[np.float64] | None = None
-    ) -> list[float]:
+    def deviations(self, other: "Trajectory", times: NDArray[np.float64] | None = None) -> Any:
         """Return the `deviation` of another solution at the `times`, by default the natural ones."""
         if self.compiled != other.compiled:
             one, two = (Trajectory(r_.as_arrays(motion.run)) for motion in (self, other))
@@ -194,10 +193,11 @@ class Trajectory:
             at, found = self._natural
         else:
             at = np.sort(times)
-            found = self._rows(self.states(at))
-        worst = self._rows(np.zeros(deviation.SIZE))
-        self._perform(bulk.DEVIATIONS, self._rows(at), found, worst, other=other.run)
-        return list(np.asarray(worst).tolist())
+            found = self._records(len(at), evaluation.STATE)
+            self._perform(bulk.STATES, self._rows(at), found)
+        worst = self._records(1, deviation.DEVIATION)
+        self._perform(bulk.DEVIATIONS, self._rows(at), found, worst=worst, other=other.run)
+        return structured(worst, deviation.DEVIATION)[0]
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
@@ -205,36 +205,44 @@ class Trajectory:
         times, found = self._room((maxima.SAMPLES + 1) * self.counts.steps)
         return times, found, self._perform(bulk.SAMPLE, times, found)
 
-    def largest(self, *wanted: tuple[int, int]) -> NDArray[np.float64]:
-        """Return time and value of the extreme for each column of the states and sense, see `maxima`."""
+    def largest(self, *wanted: tuple[str, int]) -> NDArray[Any]:
+        """Return the extreme of each quantity in a sense as structured array, see `maxima.EXTREME`."""
         times, found, count = self.samples
-        values = self._rows(np.array(wanted, dtype=float).reshape(-1))
-        self._perform(bulk.LARGEST, times, found, values, count)
-        return np.array(values).reshape(-1, 2)
+        extremes = self._records(len(wanted), maxima.EXTREME)
+        for extreme, asked in zip(extremes, wanted, strict=True):
+            set_fields(extreme, quantity=evaluation.MEASURED.index(asked[0]), sense=asked[1])
+        self._perform(bulk.LARGEST, times, found, extremes=extremes, count=count)
+        return np.asarray(structured(extremes, maxima.EXTREME))
 
     def settled(self, force: float, share: float) -> float:
         """Return the time from which the friction force is settled, see `maxima`."""
         times, found, count = self.samples
-        values = self._rows(np.array([force, share], dtype=float))
-        self._perform(bulk.SETTLED, times, found, values, count)
-        return float(values[0])
+        settling = self._records(1, bulk.SETTLING)
+        set_fields(settling[0], force=force, share=share)
+        self._perform(bulk.SETTLED, times, found, settling=settling, count=count)
+        return float(value(settling[0], "time"))
 
     def _perform(
-        self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
+        self, task: int, times: Any, found: Any, *, worst: Any = NOTHING.worst,
+        extremes: Any = NOTHING.extremes, settling: Any = NOTHING.settling, count: int = 0,
+        other: Any = None,
     ) -> int:  # fmt: skip
-        _, rows = self._two
         return compiled.chosen(self.run)(
-            task, self.run, other or self.run, times, found, rows,
-            rows[0] if values is None else values, count, bulk.NO_BULK,
+            task, self.run, other or self.run, times, found, self._two, worst, extremes, settling,
+            count, bulk.NO_BULK,
         )  # fmt: skip
 
     @cached_property
-    def _two(self) -> tuple[Any, Any]:
-        return self._room(2)
+    def _two(self) -> Any:
+        return self._records(2, evaluation.STATE)
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
-        return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
+        return self._rows(np.empty(count)), self._records(count, evaluation.STATE)
+
+    def _records(self, count: int, kind: np.dtype[Any]) -> Any:
+        """Return blank records, as the kernels need them."""
+        return np.zeros(count, kind) if self.compiled else blanks(count, kind)
 
     def _rows(self, array: Any) -> Any:
         """Return an array as the kernels need it: contiguous, or as lists if they are interpreted."""
@@ -275,7 +283,7 @@ def solve(
     run = r_.begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
     if arrays and not compiled.prepared(run):
         run = r_.as_objects(run)
-    room, left, status = bulk.NO_BULK.workspace, max_steps, stepping.PAUSED
+    left, status = max_steps, stepping.PAUSED
     while status != stepping.DONE:
         if (
             not compiled.in_use(run)
@@ -287,9 +295,8 @@ def solve(
             run = as_arrays if compiled.prepared(as_arrays) else run
         with nullcontext() if compiled.in_use(run) else kernel.interpreting():
             status = compiled.chosen(run)(
-                bulk.WALK, run, run, room.times, room.samples, room.rows, room.times,
-                min(ATTEMPTS, left), bulk.NO_BULK,
-            )  # fmt: skip
+                bulk.WALK, run, run, *NOTHING, min(ATTEMPTS, left), bulk.NO_BULK
+            )
         now, took = run.now[0], thread_time() - begun
         left = max_steps - int(value(now, "steps") + value(now, "rejected"))
         s = float(value(now, "s"))

@@ -5,7 +5,8 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import memory_chains as m_
-from kvtheory.models.continuum.contact import FREE, PEELING, SIDES, TOUCHING, motion
+from kvtheory.models.continuum.contact import motion
+from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES, TOUCHING
 from kvtheory.models.continuum.run import Run, has_room, rest
 from kvtheory.models.continuum.trial_step import Monitors, attempt, begin_along, sliding_now
 from kvtheory.scene import base_motion as b_

@@ -10,8 +10,8 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.contact import SIDES, instant
+from kvtheory.models.continuum.contact import instant
+from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES
 from kvtheory.models.continuum.run import NODE, PLACE, step_at
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.records import new, structured
@@ -82,7 +82,7 @@ def relaxing(
     """Return the integral of u^`power` outside the contact at each time; `memory` comes from `kept`."""
     total = np.zeros(len(times))
     nodes, owners = [], []
-    edges = motion.states(times)[:, [evaluation.LEFT, evaluation.RIGHT]].tolist()
+    edges = motion.states(times)["edges"].tolist()
     for i, s in enumerate(times):
         for k in range(2):
             front, index = _front(motion, k, s, edges[i][k])
@@ -121,9 +121,9 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any]
     d, v, _, Y, number, _ = instant(run, index, s)
     step, held, side = run.steps[index], run.steps[index].sides[k], SIDES[k]
     top = held.node
-    if held.state == c_.FREE or (held.state == c_.PEELING and s == step.start):
+    if held.state == FREE or (held.state == PEELING and s == step.start):
         return [], top
-    if held.state == c_.PEELING:
+    if held.state == PEELING:
         then = instant(run, index, step.start)
         inner = c_.root(side, number, d + v)[0] - Y, s, d, Y
         outer = held.X, step.start, then[0], then[3]

@@ -35,7 +35,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.prony.records import NEVER, PEELING, SIDES, TOUCHING, Run
+from kvtheory.models.continuum.edge_states import PEELING, SIDES, TOUCHING
+from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.scene.base_motion import DISPLACEMENT, START, evaluate
 
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11

@@ -30,18 +30,16 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum.energy import Ledger, entries
+from kvtheory.models.continuum.edge_states import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.energy import MOVING, Ledger, entries
 from kvtheory.models.continuum.prony.records import (
     ARM,
     ARM_STATE,
-    FREE,
     MODE,
     NEVER,
-    PEELING,
     PIECE,
     POLYNOMIAL,
     SEGMENT,
-    TOUCHING,
     named,
     together,
 )
@@ -396,6 +394,6 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     sums = np.array([ground.spent(t, given.damping) for t in clock.tolist()]).reshape(-1, 4).T
     states, (within, outside) = motion.states(flat, peaks=False), ground.integrals(clock)
     sums[2] += 0.75 * outside.lost
-    moving = np.array([states[name] for name in ("depth", "depth_rate", "offset", "offset_rate")])
+    moving = np.array([states[name] for name in MOVING])
     stored = 0.375 * np.array([within.stored, outside.stored])
     return entries(given, moving, sums, stored, times.shape)

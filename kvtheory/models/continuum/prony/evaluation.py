@@ -3,6 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
+from kvtheory.models.continuum.edge_states import FREE, PEELING
 from kvtheory.models.continuum.prony.contact import (
     Motion,
     accumulated,
@@ -15,20 +16,11 @@ from kvtheory.models.continuum.prony.contact import (
     total,
     value,
 )
-from kvtheory.models.continuum.prony.records import FREE, NEVER, PEELING, Run
+from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.walk import walk
 from kvtheory.models.continuum.run import step_at
-from kvtheory.records import record
 from kvtheory.scene.base_motion import evaluate
-
-STATE = record(
-    depth="f8", depth_rate="f8", sliding_velocity="f8", drive_velocity="f8", offset="f8",
-    offset_rate="f8", edges=("f8", (2,)), normal_force="f8", friction_force="f8", peak_pressure="f8",
-    way="f8", edge_states=("i8", (2,)), pressure="f8", compression="f8",
-)  # fmt: skip
-"""A state in scaled form: d, d', lambda of the base under the indenter and of the drive, x, x', both edges,
-both forces, the largest pressure, Y, the states of both edges; p and u at a place, if asked for."""
 
 
 class Contact(NamedTuple):
@@ -65,7 +57,7 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
         found.depth[i], found.depth_rate[i] = at.d, at.v
         found.sliding_velocity[i], found.way[i] = at.number, at.Y
-        found.drive_velocity[i] = evaluate(run.pieces[step.piece], s)[1]
+        found.velocity[i] = evaluate(run.pieces[step.piece], s)[1]
         found.offset[i] = step.along + step.lasts * integral(along, theta)
         found.offset_rate[i] = value(along, theta)
         damped = c * at.v, 2.0 * c * at.number
@@ -258,10 +250,10 @@ WALK, STATES, WITHOUT_PEAKS, PRESSURE, COMPRESSION = range(5)
 """Tasks of `perform`."""
 
 
-def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
+def perform(task: int, run: Run, attempts: int, times: Any, found: Any, profile: Any) -> int:
     """Perform a task, the only entry to the kernels: walk, or write states at times, or p or u at places.
 
-    These places follow one time, whose state `found` has first.
+    These places follow one time, whose state `found` has; p or u, in the `profile`, nothing.
     """
     one = Run(run.given[0], run.now[0], *run[2:])
     if task == WALK:
@@ -273,7 +265,7 @@ def perform(task: int, run: Run, attempts: int, times: Any, found: Any) -> int:
         at = Contact(motion(one, step_at(one, times[0]), times[0]), l, r)
         for i in range(1, len(times)):
             if task == PRESSURE:
-                found.pressure[i] = pressure(one, at, times[i])
+                profile[i] = pressure(one, at, times[i])
             else:
-                found.compression[i] = compression(one, at, times[i])
+                profile[i] = compression(one, at, times[i])
     return 0

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
 from kvtheory.models.continuum.prony.contact import (
     GOLDEN,
     Motion,
@@ -26,7 +27,7 @@ from kvtheory.models.continuum.prony.contact import (
     untouched,
     value,
 )
-from kvtheory.models.continuum.prony.records import FREE, NEVER, SIDES, TOUCHING, Run
+from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, lay, turn
 from kvtheory.models.continuum.prony.step import prepare, solve
 

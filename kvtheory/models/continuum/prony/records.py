@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kvtheory.models.continuum.edge_states import SIDES, TOUCHING
 from kvtheory.models.continuum.radau_iia import radau, stages_for
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.records import blanks, new, record, structured
@@ -13,9 +14,6 @@ from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.theory.laws import Element
 
-PEELING, TOUCHING, FREE = 0, 1, 2
-"""States of an edge; both are free in flight."""
-SIDES = (-1.0, 1.0)
 NEVER = -1
 """Number of a segment: ground that was never touched. Step of a segment: elements in contact at rest, or free
 ground between two places that was never touched."""

@@ -6,8 +6,9 @@ again from zero, and F_i and M_i from their integrals over the contact, by Radau
 steps. An element in contact keeps the stress k_i (A_i - xi B_i) of that instant, see `contact`.
 """
 
+from kvtheory.models.continuum.edge_states import PEELING
 from kvtheory.models.continuum.prony.contact import at_present, derivative, motion, present, pressed
-from kvtheory.models.continuum.prony.records import NEVER, PEELING, Run
+from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.models.continuum.prony.segments import here
 
 LARGE = 0.06

@@ -2,8 +2,9 @@
 
 import math
 
+from kvtheory.models.continuum.edge_states import PEELING, TOUCHING
 from kvtheory.models.continuum.prony.contact import over, present, total
-from kvtheory.models.continuum.prony.records import NEVER, PEELING, TOUCHING, Run
+from kvtheory.models.continuum.prony.records import NEVER, Run
 
 INSTANT, SHORT = 1e-13, 0.1
 """Length of a segment in time, relative to the run, or in space, as a share of the tolerance, below which it

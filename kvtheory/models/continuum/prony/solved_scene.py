@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kvtheory.models.continuum.edge_states import FREE, STATE_NAMES, TOUCHING
 from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
@@ -20,14 +21,7 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTEST,
 )
 from kvtheory.models.continuum.prony.energy import ledger
-from kvtheory.models.continuum.prony.records import (
-    ARM,
-    ARM_STATE,
-    FREE,
-    PEELING,
-    TOUCHING,
-    together,
-)
+from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solved_scene import (
@@ -51,7 +45,6 @@ SAME = (
     "peak_pressure",
 )  # fmt: skip
 """Quantities that are in the states as they are."""
-STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 ROUNDING = 4e-16
 """Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
 LESS_TIGHT = 10.0
@@ -93,10 +86,7 @@ class SolvedPronyScene(ScaledMotion):
         """Return the scaled quantities of states at scaled times."""
         units = self.units
         own = scales(units)
-        found = {
-            name: states["drive_velocity" if name == "velocity" else name]
-            for name in SAME if name in own
-        }  # fmt: skip
+        found = {name: states[name] for name in SAME if name in own}
         if not units.rigid_drive:
             spring, damping = units.drive_stiffness_number, units.drive_damping_number
             found["spring_force"] = spring * states["offset"] + damping * states["offset_rate"]

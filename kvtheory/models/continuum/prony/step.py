@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.models.continuum.edge_states import FREE, PEELING
 from kvtheory.models.continuum.prony.contact import (
     Motion,
     base,
@@ -22,7 +23,7 @@ from kvtheory.models.continuum.prony.contact import (
     total,
     value,
 )
-from kvtheory.models.continuum.prony.records import FREE, PEELING, Run
+from kvtheory.models.continuum.prony.records import Run
 
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it

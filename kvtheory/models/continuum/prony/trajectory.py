@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import (
     contact,
     evaluation,
@@ -24,7 +25,6 @@ from kvtheory.models.continuum.prony import (
     walk,
 )
 from kvtheory.models.continuum.prony.contact import time_at
-from kvtheory.models.continuum.prony.evaluation import STATE
 from kvtheory.models.continuum.prony.records import (
     STEP,
     Run,
@@ -57,6 +57,8 @@ REFUSED = {
 """Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
 
 
+BLANK = np.zeros(1), np.zeros(1, STATE), np.zeros(1)
+"""Times, states and profile of tasks that need none."""
 KERNEL = Kernel(
     evaluation.perform,
     (b_, r_, records, contact, step, segments, restarts, hops, walk, evaluation),
@@ -67,7 +69,7 @@ KERNEL = Kernel(
 
 def prepared(run: Run) -> bool:
     """Load or compile the kernels, for a run whose records are arrays; return whether that worked."""
-    return KERNEL.prepared(evaluation.WALK, run, 0, np.zeros(1), np.zeros(1, STATE))
+    return KERNEL.prepared(evaluation.WALK, run, 0, *BLANK)
 
 
 def time_of(run: Run) -> float:
@@ -126,16 +128,20 @@ class Trajectory:
 
     def pressure(self, xi: Array, s: float) -> Array:
         """Return the scaled pressure at places and one time."""
-        return self._profile(evaluation.PRESSURE, xi, s)["pressure"].reshape(xi.shape)
+        return self._profile(evaluation.PRESSURE, xi, s)
 
     def compression(self, xi: Array, s: float) -> Array:
         """Return the scaled compression of the foundation at places and one time."""
-        return self._profile(evaluation.COMPRESSION, xi, s)["compression"].reshape(xi.shape)
+        return self._profile(evaluation.COMPRESSION, xi, s)
 
-    def _profile(self, task: int, xi: Array, s: float) -> Any:
-        found = np.zeros(1 + xi.size, STATE)
-        found[0] = self.states([s])[0]
-        return self._perform(task, np.append(self.clock(s), xi), found)[1:]
+    def _profile(self, task: int, xi: Array, s: float) -> Array:
+        now, profile = self.states([s], peaks=False), np.zeros(1 + xi.size)
+        given = 0, np.append(self.clock(s), xi)
+        if self.compiled:
+            KERNEL(task, self.run, *given, now, profile)
+        else:
+            evaluation.perform(task, self.run, *given, named(now), profile)
+        return profile[1:].reshape(xi.shape)
 
     @cached_property
     def arrays(self) -> Run:
@@ -144,12 +150,6 @@ class Trajectory:
 
     def _perform(self, task: int, times: Array, found: NDArray[Any]) -> NDArray[Any]:
         """Perform a task at all times, compiled from where on that pays."""
-        if task not in (evaluation.STATES, evaluation.WITHOUT_PEAKS):
-            if self.compiled:
-                KERNEL(task, self.run, 0, times, found)
-            else:
-                evaluation.perform(task, self.run, 0, times, named(found))
-            return found
         fast, done, took = self.compiled, 0, 0.0
         while done < times.size:
             left = took * (times.size / max(done, 1) - 1.0)
@@ -158,9 +158,11 @@ class Trajectory:
             begun = thread_time()
             with nullcontext() if fast else KERNEL.interpreting():
                 if fast:
-                    KERNEL(task, self.arrays, 0, times[part], found[part])
+                    KERNEL(task, self.arrays, 0, times[part], found[part], BLANK[-1])
                 else:
-                    evaluation.perform(task, self.run, 0, times[part], named(found[part]))
+                    evaluation.perform(
+                        task, self.run, 0, times[part], named(found[part]), BLANK[-1]
+                    )
             took += thread_time() - begun
             done = times.size if fast else done + EVALUATED
         return found
@@ -194,7 +196,7 @@ def solve(
     run = begin(*given, arrays=arrays)
     if arrays and not prepared(run):
         run = begin(*given, arrays=False)
-    left, status, nothing = max_steps, walk.PAUSED, (np.zeros(1), np.zeros(1, STATE))
+    left, status = max_steps, walk.PAUSED
     begun = thread_time()
     while status != walk.DONE:
         interpreted = isinstance(run.steps, list)
@@ -203,7 +205,7 @@ def solve(
             np.errstate(all="ignore"),  # an iteration that diverges ends a step, compiled or not
             KERNEL.interpreting() if interpreted else nullcontext(),
         ):
-            status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *nothing)
+            status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *BLANK)
         now = readable(run.now[0])
         time = time_of(run)
         left = max_steps - now.steps - now.rejected

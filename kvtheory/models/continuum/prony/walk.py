@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES, TOUCHING
 from kvtheory.models.continuum.prony.contact import (
     Motion,
     accumulated,
@@ -35,15 +36,7 @@ from kvtheory.models.continuum.prony.hops import (
     time_left,
     touches_at,
 )
-from kvtheory.models.continuum.prony.records import (
-    FREE,
-    NEVER,
-    PEELING,
-    SIDES,
-    SMOOTH,
-    TOUCHING,
-    Run,
-)
+from kvtheory.models.continuum.prony.records import NEVER, SMOOTH, Run
 from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
 from kvtheory.models.continuum.prony.segments import cross, left_behind, split, turn
 from kvtheory.models.continuum.prony.step import prepare, size_of, solve
