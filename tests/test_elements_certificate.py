@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.elements import kernels, simulation
 from kvtheory.models.elements.kernels import touching
 from kvtheory.models.elements.model import Model
 from kvtheory.results.table import scales
@@ -234,6 +236,32 @@ def test_a_kink_of_the_pressure_at_its_peak_is_known_to_second_order():
         claims.append(run.certificate.relative_error["peak_pressure"])
         assert abs(run.peak_pressure - truth) / scale <= claims[-1]
     assert claims[1] < min(claims[0] / 8.0, 2e-3)
+
+
+@pytest.mark.parametrize("falls", [(1.0, 1.0), (0.1, 3.0), (3.0, 0.1)])
+def test_a_ridge_beside_the_highest_of_whole_elements_is_within_the_doubt(falls):
+    constants, places = SimpleNamespace(parts=False, law=SimpleNamespace()), np.arange(9.0)
+    for ridge in np.linspace(2.0, 6.0, 41):
+        p = 20.0 - np.where(places < ridge, falls[0], falls[1]) * np.abs(places - ridge)
+        for constants.law.arm_time in (np.ones(1), np.empty(0)):
+            row, top = SimpleNamespace(constants=constants), int(p.argmax())
+            peak, doubt = kernels.find_peak(row, p, top, (1.0, 1.0), 0, p.size)
+            assert peak == p[top]
+            if constants.law.arm_time.size:
+                assert 20.0 - peak <= simulation.SAFETY * doubt + 1e-12
+            else:
+                assert doubt == 0.0
+
+
+def test_the_sawtooth_of_elements_that_enter_is_no_higher_than_the_pressure_at_the_edge():
+    """A drive that changes all the time; what an element at the peak carries would be three times as much."""
+    wave = kv.Sine(mean="0 mm/s", amplitude="0.1 m/s", frequency="50 Hz")
+    scene = kv.Scene(support=kv.Fixed(3e-4), drive=kv.Drive(waveform=wave), run=kv.Run(0.01))
+    at = np.linspace(1e-3, 0.01, 10)
+    run, truth = kv.elements(scene, per_length="60 /mm", at=at), kv.transient(scene, at=at)
+    found = errors(run, truth, scene)
+    for name, limit in (("normal_force", 0.06), ("friction_force", 0.12)):
+        assert found[name] <= run.certificate.relative_error[name] < limit
 
 
 def test_friction_is_certified_relative_to_what_the_statement_says():

@@ -3,12 +3,13 @@
 import re
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.fitting import moduli, shifting, spectrum
+from kvtheory.fitting import foundation, moduli, shifting, spectrum
 from kvtheory.fitting.spectrum import Moduli, Series
 from kvtheory.plots.fits import draw_fit
 from kvtheory.sweeps.plan import REMARKS
@@ -287,6 +288,21 @@ def test_sweeps_shift_to_the_master_curve_and_wlf_is_found():
     assert found.foundation.shift_factor == pytest.approx(
         10.0 ** law.log_shift(22.0, 20.0), rel=0.1
     )
+
+
+@pytest.mark.parametrize(("last", "notes"), [(-2.505, 1), (-1.9, 0)])
+def test_a_law_that_misses_a_shift_factor_is_noted(last, notes):
+    """Three temperatures have two shift factors, too few for the two constants of WLF's law."""
+    T = np.array([273.15, 293.15, 333.15])
+    master = SimpleNamespace(
+        temperatures=T,
+        log_shift=np.array([1.2, 0.0, last]),
+        errors=np.full(3, 0.01),
+        reference=T[1],
+    )
+    found = foundation._about_shifts(master, shifting.law_of(master))
+    assert len(found) == notes
+    assert all("Arrhenius misses the shift factor at" in note for note in found)
 
 
 def test_a_loss_of_a_thousandth_of_the_modulus_tells_the_shifts():

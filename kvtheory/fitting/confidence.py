@@ -139,4 +139,4 @@ def _inner(H: Array, right: Array, moves: Array) -> Array:
     own = np.einsum("sii->si", H)
     rest = H * moves[:, :, None] * moves[:, None]
     rest += np.eye(own.shape[1]) * np.where(moves & (own > 0.0), RIDGE * own, 1.0)[:, None]
-    return np.linalg.solve(rest, right * moves[..., None])
+    return np.asarray(np.linalg.solve(rest, right * moves[..., None]), dtype=np.float64)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from kvtheory.fitting import moduli, shifting
-from kvtheory.fitting.shifting import Law, Shifted
+from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
 
 CONFIDENCE = 0.95
@@ -24,6 +24,8 @@ WINDOW = 5
 """Points of the running mean that shows where."""
 VAGUE = 0.3
 """Standard error of log10 a_T from which a shift is reported as vague."""
+MISSED = 2.0
+"""Distance of a shift factor from the law, over its error and the usual one, from which it is reported."""
 
 
 class Fitted(NamedTuple):
@@ -122,6 +124,12 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
         notes.append(f"{told} to {VAGUE} decades at {', '.join(vague)} degC.")
     if law is None:
         notes.append("Neither WLF's nor Arrhenius' law fits the shift factors.")
+        return notes
+    off = np.abs(law.log_shift(master.temperatures, master.reference) - master.log_shift)
+    worst = int(np.argmax(off / np.hypot(USUAL, master.errors)))
+    if off[worst] > MISSED * math.hypot(USUAL, master.errors[worst]):
+        name, T = law.text.split(":")[0], master.temperatures[worst] - 273.15
+        notes.append(f"{name} misses the shift factor at {T:.4g} degC by {off[worst]:.2g} decades.")
     return notes
 
 

@@ -74,9 +74,9 @@ COUNTS = record(
 )  # fmt: skip
 """The range of elements needed, and the strips; the runs in contact at the start of a step and at its end;
 elements in these; updates of elements."""
-REPORT = record(**dict.fromkeys((*SERIES_UNITS, "doubt", "left", "right"), "f8"))
-"""The columns of a time series as on a spring, the doubt about the peak pressure (Pa), and the left and right
-edge, whichever leads."""
+REPORT = record(**dict.fromkeys((*SERIES_UNITS, "doubt", "at_edge", "left", "right"), "f8"))
+"""The columns of a time series as on a spring, the doubt about the peak pressure and the highest pressure at
+an edge (Pa), and the left and right edge, whichever leads."""
 
 
 class Surface(NamedTuple):
@@ -898,6 +898,7 @@ def report(
         return status
     press(row, none, (depth, now.rate), place, sliding, False)
     found.normal_force = found.friction_force = found.peak_pressure = found.doubt = 0.0
+    found.at_edge = 0.0
     found.left = found.right = math.nan
     for r in range(row.counts.ended):
         j, low, stop = run_at(row.ended, r)
@@ -938,7 +939,8 @@ def report_run(
         if (top == low and low - before <= 1.0) or (top == high - 1 and after - top <= 1.0):
             reach = -1.0, -1.0  # no parabola across a kink
         found.peak_pressure, found.doubt = find_peak(row, p, top, reach, low, high)
-    for end in (first, last):
+    for end, nearest in ((first, p[low]), (last, p[high - 1])):
+        found.at_edge = max(found.at_edge, end.pressure, nearest)
         if end.pressure > found.peak_pressure:
             found.peak_pressure, found.doubt = end.pressure, end.doubt + unsure * end.jump
     if j == 0:
@@ -1008,12 +1010,15 @@ def find_peak(row: Row, p: Array, k: int, reach: Pair, low: int, high: int) -> A
     """Return the peak near element k, from the parabola through three, and its uncertainty.
 
     Arms remember where contact began, so that the pressure may have a ridge between two elements: there
-    the curves meet that continue it from both sides.
+    the curves meet that continue it from both sides. Of whole elements the highest one is the peak, and a
+    ridge beside it is higher by at most what they differ by.
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
+    arms = row.constants.law.arm_time.size > 0
     if not row.constants.parts:
-        return here, 0.0
-    if row.constants.law.arm_time.size:
+        fall = max(here - before if k > low else 0.0, here - after if k < high - 1 else 0.0)
+        return here, 0.5 * fall if arms else 0.0
+    if arms:
         if not low + 3 <= k < high - 3:
             return here, 0.5 * max(here - before, here - after)
         i = k - 1 if 2.0 * after - here - p[k + 2] < 2.0 * before - p[k - 2] - here else k

@@ -355,8 +355,11 @@ def _estimate(model: Model, unsure: Unsure, rows: Rows, others: list[Rows]) -> C
     kinks, arms = bool(c.kinks.size), bool(c.law.arm_time.size)
     edge = (unsure.anywhere + KINKED * (kinks or arms)) * c.spacing
     width = 2.0 * c.surface.stretch * c.half_length if c.surface.ball else 1.0
-    one = c.spacing * width * float(rows["peak_pressure"].max())
-    force = (unsure.at_jumps + KINKED * (kinks and arms)) * one
+    one, sawtooth = (
+        c.spacing * width * float(rows[name].max()) for name in ("peak_pressure", "at_edge")
+    )
+    # The sawtooth of an element that enters is at most that high, and no estimate.
+    force = unsure.at_jumps / SAFETY * sawtooth + KINKED * (kinks and arms) * one
     for name, more in {
         "leading_edge": edge, "trailing_edge": edge, "normal_force": force,
         "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),
