@@ -48,7 +48,7 @@ QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
-FEW_ROWS, LONGER = 32, 16.0
+FEW_ROWS, LONGER = 32, 8.0
 """Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
 assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
 one."""
