@@ -8,6 +8,7 @@ import numpy as np
 
 from kvtheory.checks.allowances import (
     EDGES,
+    UNKNOWN_STEP,
     Band,
     Resolution,
     allowance,
@@ -160,7 +161,10 @@ def with_longer_steps(case: Case) -> Case | None:
     shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
     if fine.spacing_known or fine.step_known or (shown and not ball):
         return None
-    coarse = fine._replace(time_step=LONGER * fine.time_step)
+    longer, rates = LONGER * fine.time_step, case.theory.rates
+    if rates is not None and rates.oscillation:  # which a sound method resolves
+        longer = min(longer, max(fine.time_step, UNKNOWN_STEP * abs(rates.oscillation)))
+    coarse = fine._replace(time_step=longer)
     budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
     return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
