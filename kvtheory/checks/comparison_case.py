@@ -53,6 +53,8 @@ FEW_ROWS, LONGER = 32, 8.0
 """Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
 assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
 one."""
+COARSER = 2.0
+"""And how much coarser than assumed elements of a ball may be."""
 SAWTOOTH = "the sawtooth"
 """What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
@@ -164,7 +166,7 @@ def with_longer_steps(case: Case) -> Case | None:
     longer, rates = LONGER * fine.time_step, case.theory.rates
     if rates is not None and rates.oscillation:  # which a sound method resolves
         longer = min(longer, max(fine.time_step, UNKNOWN_STEP * abs(rates.oscillation)))
-    coarse = fine._replace(time_step=longer)
+    coarse = fine._replace(time_step=longer, spacing=(COARSER if ball else 1.0) * fine.spacing)
     budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
     return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
