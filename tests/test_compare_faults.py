@@ -528,6 +528,20 @@ def test_the_step_of_a_ball_that_nobody_gave_is_not_told_from_a_fault():
     assert not found.explanations
 
 
+def test_the_elements_of_a_ball_that_nobody_gave_are_not_told_from_a_fault():
+    """58 per half length are enough for its forces; theory assumes those of a line, eight times as many."""
+    scene = kv.Scene(
+        kv.Sphere(0.00958), kv.Foundation(9.23e9, 0.0762), kv.Fixed(4.2e-4), kv.Drive(0.0117), kv.Run(0.833)
+    )  # fmt: skip
+    how = {"per_length": 58.0 / float(kv.steady(scene, over={"drive.velocity": 0.0}).half_length)}
+    run = kv.elements(
+        scene, at=np.linspace(0.0, 0.833, 202), scheme="explicit-euler", certify=False, **how
+    )
+    data = {name: getattr(run, name) for name in MEASURED if name != "depth"}
+    assert kv.compare(scene, data).verdict != "disagrees"
+    assert kv.compare(scene, data, **how).verdict == "agrees"
+
+
 def test_a_wrong_radius_of_five_percent_shows_in_noise_of_one_percent():
     """The values of a curve are judged together by their noise, without the large allowances of the start."""
     scene = kv.Scene(

@@ -8,6 +8,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.elements import kernels
+from kvtheory.models.elements import model as elements_model
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
@@ -156,3 +157,18 @@ def test_strips_are_weighed_by_the_contact_halfway_through_a_step():
     rim = c.surface.stretch * kernels.extent(c.surface, c.depth + 0.5 * h * rate, 1.0)
     expected = kernels.weigh(np.empty_like(row.stored.weights), c.across, rim)
     np.testing.assert_array_equal(row.stored.weights, expected)
+
+
+@pytest.mark.parametrize("stiffness", [1e8, 1e11])
+@pytest.mark.parametrize("shape", [kv.Sphere(0.01), kv.Parabola(0.01), kv.Wedge(inclination=0.1)])
+def test_the_depth_at_rest_is_found_in_few_steps_from_anywhere(monkeypatch, shape, stiffness):
+    """The logarithm of the force over that of the depth is a straight line, but for whole elements."""
+    scene, calls, contact = (
+        kv.Scene(shape, kv.Foundation(stiffness, 0.05)),
+        [],
+        elements_model.contact,
+    )
+    monkeypatch.setattr(elements_model, "contact", lambda *a: calls.append(a) or contact(*a))
+    found = Model.of(scene)
+    assert found.contact.force == pytest.approx(scene.support.weight, rel=1e-9)
+    assert len(calls) <= 10

@@ -49,7 +49,8 @@ INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",
     UNKNOWN: "The differences may be the error of a sound method, not a fault: a time step "
-    f"{case_of.LONGER:g} times as long as assumed allows them, and these data do not show theirs",
+    f"{case_of.LONGER:g} times as long as assumed allows them, of a ball with elements "
+    f"{case_of.COARSER:g} times as far apart, and these data do not show theirs",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""

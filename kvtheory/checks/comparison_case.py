@@ -8,6 +8,7 @@ import numpy as np
 
 from kvtheory.checks.allowances import (
     EDGES,
+    UNKNOWN_STEP,
     Band,
     Resolution,
     allowance,
@@ -48,10 +49,12 @@ QUIET = 0.1
 """Noise of an edge over its jumps below which these are elements: between them an edge moves smoothly."""
 LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
-FEW_ROWS, LONGER = 32, 16.0
+FEW_ROWS, LONGER = 32, 8.0
 """Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
 assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
 one."""
+COARSER = 2.0
+"""And how much coarser than assumed elements of a ball may be."""
 SAWTOOTH = "the sawtooth"
 """What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
@@ -160,7 +163,10 @@ def with_longer_steps(case: Case) -> Case | None:
     shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
     if fine.spacing_known or fine.step_known or (shown and not ball):
         return None
-    coarse = fine._replace(time_step=LONGER * fine.time_step)
+    longer, rates = LONGER * fine.time_step, case.theory.rates
+    if rates is not None and rates.oscillation:  # which a sound method resolves
+        longer = min(longer, max(fine.time_step, UNKNOWN_STEP * abs(rates.oscillation)))
+    coarse = fine._replace(time_step=longer, spacing=(COARSER if ball else 1.0) * fine.spacing)
     budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
     return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
