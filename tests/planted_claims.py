@@ -196,17 +196,17 @@ def wider(record, claim, draw):
 
 
 WIDER = {
-    "F15-euler/2": {"over": ["z", "0", "3"]},  # z (2 - z) is negative from 2 on
-    "F15-euler/3": {"over": ["z", "1", ["infinity"]]},
-    "F15-runge-kutta/9": {"over": ["z", "0", "3"]},  # zero at 2.785
-    "F15-runge-kutta/10": {"over": ["z", "2", ["infinity"]]},
+    "F15-euler/3": {"over": ["z", "0", "3"]},  # z (2 - z) is negative from 2 on
+    "F15-euler/4": {"over": ["z", "1", ["infinity"]]},
+    "F15-runge-kutta/12": {"over": ["z", "0", "3"]},  # zero at 2.785
+    "F15-runge-kutta/13": {"over": ["z", "2", ["infinity"]]},
     "wedge-low/4": {"over": ["l", "0", "2"], "domain": []},  # (1 - l)(2 + l)
     "F9/0": {"over": ["eta", "0", ["infinity"]]},  # 2 - 2 eta
     "F3/3": {"over": ["q", "0", "4"]},  # 2 - sqrt 3 and 2 + sqrt 3
     "F18-glassy/10": {"over": ["omega_v", "0", "2"], "domain": []},  # w/6 - w^2/9 is zero at 3/2
     "F9-circle/4": {"domain": []},  # R^2 - 3 y^2 changes its sign
-    "F9/8": {"domain": []},  # e^s - e^s_1
-    "F10-signs/6": {"domain": []},
+    "F9/12": {"domain": []},  # e^s - e^s_1
+    "F10-signs/5": {"domain": []},
 }  # fmt: skip
 
 OPERATORS = (

@@ -66,7 +66,7 @@ def test_a_hundred_wrong_claims_are_found(records):
 def test_a_recalled_relation_keeps_its_conditions(records):
     others = {record["label"]: record for record in records}
     record = copy.deepcopy(of(records, "F10-peel"))
-    (claim,) = (each for each in record["claims"] if each["id"] == "F10-peel/5")
+    (claim,) = (each for each in record["claims"] if each["id"] == "F10-peel/3")
     strict = {**record, "claims": [{**claim, "domain": [["<", "1", "rho"]]}]}
     user = {**claim, "id": "new/0", "kind": "recalled", "source": "F10-peel", "premises": []}
     checked = Record({**record, "claims": [user]}, {**others, "F10-peel": strict})
