@@ -250,8 +250,8 @@ def _pair(proof: Proof, factor: sp.Expr, power: sp.Expr, rising: bool) -> None:
         form = speed - eta * factor * deep_relaxed**power
         proof.equal(sp.Derivative(deep_relaxed, s), form, "the pair of F32")
         return
-    proof.define(deep, depth)
-    proof.define(velocity, speed)
+    proof.define(deep, depth, "the depth over time")
+    proof.define(velocity, speed, "and the velocity")
     changed = sp.Derivative(velocity + eta * factor * deep**power, s)
     proof.equal(changed, -factor * deep**power, "the pair of F32, with $y_d$ for what changes")
 
@@ -298,7 +298,7 @@ def _loss(proof: Proof, factor: sp.Expr, power: sp.Expr) -> None:
     density = factor * power * deep ** (power - 1) * speed * sp.Derivative(deep, z)
     proof.equal(density, part * force_at_top * weight, "of the damper, with $z_d$ as the variable")
     proof.define(sp.Derivative(incomplete(z), z), weight, "the incomplete beta function")
-    proof.define(incomplete(0), sp.S.Zero)
+    proof.define(incomplete(0), sp.S.Zero, "an integral from 0 on")
     proof.integral(loss, part * force_at_top * weight, (z, 0, 1), part * force_at_top * incomplete(z),
                    "what the dampers take", value=part * force_at_top * incomplete(1))  # fmt: skip
 
@@ -311,7 +311,7 @@ def _second(proof: Proof, family: str, factor: sp.Expr, power: sp.Expr) -> None:
     proof.define(
         sp.Derivative(incomplete(z), z), shape * sp.sqrt(1 - z), "the incomplete beta function"
     )
-    proof.define(incomplete(0), sp.S.Zero)
+    proof.define(incomplete(0), sp.S.Zero, "an integral from 0 on")
     whole = loss * part * force_at_top
     primitive = whole * ((2 * part + 1) * incomplete(z) - 2 * z**part * sp.sqrt(1 - z))
     proof.integral(slowed, whole * shape / sp.sqrt(1 - z), (z, 0, 1), primitive,

@@ -80,7 +80,7 @@ def _field(proof: Proof) -> None:
     u, w, s = (each(x, z) for each in (along, up, mean))
     d, zero = sp.Derivative, sp.S.Zero
     for field, value in ((u, ALONG), (w, UP), (s, MEAN)):
-        proof.define(field, value)
+        proof.define(field, value, "a wave along the layer")
     proof.equal(d(u, x) + d(w, z), (1 - 2 * nu) * s, "change of volume")
     proof.equal(d(u, x, 2) + d(u, z, 2) + d(s, x), zero, "balance along the layer, F30-balance")
     proof.equal(d(w, x, 2) + d(w, z, 2) + d(s, z), zero, "balance across it, likewise")

@@ -209,7 +209,7 @@ def _energy(proof: Proof) -> None:
     """
     inside = lost_ahead, lost_behind
     proof.define(n, 1 + excess, r"$n > 1$")
-    proof.define(Q, SLOPE_POWER)
+    proof.define(Q, SLOPE_POWER, "a shorthand")
     density, primitive = n**2 * l * y ** (2 * n - 2), n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
     for name, end, where in zip(
         inside, (1, q), (r"$K l_{\mathrm{r}} h'^2$, ahead of the tip", "behind it"), strict=True

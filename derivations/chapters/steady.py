@@ -98,7 +98,7 @@ def _retardation_length(proof: Proof) -> None:
     start = u_i.subs(t, t_0)
     surface = sp.Lambda(x, start * sp.exp((x_te - x) / (V * tau)))
     proof.notation |= {"u": surface}
-    proof.define(l_r, V * tau)
+    proof.define(l_r, V * tau, "how far the base moves in the retardation time")
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", reason="it left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
@@ -207,8 +207,8 @@ def _scaled(proof: Proof) -> None:
     proof.recall("eq27")
     proof.recall("eq22")
     proof.recall("eq29")
-    proof.define(l, l_r / a)
-    proof.define(q, x_te / a)
+    proof.define(l, l_r / a, "in half lengths")
+    proof.define(q, x_te / a, "in half lengths")
     proof.equal(x_te, a * q, "by definition")
     proof.equal(l_r, a * l, "by definition")
     proof.equal(l, number, "Eq. (27) solved for $l$; at rest $q = 1$, and $q$ falls to 0")
@@ -384,5 +384,5 @@ def _dead_weight(proof: Proof) -> None:
         proof.recall(label)
     proof.recall("scaling", V, l_r, l)
     drive = V * tau * (K / (R * W)) ** sp.Rational(1, 3)
-    proof.define(Lambda, drive)
+    proof.define(Lambda, drive, "a velocity that depth does not enter")
     proof.equal(Lambda**3, drive_cubed, "$\\delta$ cancels: one number describes the state")
