@@ -1050,7 +1050,7 @@ TRUE = {
         "rate that a condition keeps from zero":
             (where(a < b), integral(exp((a - b) * x), (x, 0, 1), exp((a - b) * x) / (a - b)), "a < b"),
         "name that is positive in a form that was shown":
-            (equal(a**2 - a * b + b**2, (a - b) ** 2 + a * b), define(z, a**2 - a * b + b**2), "no minus is left"),
+            (equal(a**2 - a * b + b**2, (a - b) ** 2 + a * b), define(z, a**2 - a * b + b**2), "no minus"),
         "constant beside an unknown function":
             (equal(Integral(1 + f(x), (x, 0, 1)), 1 + Integral(f(x), (x, 0, 1))), "linear"),
         "sum under an integral":
