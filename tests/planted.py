@@ -993,7 +993,6 @@ TRUE = {
         ),
     },
     "bounds and angles": {
-        "arc tangents of inverses": (equal(atan(1 / q) + atan(q), pi / 2), "angle of a strip"),
         "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges"),
         "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm"),
     },
@@ -1038,19 +1037,20 @@ TRUE = {
     "calculus and algebra": {
         "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2"),
         "root of a sum": (holds(sqrt(a) + sqrt(b) - sqrt(a + b)), "concave"),
-        "derivative of x |x|": (equal(Derivative(x * Abs(x), x), 2 * Abs(x)), "smooth enough at 0"),
         "derivative with respect to an end":
             (equal(Derivative(Integral(exp(-(u**2)), (u, 0, x)), x), exp(-(x**2))), "fundamental theorem"),
         "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi"),
         "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch"),
         "larger less smaller": (equal(sp.Max(x, u) - sp.Min(x, u), Abs(x - u)), "distance"),
-        "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers"),
         "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
         "between ends in order":
             (where(a < b), root(x - (a + b) / 2, x, (a + b) / 2, over=(x, a, b)), "midpoint"),
-        "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded"),
     },
     "what a chapter may need": {
+        "rate that a condition keeps from zero":
+            (where(a < b), integral(exp((a - b) * x), (x, 0, 1), exp((a - b) * x) / (a - b)), "a < b"),
+        "name that is positive in a form that was shown":
+            (equal(a**2 - a * b + b**2, (a - b) ** 2 + a * b), define(z, a**2 - a * b + b**2), "no minus"),
         "constant beside an unknown function":
             (equal(Integral(1 + f(x), (x, 0, 1)), 1 + Integral(f(x), (x, 0, 1))), "linear"),
         "sum under an integral":
@@ -1104,6 +1104,10 @@ BEYOND = {
              "no jump up to pi/2"),
         "half turn": (root(sin(x), x, pi, over=(x, 0, 2 * pi)), "open interval"),
         "root of a logarithm": (root(y * log(y), y, 1), "y > 0"),
+        "arc tangents of inverses": (equal(atan(1 / q) + atan(q), pi / 2), "angle of a strip"),
+        "derivative of x |x|": (equal(Derivative(x * Abs(x), x), 2 * Abs(x)), "smooth enough at 0"),
+        "sum of angles": (equal(atan(half) + atan(third), pi / 4), "numbers"),
+        "distance with one positive root": (root(Abs(y - 1) - 1, y, 2), "0 is excluded"),
     },
 }  # fmt: skip
 """True steps that the kernel refuses: a chapter that needs one must prove more on the way."""

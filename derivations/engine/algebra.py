@@ -151,34 +151,12 @@ def _difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    if vanishes(rest) or _is_no_angle(rest) or _is_no_logarithm(rest):
+    if vanishes(rest):
         return sp.S.Zero
     if rest.has(sp.sin, sp.cos) and vanishes(in_one_angle(rest)[0]):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
     return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
-
-
-def _is_no_angle(number: sp.Expr) -> bool:
-    """Tell whether a sum of arc tangents is zero: its tangent is, and it is no other multiple of pi."""
-    if number.free_symbols or not number.has(sp.atan) or not number.is_Add:
-        return False
-    tangent = sp.expand_trig(sp.tan(number))
-    return bool(tangent == 0 and abs(number.n(30)) < 1)
-
-
-def _is_no_logarithm(number: sp.Expr) -> bool:
-    """Tell whether a sum of logarithms of positive rational numbers is zero, by those of the primes."""
-    if number.free_symbols or not number.has(sp.log):
-        return False
-    logarithms = number.atoms(sp.log)
-    if not all(each.args[0].is_Rational and each.args[0].is_positive for each in logarithms):
-        return False
-    return bool(vanishes(sp.expand_log(number.replace(sp.log, _by_primes))))
-
-
-def _by_primes(number: sp.Rational) -> sp.Expr:
-    return sp.Add(*(power * sp.log(prime) for prime, power in sp.factorrat(number).items()))
 
 
 def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
@@ -277,9 +255,7 @@ def sign_between(expr: sp.Expr, over: Interval) -> str:
         if known:
             sign *= known ** int(abs(power))
         elif variable not in base.free_symbols:
-            if not (base.is_positive or base.is_negative):
-                raise UndecidedError(f"the sign of {base} is not known")
-            sign *= int(sp.sign(base)) ** int(abs(power))
+            raise UndecidedError(f"the sign of {base} is not known")
         elif roots_between(base, over)[0]:
             if power < 0 or power % 2:
                 raise UndecidedError(f"{base} vanishes inside the interval")
@@ -592,8 +568,6 @@ def is_continuous(
         else:
             real = _throughout(proves_nonnegative, 1 - argument**2, over, inside)
         return real and is_continuous(argument, over, known, smooth=smooth)
-    if isinstance(expr, sp.Integral):
-        return _is_continuous_integral(expr, over, known, smooth)
     if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
         expr = expr.expr
     allowed = expr.is_Add or expr.is_Mul
@@ -624,65 +598,12 @@ def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions, smooth
     )
 
 
-def _is_continuous_integral(
-    expr: sp.Integral, over: Interval, known: Conditions, smooth: bool
-) -> bool:
-    """Decide by the integrand between finite ends, where it is continuous in both variables."""
-    (bound, *ends), *others = expr.limits
-    if others or len(ends) != 2 or any(end.is_infinite for end in ends):
-        return False
-    inside, within = known.with_interval((bound, *ends)), known.with_interval(over)
-    jointly = is_continuous(expr.function, over, inside, smooth=smooth)
-    along = is_continuous(expr.function, (bound, *ends), within, smooth=smooth)
-    return jointly and along and all(is_continuous(end, over, known, smooth=smooth) for end in ends)
-
-
-def is_constant_zero(expr: sp.Expr, known: Conditions) -> bool:
-    """Tell whether a function vanishes: its slope does, and its value at one place.
-
-    For inverse functions of one real letter, smooth wherever the letter can be: on one interval.
-    """
-    if len(expr.free_symbols) != 1 or not expr.has(sp.atan, sp.asin, sp.asinh, sp.log):
-        return False
-    (letter,) = expr.free_symbols
-    place = _place(letter, known)
-    if place is None or not is_continuous(expr, (letter, -sp.oo, sp.oo), known, smooth=True):
-        return False
-    return (
-        difference(expr.diff(letter), sp.S.Zero) == 0
-        and difference(expr.subs(letter, place), sp.S.Zero) == 0
-    )
-
-
-def _place(letter: sp.Symbol, known: Conditions) -> sp.Expr | None:
-    """Return a value of a letter inside the interval of all that it can be; None if that may be none."""
-    if not letter.is_real or letter.is_integer or (letter.is_nonzero and not letter.is_positive):
-        return None
-    low = [sp.S.Zero] if letter.is_nonnegative else []
-    high = [sp.S.Zero] if letter.is_nonpositive else []
-    for name, *ends in known.intervals:
-        if name == letter:
-            low, high = [*low, sp.sympify(ends[0])], [*high, sp.sympify(ends[1])]
-    for gap in known.positive:
-        slope = gap.diff(letter)
-        if slope.is_Rational and slope != 0:  # else it leaves the letter alone, or no interval
-            (low if slope > 0 else high).append(expanded(letter - gap / slope))
-        elif gap.has(letter):
-            return None
-    if not all(end.is_Rational or end.is_infinite for end in (*low, *high)):
-        return None
-    below, above = max(low, default=-sp.oo), min(high, default=sp.oo)
-    if below.is_infinite and above.is_infinite:
-        return sp.S.One
-    return _inside(below, above) if below < above else None
-
-
 def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
     """Tell whether a derivative exists and is the one that the rules of differentiation give.
 
     It is, of what is made of smooth functions, wherever the result is defined. Under an integral the
-    integrand and its derivative must be continuous in both variables, and the ends finite. What has
-    kinks must be continuous, and its derivative beside them have a continuous extension.
+    integrand and its derivative must be continuous in both variables, and the ends finite. Nothing may have
+    a kink.
     """
     inner, variables = derivative.expr, set(derivative.variables)
     for node in inner.atoms(sp.Integral, sp.Sum, sp.Product):
@@ -691,15 +612,7 @@ def is_differentiable(derivative: sp.Derivative, known: Conditions) -> bool:
         infinite = any(end.is_infinite for limit in node.limits for end in limit[1:])
         if infinite or not all(_under_integral(node, variable, known) for variable in variables):
             return False
-    for variable in variables:
-        if any(node.has(variable) for node in inner.atoms(*KINKS)):
-            everywhere = variable, -sp.oo, sp.oo
-            slope = expanded(inner.diff(variable)).replace(_is_distance, _distance)
-            if len(derivative.variables) > 1 or not all(
-                is_continuous(each, everywhere, known) for each in (inner, slope)
-            ):
-                return False
-    return True
+    return not any(node.has(*variables) for node in inner.atoms(*KINKS))
 
 
 def _under_integral(node: sp.Expr, variable: sp.Symbol, known: Conditions) -> bool:
@@ -714,21 +627,6 @@ def _under_integral(node: sp.Expr, variable: sp.Symbol, known: Conditions) -> bo
         and is_continuous(each, (variable, -sp.oo, sp.oo), inside)
         for each in (node.function, node.function.diff(variable).doit())
     )
-
-
-def _is_distance(expr: sp.Expr) -> bool:
-    return bool(
-        expr.is_Mul
-        and any(isinstance(arg, sp.sign) and arg.args[0] in expr.args for arg in expr.args)
-    )
-
-
-def _distance(expr: sp.Expr) -> sp.Expr:
-    """Write |u| for u sign(u)."""
-    for arg in expr.args:
-        if isinstance(arg, sp.sign) and arg.args[0] in expr.args:
-            return expr / arg / arg.args[0] * sp.Abs(arg.args[0])
-    return expr
 
 
 def _throughout(

@@ -461,22 +461,6 @@ def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
     return 0 if closed and known_sign(sign * expr.subs(variable, 0)) != 1 else sign
 
 
-def fails_inside(expr: sp.Expr, over: Interval) -> bool:
-    """Tell whether an expression that should be positive in an interval is not, or may not be.
-
-    A rational function is decided; of others some values are tested.
-    """
-    if proves_nonnegative(expr, NONE.with_interval(over)):
-        return False
-    variable = over[0]
-    if expr.is_rational_function(variable):
-        return True
-    (swept,) = list(_swept(variable, NONE.with_interval(over)))[1:] or [variable]
-    steps = [sp.Rational(2) ** k for k in (-20, -6, -2, 0, 2, 6, 20)]
-    places = [swept.subs(dict.fromkeys(swept.free_symbols, place)) for place in steps]
-    return any(sp.N(expr.subs(variable, place)) < 0 for place in places)
-
-
 def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
     """Return what must be positive for an expression to be so, as far as it is not proved.
 

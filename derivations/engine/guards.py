@@ -9,10 +9,10 @@ from sympy.core.function import AppliedUndef
 from .algebra import KINKS, UndecidedError, in_one_angle, is_continuous, leading_term, normalise
 from .book import Book, Said, Shown, StepError, asked
 from .conditions import (
+    NONE,
     Conditions,
     Interval,
     demands,
-    fails_inside,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
@@ -119,7 +119,8 @@ class Guarded(Book):
         ]  # fmt: skip
         demanded = [value if name.is_positive else -value for name, value in named]
         for value in (*demanded, *self._conditions.positive):
-            if value.free_symbols == {over[0]} and fails_inside(value, over):
+            inside = NONE.with_interval(over)
+            if value.free_symbols == {over[0]} and not proves_nonnegative(value, inside):
                 raise StepError(f"{self.label}: inside {over}, {value} is not positive as assumed")
 
     def _undefined(self, raw: sp.Expr, resolved: sp.Expr) -> set[sp.Expr]:

@@ -126,12 +126,12 @@ class Printer(LatexPrinter):
         rising = len(terms) == 2 or (len(letters) == 1 and _is_negative(terms[0]))
         if rising and numbers and expr.is_polynomial(*letters) and len(letters) == 1:
             terms.reverse()
-        elif numbers and (
-            len(terms) == 2
-            or (len(letters) > 1 and not _is_negative(numbers[0]))
-            or _is_negative(terms[0])
-        ):
-            terms = [*numbers, *(term for term in terms if term not in numbers)]
+        elif numbers:
+            others = [term for term in terms if term not in numbers]
+            leads = not _is_negative(numbers[0]) and len(letters) > 1
+            leads = leads or len(terms) == 2 or _is_negative(terms[0])
+            falls = len(letters) > 1 and _is_negative(numbers[0])
+            terms = [*numbers, *others] if leads else [*others, *numbers] if falls else terms
         first = next((term for term in terms if not _is_negative(term)), terms[0])
         return [first, *(term for term in terms if term is not first)]
 

@@ -81,28 +81,11 @@ def only_root(
     bottom = denominator.subs(x, value)
     if not proves_nonzero(bottom, known) and difference(bottom, sp.S.Zero) == 0:
         raise UndecidedError(f"{expr} is not defined there")
-    numerator = _without_bars(numerator, x)
     numerator, x, value, domain = _without_roots(expanded(numerator), x, value, domain)
     if not numerator.is_polynomial(x):
         raise UndecidedError(f"{expr} is no polynomial in {variable}: other roots are not excluded")
     if not _alone(sp.Poly(numerator, x), x, value, domain, known):
         raise UndecidedError("other roots are not excluded")
-
-
-def _without_bars(expr: sp.Expr, x: sp.Symbol) -> sp.Expr:
-    """Multiply what the expression is for each choice of signs of its absolute values.
-
-    The product has all its roots.
-    """
-    sizes = sorted((size for size in expr.atoms(sp.Abs) if size.has(x)), key=str)
-    if len(sizes) > _MOST_BARS or any(size.args[0].has(sp.Abs) for size in sizes):
-        return expr
-    for size in sizes:
-        expr = sp.Mul(*(expr.xreplace({size: sign * size.args[0]}) for sign in (1, -1)))
-    return expr
-
-
-_MOST_BARS = 2
 
 
 def _without_roots(
@@ -133,7 +116,7 @@ def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: C
     half_line = domain.low.is_zero and domain.high == sp.oo
     half_line = half_line and (not domain.low_included or proves_nonzero(poly.eval(0), known))
     return bool(half_line and _one_change_of_sign(poly, known)) or all(
-        _elsewhere(sp.Poly(factor, x), x, value, domain, known)
+        _elsewhere(sp.Poly(factor, x), value, domain, known)
         for factor, _ in sp.factor_list(quotient.as_expr())[1]
         if factor.has(x)
     )
@@ -157,13 +140,10 @@ def _quotient(poly: sp.Poly, value: sp.Expr) -> sp.Poly:
     return sp.Poly(coefficients[1:], poly.gen)
 
 
-def _elsewhere(
-    factor: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: Conditions
-) -> bool:
+def _elsewhere(factor: sp.Poly, value: sp.Expr, domain: Domain, known: Conditions) -> bool:
     """Tell whether the roots of a factor are outside the domain, or the known root again."""
     if factor.degree() > 1:
-        inside = known.with_interval((x, domain.low, domain.high))
-        return proves_nonzero(factor.as_expr(), inside)
+        return False
     slope, constant = factor.all_coeffs()
     if not proves_nonzero(slope, known):
         return False

@@ -142,7 +142,7 @@ def _contents(sections: dict[str, list[Derivation]]) -> str:
     for index, (section, members) in enumerate(sections.items(), start=1):
         links = "".join(
             f'<li><a href="#{each.label}"><span class="number">({number(each.label)})</span> '
-            f"{_text(each.title, ())}</a></li>"
+            f"<span>{_text(each.title, ())}</span></a></li>"
             for each in members
         )
         entries.append(
