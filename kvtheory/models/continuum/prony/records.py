@@ -235,7 +235,9 @@ def with_pauses(drive: BaseMotion, end: float, *, needed: bool) -> tuple[Any, An
         clock = np.zeros(len(drive.rows), PIECE)
         clock["since"] = drive.rows[:, b_.START]
         return drive.rows, clock, end
-    found, pauses, lost, before, last = [], [], 0.0, 0.0, end
+    found: list[Any] = []
+    pauses: list[Any] = []
+    lost, before, last = 0.0, 0.0, end
     rows = np.pad(drive.rows, ((0, 0), (0, max(b_.POWERS + 2 - drive.rows.shape[1], 0))))
     pause = end / (1.0 + len(rows))
     for row in rows:
