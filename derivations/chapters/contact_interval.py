@@ -98,6 +98,7 @@ def _interval(proof: Proof) -> None:
     """
     relaxed = E * _h(place - m) - _h(place)
     proof.notation |= {"D_1": DIFFERENCE, "f": relaxed}
+    proof.recall("F9-difference", E)
     proof.recall("F9-difference")
     proof.equal(sp.Derivative(DIFFERENCE, place), sp.exp(time) * sp.Derivative(relaxed, place),
                 "$D_1$ rises and falls with $f$", left=r"\frac{\partial D_1}{\partial \xi}",

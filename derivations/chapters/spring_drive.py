@@ -72,6 +72,7 @@ def _scaled(proof: Proof) -> None:
     force = F_x - C_x * x_a.diff(t) - k_x * x_a
     proof.define(x_a.diff(t, 2), force / M_x, "friction, damper and spring")
     result = f_friction - damper * along_s - kappa_x * along
+    proof.equal(along_ss, result / eps_x, "solved for the acceleration")
     proof.equal(eps_x * along_ss, result, "scaled motion")
 
 
@@ -143,8 +144,8 @@ def _quartic(proof: Proof) -> None:
     determinant = own[0] * other[1] - own[1] * other[0]
     proof.equal(determinant, quartic, "the determinant of the two motions below", left=_BOTH)
     _forces_of_start(proof)
-    proof.recall("scaled-form")
-    proof.recall("F22-scaled")
+    proof.recall("scaled-form", d_ss)
+    proof.recall("F22-scaled", along_ss)
     edge = per_rate - a
     proof.equal(at_motion(right, {d: a**2, d_s: 0}), edge, "the trailing edge in steady sliding")
     proof.where(sp.Gt(place, 0), "the change is small")

@@ -77,7 +77,7 @@ def _linearised(proof: Proof) -> None:
     )
     proof.recall("F11-start", rho, right, left)
     proof.recall("F11", f_normal)
-    proof.recall("scaled-form")
+    proof.recall("scaled-form", d_ss)
     by_depth, by_rate = (
         at_motion(sp.Derivative(eps * d_ss, variable), {d: a**2, d_s: 0}) for variable in (d, d_s)
     )

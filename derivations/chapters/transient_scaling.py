@@ -112,4 +112,5 @@ def _scaled_motion(proof: Proof) -> None:
     proof.define(g, W_0 / M, "the weight is the load at rest")
     proof.define(z_a.diff(t, 2), force / M, "Eq. (17) with the force of the spring")
     result = 1 - f_normal - kappa * (d - 1)
+    proof.equal(d_ss, result / eps, "solved for the acceleration")
     proof.equal(eps * d_ss, result, "scaled motion")
