@@ -21,7 +21,7 @@ from .theorems import kappa, lam
 
 (
     s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
-    ball_loss, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
+    ball_loss, strip_half, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
     ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
     ball_load_high, ball_friction_low, ball_friction_high, ball_low, ball_high,
 ) = symbols(r"""
@@ -37,6 +37,7 @@ from .theorems import kappa, lam
     N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
     T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
     D_b         \tilde D          1  integral by which a ball leaves energy behind
+    a_b         \tilde a          m  half length of a strip of a ball
     phi_b       \tilde \varphi    1  scaled friction force of a ball, $F R/(K \delta a^3
             \sqrt{R_{\mathrm{y}}/R})$
     m_b         \tilde m          1  scaled friction coefficient of a ball, $\mu R/a$
@@ -141,7 +142,7 @@ def _strip(proof: Proof) -> None:
     for law, form in zip((strip_load, strip_friction, strip_loss), laws, strict=True):
         proof.define(law(y), form, "over both sides")
     proof.where(width > 0, "within the contact")
-    strip = {a: a * sp.sqrt(width), delta: delta * width}
+    strip = {a: strip_half, delta: delta * width}
     proof.recall("F21-load", (r, sp.sqrt(a**2 + l_r**2)), (W, STRIP_LOAD), at=strip)
     proof.recall("eq27", (x_te, trailing_edge), at=strip)
     proof.recall("eq26", at=strip)
@@ -156,6 +157,7 @@ def _strip(proof: Proof) -> None:
     proof.recall("eq3", at={x: x_te})
     proof.recall("eq28", delta)
     proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(strip_half, a * sp.sqrt(width), "half length of the strip")
     proof.equal(2 * W / (K * delta * a), strip_load(y), "F21-load, both sides")
     proof.equal(2 * F_x * R / (K * delta * a**2), strip_friction(y), "and F21")
     proof.equal(2 * BEHIND * R / (K * delta * a**2), strip_loss(y), "by the surface behind")
