@@ -222,8 +222,8 @@ def tex_condition(gap: sp.Expr) -> str:
     """
     if is_square(gap):
         terms = sp.Add.make_args(gap.base)
-        first, *rest = sorted(terms, key=lambda each: each.could_extract_minus_sign())
-        return rf"{tex(first)} \neq {tex(-sp.Add(*rest))}"
+        first, *others = sorted(terms, key=lambda each: each.could_extract_minus_sign())
+        return rf"{tex(first)} \neq {tex(-sp.Add(*others))}"
     for symbol in sorted(gap.free_symbols, key=str):
         rest = sp.expand(gap - symbol), sp.expand(gap + symbol)
         if not rest[1].has(symbol):

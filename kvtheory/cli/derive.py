@@ -190,6 +190,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
     from kvtheory.scene.capabilities import lacks_numbers, lacks_quadratic
+    from kvtheory.scene.indenters import Sphere
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
@@ -227,7 +228,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
     arms = tuple((arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms)
     if arms:
         quantities = {name: value for name, value in quantities.items() if name not in ("C", "tau")}
-    if arms and not line:
+    if arms and isinstance(scene.indenter, Sphere):
         quantities["R_y"] = scene.indenter.radius * scene.indenter.stretch**2
     return quantities, scene.indenter.shape, arms, f"{where} ({parts})"
 
