@@ -64,11 +64,11 @@ METHODS: dict[str, tuple[Callable[[float], Any], Callable[[Any], Any]]] = {
     ),
     "continuum, interpreted": (
         lambda rtol: continuum(False, rtol),
-        lambda found: (TIMES, found.states(TIMES)[:, 0]),
+        lambda found: (TIMES, found.states(TIMES)["depth"]),
     ),
     "continuum, compiled": (
         lambda rtol: continuum(True, rtol),
-        lambda found: (TIMES, found.states(TIMES)[:, 0]),
+        lambda found: (TIMES, found.states(TIMES)["depth"]),
     ),
 }
 """How each is run, and the times and depths that are compared: at its own steps without dense output."""

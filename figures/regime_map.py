@@ -13,7 +13,6 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from figures import drawing
-from kvtheory.models.continuum.evaluation import RATE
 from kvtheory.models.continuum.solver import Trajectory, solve
 from kvtheory.plots import BLACK
 from kvtheory.scene.base_motion import BaseMotion
@@ -110,7 +109,7 @@ def _turns(motion: Trajectory) -> bool:
     """Whether the indenter sinks again after it has risen."""
     starts = np.array(motion.starts)
     spans = np.diff(np.append(starts, motion.end))
-    rates = motion.states((starts[:, None] + spans[:, None] * QUARTERS).reshape(-1))[:, RATE]
+    rates = motion.states((starts[:, None] + spans[:, None] * QUARTERS).reshape(-1))["depth_rate"]
     return bool(rates.max() > TURN * np.abs(rates).max())
 
 
