@@ -14,13 +14,15 @@ memory, and since u' = -u there, twice that energy is dissipated per unit of tim
 
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.models.continuum.surface import Array, integrals, kept, relaxing
+
+if TYPE_CHECKING:
+    from kvtheory.models.continuum.solver import Trajectory
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Ledger:
 MOVING = "depth", "depth_rate", "offset", "offset_rate"
 
 
-def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
+def ledger(motion: "Trajectory", s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape.
 
     >>> from kvtheory.models.continuum.solver import solve

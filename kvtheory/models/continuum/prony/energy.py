@@ -24,7 +24,7 @@ free ground follows from the ground at present, and that of ground which an
 edge meets again from the element at this edge.
 """
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -44,9 +44,11 @@ from kvtheory.models.continuum.prony.records import (
     together,
 )
 from kvtheory.models.continuum.prony.step import forces, moments
-from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as drive_
+
+if TYPE_CHECKING:
+    from kvtheory.models.continuum.prony.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -69,7 +71,7 @@ class Integrals(NamedTuple):
 class Ground:
     """The elements that the edges passed, with their stresses at any time."""
 
-    def __init__(self, motion: Trajectory) -> None:
+    def __init__(self, motion: "Trajectory") -> None:
         run, self.motion = motion.run, motion
         count = motion.counts.steps
         self.steps = motion.steps
@@ -372,13 +374,13 @@ def _of_arms(powers: Array, index: Any, theta: Array) -> Array:
     return np.asarray(polynomial.polyval(theta, powers[index].T, tensor=False))
 
 
-def volume(motion: Trajectory, s: float) -> float:
+def volume(motion: "Trajectory", s: float) -> float:
     """Return U = int u dxi over the whole surface; f_z = 3/4 (U + sum S_i), S_i' = k_i U' - S_i/T_i (F14)."""
     within, outside = Ground(motion).integrals(motion.clock([s]))
     return float(within.volume[0] + outside.volume[0])
 
 
-def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
+def ledger(motion: "Trajectory", s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape; its entries are as on Kelvin-Voigt.
 
     >>> from kvtheory.models.continuum.prony.trajectory import solve
