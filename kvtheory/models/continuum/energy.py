@@ -14,15 +14,12 @@ memory, and since u' = -u there, twice that energy is dissipated per unit of tim
 
 from collections.abc import Callable
 from dataclasses import astuple, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kvtheory.models.continuum.surface import Array, integrals, kept, relaxing
-
-if TYPE_CHECKING:
-    from kvtheory.models.continuum.solver import Trajectory
 
 
 @dataclass(frozen=True)
@@ -59,9 +56,10 @@ class Ledger:
 
 
 MOVING = "depth", "depth_rate", "offset", "offset_rate"
+"""What of a state has energy itself."""
 
 
-def ledger(motion: "Trajectory", s: ArrayLike) -> Ledger:
+def ledger(motion: Any, s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape.
 
     >>> from kvtheory.models.continuum.solver import solve

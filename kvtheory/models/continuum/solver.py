@@ -180,10 +180,13 @@ class Trajectory:
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
         row = self.states([s])[0]
-        names = (STATE_NAMES[state] for state in row["edge_states"].tolist())
-        motion = (row[name] for name in ("depth", "depth_rate", "acceleration", "sliding_velocity"))
-        forces = row["normal_force"], row["friction_force"]
-        return Moment(s, *map(float, (*motion, *row["edges"])), *names, *map(float, forces))
+        left, right = (STATE_NAMES[state] for state in row["edge_states"].tolist())
+        edges = dict(zip(("left", "right"), row["edges"].tolist(), strict=True))
+        return Moment(
+            s, float(row["depth"]), float(row["depth_rate"]), float(row["acceleration"]),
+            float(row["sliding_velocity"]), **edges, left_state=left, right_state=right,
+            normal_force=float(row["normal_force"]), friction_force=float(row["friction_force"]),
+        )  # fmt: skip
 
     def states(self, s: ArrayLike) -> NDArray[Any]:
         """Return the states at an array of times as a structured array, see `evaluation.STATE`."""

@@ -4,16 +4,13 @@ As on Kelvin-Voigt, see `continuum.maxima`, but by denser and denser samples.
 """
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.evaluation import MEASURED
-
-if TYPE_CHECKING:
-    from kvtheory.models.continuum.prony.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -22,7 +19,7 @@ GRID, ZOOMS, BESIDE = 65, 2, 2
 two, as a step ends where the next starts. The time is known to 1/256 of the distance of samples."""
 
 
-def sampled(motion: "Trajectory") -> Array:
+def sampled(motion: Any) -> Array:
     """Return times that divide each step, the last just before its end."""
     starts = motion.steps["time"][motion.steps["lasts"] > 0.0]
     ends = np.append(starts[1:] * maxima.JUST_BEFORE, motion.end)
@@ -31,7 +28,7 @@ def sampled(motion: "Trajectory") -> Array:
     return np.asarray(times.reshape(-1))
 
 
-def largest(motion: "Trajectory", name: str, sense: int) -> tuple[int, int, float, float]:
+def largest(motion: Any, name: str, sense: int) -> tuple[int, int, float, float]:
     """Return the extreme of a quantity in a sense, see `maxima.EXTREME`."""
     peaks = name == "peak_pressure"
     times, found, _ = motion.samples_with_peaks if peaks else motion.samples
@@ -47,7 +44,7 @@ def largest(motion: "Trajectory", name: str, sense: int) -> tuple[int, int, floa
     return MEASURED.index(name), sense, best[0], value
 
 
-def settled(motion: "Trajectory", force: float, share: float) -> float:
+def settled(motion: Any, force: float, share: float) -> float:
     """Return the time from which friction stays within a share of `force`; NaN if it does not settle."""
     times, found, _ = motion.samples
 
