@@ -7,9 +7,8 @@ _HEAD = """# What works with what
 
 A scene has an indenter shape, a law of the foundation (KV: `kelvin-voigt`, Prony: `generalized-maxwell`,
 both: the same with `damping`, springpot: `fractional-kelvin-voigt`; all: these four), a support and a
-drive. Each row is a question, each
-cell lists the laws on which it is answered for a shape, with any support and any drive unless a remark
-restricts them. A cell is empty where theory is missing.
+drive. Each row is a question, each cell lists the laws on which it is answered for a shape, with any support
+and any drive unless a remark restricts them. A cell is empty where theory is missing.
 The messages of the functions come from the same table."""
 
 

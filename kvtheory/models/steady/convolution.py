@@ -41,12 +41,17 @@ Array = Any
 """Of floats."""
 Shape = Convex | ConvexProfile
 
-USED = RULES[2:4]
-"""Double-exponential rules from 0 to 1: their nodes, with weights of each and of that of twice its step."""
-ENOUGH = 1e-15
+
+def _with_coarser(nodes: Array, weights: Array) -> tuple[Array, Array]:
+    """Return nodes, and the weights of a rule, and of those of twice and four times its step."""
+    from_middle = np.arange(nodes.size) - nodes.size // 2
+    return nodes, np.array([*weights, np.where(from_middle % 4 == 0, 4.0 * weights[0], 0.0)])
+
+
+USED = tuple(_with_coarser(*rule) for rule in RULES[2:4])
+"""Double-exponential rules from 0 to 1."""
+ENOUGH = 1e-14
 """Estimated error from which the finer rule is taken: next to a tip, where a strip bends."""
-LAYER = 30.0
-"""Factor by which halving the step improves a rule at least, where arms are loaded in a thin layer."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
@@ -55,7 +60,7 @@ STRIDE, PEAK_RTOL = 1e-6, 1e-6
 """Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
 between two nodes; the error of its value is of second order."""
 MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
-"""Safety factor on the differences of both rules, rounding, and error from which a result is refused."""
+"""Safety factor on the estimates of the rules, rounding, and error from which a result is refused."""
 OF_WORK = "friction_force", "friction_coefficient", "dissipated_in_contact"
 CANCELLED = 3.6e-15
 """Rounding, over the order of a springpot, of its work: most of it returns if the order is low."""
@@ -165,13 +170,13 @@ class Passed(NamedTuple):
 
 
 class Contact:
-    """One contact, with the values at the nodes of both rules; pressures are over the stiffness."""
+    """One contact, with the values at the nodes of a rule; pressures are over the stiffness."""
 
     load_curvature, guess, noise = None, (), 0.0
 
     def __init__(self, shape: Shape, memory: Memory, depth: float, rule: int = 0) -> None:
         self.shape, self.memory, self.depth, self.rule = shape, memory, depth, rule
-        self.nodes, self.both = nodes, both = USED[rule]
+        self.nodes, self.rules = nodes, rules = USED[rule]
         # The extent at rest: h(-a) = h(back) = depth.
         if isinstance(shape, ConvexProfile):
             self.a, self.back = shape.sides(depth)
@@ -188,9 +193,9 @@ class Contact:
             forth, back = (end - start) * nodes, (end - start) * nodes[::-1]
             rows[0].append(start + forth if abs(start) < abs(end) else end - back)
             rows[1].append(x_te - end + back)
-            rows[2].append((end - start) * both)
+            rows[2].append((end - start) * rules)
         self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
-        """Positions, distances from the trailing edge, and weights of both rules."""
+        """Positions, distances from the trailing edge, and weights of all rules."""
         self.rate = -shape.slope(self.x)
         impulse = self.ahead + (0.0 if memory is None else memory.amount(self.ahead).sum(axis=0))
         self.load, apart = self.total(self.rate * impulse)
@@ -200,9 +205,7 @@ class Contact:
             self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
 
     def _error(self, apart: float) -> float:
-        """Return the relative error from the difference of both rules."""
-        if not getattr(self.shape, "bent", False):
-            apart = max(apart**1.5, apart / LAYER)
+        """Return the relative error from the estimate of a rule."""
         error = MARGIN * (apart + getattr(self.shape, "noise", 0.0))
         if not error < LIMIT:
             raise QuadratureError(
@@ -241,12 +244,21 @@ class Contact:
         return self.depth - self.shape.height(self.x) + self.rows.sum(axis=0)
 
     def total(self, values: Array) -> tuple[float, float]:
-        """Return the integral over the contact, and the difference of both rules."""
-        fine, coarse = (float(weights @ values) for weights in self.weights)
-        return fine, abs(fine - coarse)
+        """Return the integral over the contact, and its estimated error."""
+        sums = self.weights @ values
+        return float(sums[0]), self._estimate(*np.abs(np.diff(sums)).tolist())
+
+    def _estimate(self, last: float, before: float) -> float:
+        """Return the error of a sum from its last two differences: the last one, times their ratio.
+
+        For an analytic integrand that is about the square of the difference, in a thin layer in which arms
+        are loaded a part of it; where the shape bends at an unknown place, it is the difference itself.
+        """
+        bent = getattr(self.shape, "bent", False)
+        return last if bent else last * min(last / max(before, TINY), 1.0)
 
     def remembered(self, x: Array) -> tuple[Array, float]:
-        """Return the pressure of each branch at the positions x, and the difference of both rules."""
+        """Return the pressure of each branch at the positions x, and the largest error of its mean."""
         shape, memory, a = self.shape, self.memory, self.a
         if memory is None:
             return np.zeros((1, x.size)), 0.0
@@ -263,11 +275,11 @@ class Contact:
             if width.any():
                 past = memory.delay(first[..., None] + width[..., None] * self.nodes, X)
                 rate = -shape.slope(np.maximum(x[:, None] - past, -a))
-                means.append(width[..., None] * (rate @ self.both.T))
-        fine, coarse = np.moveaxis(sum(means), -1, 0)
-        size = np.abs(amount * fine).sum(axis=0)
-        apart = np.abs(amount * (fine - coarse)).sum(axis=0)
-        return amount * fine, float((apart / np.maximum(size.max(), TINY)).max())
+                means.append(width[..., None] * (rate @ self.rules.T))
+        sums = amount * np.moveaxis(sum(means), -1, 0)
+        size = max(np.abs(sums[0]).sum(axis=0).max(), TINY)
+        apart = np.abs(np.diff(sums, axis=0)).sum(axis=1).max(axis=1) / size
+        return sums[0], self._estimate(*apart.tolist())
 
     def pressure_at(self, x: float) -> float:
         """Return the pressure at x."""

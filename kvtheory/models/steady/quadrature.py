@@ -59,7 +59,7 @@ ANY_SHAPE = (
     "away; all contacts are summed"
 )
 CONVOLUTION = (
-    "differences of two double-exponential rules, for the memory and for the contact, carried to each "
+    "differences of three double-exponential rules, for the memory and for the contact, carried to each "
     "quantity; for shapes computed to a few units in the last place"
 )
 STRIPS = "two rules compared over strips, and the estimate of each strip, by {}"
