@@ -21,10 +21,9 @@ from kvtheory.models.continuum.deviation import DEVIATION
 from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import solved_scene as on_arms
 from kvtheory.models.continuum.prony import trajectory
-from kvtheory.models.continuum.run import ROOM, begin, with_more_room
+from kvtheory.models.continuum.run import DONE, ROOM, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import SERIES, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
-from kvtheory.models.continuum.stepping import DONE
 from kvtheory.records import readable
 from kvtheory.results.certificate import AT_REST, Certificate
 from kvtheory.results.table import QUANTITIES
@@ -32,7 +31,6 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, UNSETTLED, Array, Column, Measured, Plan
-from kvtheory.sweeps.prony_motion import PronyMotion
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = "friction_force", maxima.MAGNITUDE
@@ -200,8 +198,7 @@ class _Motions:
             solution, _, errors = certified(scene, None, self.plan.rtol)
             return solution, solution.motion, errors
         found = on_arms.transient(scene, None, self.plan.rtol)
-        peaks = "peak_pressure" in self.plan.needed(steady=False)
-        return found.solution, PronyMotion(found.solution, peaks), found.certificate
+        return found.solution, found.solution.motion, found.certificate
 
     def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
         """Keep the errors of scenes, and what the certificate states of them."""

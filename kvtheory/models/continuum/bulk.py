@@ -7,8 +7,8 @@ import numpy as np
 from kvtheory.models.continuum import deviation as d_
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima as m_
-from kvtheory.models.continuum.run import Run
-from kvtheory.models.continuum.stepping import DONE, TAKE_OFF, walk
+from kvtheory.models.continuum.run import DONE, Run
+from kvtheory.models.continuum.stepping import TAKE_OFF, walk
 from kvtheory.records import record
 
 

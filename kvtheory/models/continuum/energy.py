@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.models.continuum.surface import Array, integrals, kept, relaxing
 
 
@@ -57,9 +56,10 @@ class Ledger:
 
 
 MOVING = "depth", "depth_rate", "offset", "offset_rate"
+"""What of a state has energy itself."""
 
 
-def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
+def ledger(motion: Any, s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape.
 
     >>> from kvtheory.models.continuum.solver import solve

@@ -90,7 +90,8 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
     found.depth, found.depth_rate, found.acceleration = d, v, dv
     found.sliding_velocity, found.velocity, found.way = number, number, Y
     found.edges[0], found.edges[1] = l, r
-    leads = number > 0.0 or (number == 0.0 and forward(run, step, s))
+    first = run.given.drives if run.given.sprung else 0
+    leads = number > 0.0 or (number == 0.0 and forward(run.pieces, first, step.piece, s))
     found.leading_edge, found.trailing_edge = (l, r) if leads else (r, l)
     found.edge_states[0], found.edge_states[1] = left.state, right.state
     found.normal_force, found.friction_force = f_z, f_x
@@ -104,11 +105,14 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         found.spring_force = spring * found.offset + damping * found.offset_rate
 
 
-def forward(run: Run, step: Any, s: float) -> bool:
-    """Whether the left edge was the leading edge before the base came to the rest it is in at `s`."""
-    number, k, first = 0.0, step.piece, run.given.drives if run.given.sprung else 0
+def forward(pieces: Any, first: int, k: int, s: float) -> bool:
+    """Whether the left edge was the leading edge before the base came to the rest it is in at `s`.
+
+    `pieces` are those of its motion, from the `first` to the present one, `k`.
+    """
+    number = 0.0
     while number == 0.0 and k >= first:
-        piece = run.pieces[k]
+        piece = pieces[k]
         number = evaluate(piece, 0.5 * (piece[START] + min(s, piece[END])))[1]
         k -= 1
     return number >= 0.0

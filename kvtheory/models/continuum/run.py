@@ -18,6 +18,9 @@ from kvtheory.scene.base_motion import BaseMotion
 
 FAR = 1e150
 """Outer end of undisturbed ground; its square is finite."""
+DONE, PAUSED, FULL, STUCK, INCONSISTENT = range(5)
+"""How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
+of zero; without a consistent state of the contact."""
 ROOM = 64
 """Initial capacity in steps; a start from rest takes about thirty."""
 PER_STEP, EVENTS_PER_STEP = 8, 8

@@ -10,11 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.edge_states import STATE_NAMES
-from kvtheory.models.continuum.energy import Ledger, ledger
+from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
 from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solver import STEP_LIMIT, Trajectory, solve
-from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
@@ -54,10 +53,11 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
 
 
 @dataclass(frozen=True)
-class ScaledMotion:
-    """A solved motion and its scales.
+class SolvedScene:
+    """A solved motion and its scales; evaluates every quantity of a transient in SI.
 
-    `end` is that of the run in scaled time; the motion may extend slightly beyond it.
+    `motion` is a `Trajectory`, on a Prony series one of `prony.trajectory`. `end` is that of the run in
+    scaled time; the motion may extend slightly beyond it.
     """
 
     motion: Any
@@ -80,13 +80,6 @@ class ScaledMotion:
             raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
         return np.minimum(s, end)[()]
 
-
-@dataclass(frozen=True)
-class SolvedScene(ScaledMotion):
-    """A solved motion; evaluates every quantity of a transient in SI."""
-
-    motion: Trajectory
-
     @property
     def events(self) -> tuple[Event, ...]:
         """The events of the contact, and the force maxima, in order of time (s)."""
@@ -101,7 +94,7 @@ class SolvedScene(ScaledMotion):
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        found, own = self.motion.states(self.scaled(time)), scales(self.units)
+        found, own = self.motion.states(np.atleast_1d(self.scaled(time))), scales(self.units)
         left, right = found["edge_states"].T
         leads = found["leading_edge"] == found["edges"][:, 0]
         leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
@@ -113,22 +106,22 @@ class SolvedScene(ScaledMotion):
         }
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
-        """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
-        s = self.scaled(time)
-        moment = self.motion.at(s)
-        xi = np.asarray(x, dtype=float) / self.units.half_length
-        p = moment.depth + moment.rate - xi * (xi + 2.0 * moment.number)
-        inside = (moment.left <= xi) & (xi <= moment.right)  # false in flight, where both are NaN
-        return np.where(inside, np.maximum(p, 0.0), 0.0) * self.units.pressure
+        """Return p in Pa at the positions `x` (m)."""
+        p: Array = self.motion.pressure(self._xi(x), self.scaled(time))
+        return p * self.units.pressure
 
     def surface(self, x: ArrayLike, time: float) -> Array:
         """Return the compression u in m of the foundation at the positions `x` (m)."""
-        xi = np.asarray(x, dtype=float) / self.units.half_length
-        return height(self.motion, xi, self.scaled(time)) * self.units.depth
+        u: Array = self.motion.compression(self._xi(x), self.scaled(time))
+        return u * self.units.depth
+
+    def _xi(self, x: ArrayLike) -> Array:
+        return np.asarray(x, dtype=float) / self.units.half_length
 
     def energy(self, time: ArrayLike) -> Ledger:
         """Return the energy ledger in J/m at the times (s)."""
-        return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
+        books: Ledger = self.motion.ledger(self.scaled(time))
+        return books.scaled(self.units.energy)
 
 
 def transient(
@@ -136,9 +129,11 @@ def transient(
     *, certify: bool = True, max_steps: int | None = None,
 ) -> Transient:  # fmt: skip
     """Solve a scene; `kvtheory.transient` documents it."""
-    solution, time, errors = certified(
-        scene, times, rtol, progress, certify=certify, max_steps=max_steps
-    )
+    return result(*certified(scene, times, rtol, progress, certify=certify, max_steps=max_steps))
+
+
+def result(solution: SolvedScene, time: Array, errors: Certificate) -> Transient:
+    """Return the answer for a solved scene at the times (s)."""
     motion = solution.motion
     kind = Transient if solution.units.rigid_drive else SprungTransient
     return kind(
@@ -148,7 +143,16 @@ def transient(
     )  # fmt: skip
 
 
-def force_maxima(motion: Trajectory) -> tuple[float, float]:
+def spring_of(units: StaticState) -> Spring | None:
+    """Return the spring of a drive, or None if it is rigid."""
+    if units.rigid_drive:
+        return None
+    return Spring(
+        units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
+    )
+
+
+def force_maxima(motion: Any) -> tuple[float, float]:
     """Return the times at which f_z and |f_x| are largest, each the first one from s = 0 on."""
     forces = ((name, maxima.MAGNITUDE) for name in ("normal_force", "friction_force"))
     normal, friction = motion.largest(*forces)["time"].tolist()
@@ -164,11 +168,7 @@ def certified(
     Without `times`, these are the natural ones.
     """
     units = StaticState.of(scene)
-    drive, spring = scaled_drive(scene, units), None
-    if not units.rigid_drive:
-        spring = Spring(
-            units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
-        )
+    drive, spring = scaled_drive(scene, units), spring_of(units)
     limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     first, second = methods(rtol)
 

@@ -10,33 +10,43 @@ indenter, d = 1, needs no equation along z, only events.
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from time import thread_time
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, maxima, stepping
+from kvtheory.models.continuum import (
+    bulk,
+    compiled,
+    deviation,
+    energy,
+    evaluation,
+    maxima,
+    stepping,
+    surface,
+)
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.compiled import NOTHING
 from kvtheory.models.continuum.edge_states import STATE_NAMES, TOUCHING
+from kvtheory.models.continuum.following import Solver, follow
 from kvtheory.models.continuum.run import Run, Spring, StepControl
 from kvtheory.records import blanks, readable, set_fields, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
+Array = NDArray[np.float64]
+
 STEP_LIMIT = 300_000
 ATTEMPTS = 1000
 """Attempted steps between two reports of progress."""
 REASONS = {
-    stepping.STUCK: "the step length went to zero",
-    stepping.INCONSISTENT: "no consistent state of the edges",
+    r_.STUCK: "the step length went to zero",
+    r_.INCONSISTENT: "no consistent state of the edges",
 }
 REVERSAL = "sliding reverses"
 """Kind of an event that occurs on a spring only."""
@@ -170,10 +180,13 @@ class Trajectory:
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
         row = self.states([s])[0]
-        names = (STATE_NAMES[state] for state in row["edge_states"].tolist())
-        motion = (row[name] for name in ("depth", "depth_rate", "acceleration", "sliding_velocity"))
-        forces = row["normal_force"], row["friction_force"]
-        return Moment(s, *map(float, (*motion, *row["edges"])), *names, *map(float, forces))
+        left, right = (STATE_NAMES[state] for state in row["edge_states"].tolist())
+        edges = dict(zip(("left", "right"), row["edges"].tolist(), strict=True))
+        return Moment(
+            s, float(row["depth"]), float(row["depth_rate"]), float(row["acceleration"]),
+            float(row["sliding_velocity"]), **edges, left_state=left, right_state=right,
+            normal_force=float(row["normal_force"]), friction_force=float(row["friction_force"]),
+        )  # fmt: skip
 
     def states(self, s: ArrayLike) -> NDArray[Any]:
         """Return the states at an array of times as a structured array, see `evaluation.STATE`."""
@@ -183,6 +196,21 @@ class Trajectory:
         found = self._records(len(times), evaluation.STATE)
         self._perform(bulk.STATES, self._rows(times), found)
         return np.asarray(structured(found, evaluation.STATE))
+
+    def pressure(self, xi: Array, s: float) -> Array:
+        """Return p = d + d' - xi^2 - 2 lambda xi at places of the contact and one time, else zero."""
+        now = self.at(s)
+        p = now.depth + now.rate - xi * (xi + 2.0 * now.number)
+        inside = (now.left <= xi) & (xi <= now.right)  # false in flight, where both are NaN
+        return np.where(inside, np.maximum(p, 0.0), 0.0)
+
+    def compression(self, xi: Array, s: float) -> Array:
+        """Return the compression of the foundation at places and one time."""
+        return surface.height(self, xi, s)
+
+    def ledger(self, s: ArrayLike) -> energy.Ledger:
+        """Return the energy ledger at times."""
+        return energy.ledger(self, s)
 
     def deviations(self, other: "Trajectory", times: NDArray[np.float64] | None = None) -> Any:
         """Return the `deviation` of another solution at the `times`, by default the natural ones."""
@@ -278,34 +306,15 @@ def solve(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
     numbers = float(inertia_number), float(support_number)
-    kernel, s, begun, took = compiled.KERNEL, 0.0, thread_time(), 0.0
-    arrays = kernel.worthwhile() if fast is None else fast
-    run = r_.begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
-    if arrays and not compiled.prepared(run):
-        run = r_.as_objects(run)
-    left, status = max_steps, stepping.PAUSED
-    while status != stepping.DONE:
-        if (
-            not compiled.in_use(run)
-            and s
-            and fast is None
-            and kernel.worthwhile(took * (end / s - 1.0))
-        ):
-            as_arrays = r_.as_arrays(run)
-            run = as_arrays if compiled.prepared(as_arrays) else run
-        with nullcontext() if compiled.in_use(run) else kernel.interpreting():
-            status = compiled.chosen(run)(
-                bulk.WALK, run, run, *NOTHING, min(ATTEMPTS, left), bulk.NO_BULK
-            )
-        now, took = run.now[0], thread_time() - begun
-        left = max_steps - int(value(now, "steps") + value(now, "rejected"))
-        s = float(value(now, "s"))
-        if status in REASONS:
-            raise TransientError(REASONS[status], s)
-        if status == stepping.FULL:
-            run = r_.with_more_room(run)
-        if left <= 0 and status != stepping.DONE:
-            raise TransientError(f"more than {max_steps} steps (`max_steps`)", s)
-        if progress is not None:
-            progress(s)
-    return Trajectory(run)
+    given = drive, numbers, spring, float(end), rtol, control
+    followed = Solver(
+        kernel=compiled.KERNEL, attempts=ATTEMPTS,
+        begin=lambda arrays: r_.begin(*given, arrays=arrays), prepared=compiled.prepared,
+        as_arrays=r_.as_arrays, with_more_room=r_.with_more_room, walk=_walk,
+        time=lambda run: float(value(run.now[0], "s")), refused=REASONS, failure=TransientError,
+    )  # fmt: skip
+    return Trajectory(follow(followed, end, max_steps, fast, progress))
+
+
+def _walk(run: Run, attempts: int) -> int:
+    return compiled.chosen(run)(bulk.WALK, run, run, *NOTHING, attempts, bulk.NO_BULK)

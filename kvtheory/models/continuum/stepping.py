@@ -7,7 +7,16 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import memory_chains as m_
 from kvtheory.models.continuum.contact import motion
 from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES, TOUCHING
-from kvtheory.models.continuum.run import Run, has_room, rest
+from kvtheory.models.continuum.run import (
+    DONE,
+    FULL,
+    INCONSISTENT,
+    PAUSED,
+    STUCK,
+    Run,
+    has_room,
+    rest,
+)
 from kvtheory.models.continuum.trial_step import Monitors, attempt, begin_along, sliding_now
 from kvtheory.scene import base_motion as b_
 
@@ -34,10 +43,6 @@ SMOOTH = 1e-9
 """Relative difference of lambda or lambda' between pieces of the drive that counts as rounding."""
 TOGGLE_LIMIT = 12
 """Most changes of state at one instant; more than a few mean that no state is consistent."""
-
-DONE, PAUSED, FULL, STUCK, INCONSISTENT = range(5)
-"""How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
-of zero; without a consistent state of the edges."""
 
 PEELS, TOUCHES, CROSSES, TAKE_OFF, LANDING = 0, 2, 4, 6, 7
 """Kinds of events, those of the left edge; the right edge adds 1."""

@@ -13,7 +13,6 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import instant
 from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES
 from kvtheory.models.continuum.run import NODE, PLACE, step_at
-from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.records import new, structured
 from kvtheory.scene import base_motion as drive_
 
@@ -42,7 +41,7 @@ STRIP = np.polynomial.legendre.leggauss(3)
 """Exact for u^2 on a strip."""
 
 
-def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
+def height(motion: Any, xi: ArrayLike, s: float) -> Array:
     """Return the compression u at the positions `xi`, also where the surface relaxes (fact F8).
 
     Under the indenter u = d - xi^2. Outside u = e^-(s - sigma) g(X, sigma), where sigma is the instant
@@ -67,7 +66,7 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     return u
 
 
-def volume(motion: Trajectory, s: float) -> float:
+def volume(motion: Any, s: float) -> float:
     """Return U = int u dxi over the whole surface, of which f_z = 3/4 (U + U') (fact F14)."""
     now, free = motion.at(s), float(relaxing(motion, [s], 1, kept(motion, 1))[0])
     if now.left_state == "free":
@@ -77,7 +76,7 @@ def volume(motion: Trajectory, s: float) -> float:
 
 
 def relaxing(
-    motion: Trajectory, times: Sequence[float], power: int, memory: list[tuple[float, float]]
+    motion: Any, times: Sequence[float], power: int, memory: list[tuple[float, float]]
 ) -> Array:
     """Return the integral of u^`power` outside the contact at each time; `memory` comes from `kept`."""
     total = np.zeros(len(times))
@@ -96,7 +95,7 @@ def relaxing(
     return total
 
 
-def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
+def kept(motion: Any, power: int) -> list[tuple[float, float]]:
     """Return, for each node, when it was complete, and the integral of u^power from there outward."""
     nodes = motion.nodes
     complete = np.maximum(nodes["inner"]["s"], nodes["outer"]["s"])
@@ -114,7 +113,7 @@ def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
     return memory
 
 
-def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
+def _front(motion: Any, k: int, s: float, edge: float) -> tuple[list[Any], int]:
     """Return the nodes that are partial at `s`, with the edge at xi = `edge`, and the next whole one."""
     run = motion.interpreted
     index = step_at(run, s)
@@ -141,7 +140,7 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any]
     return [cut], node.next
 
 
-def _sweep_of(motion: Trajectory, nodes: NDArray[Any]) -> Callable[[Any, Array], tuple[Array, ...]]:
+def _sweep_of(motion: Any, nodes: NDArray[Any]) -> Callable[[Any, Array], tuple[Array, ...]]:
     """Return a function of `which` nodes, and times sigma of shape (which, points).
 
     It returns xi, d, Y and dX/dsigma of the edges that swept these nodes.
@@ -173,7 +172,7 @@ def _sweep_of(motion: Trajectory, nodes: NDArray[Any]) -> Callable[[Any, Array],
     return at
 
 
-def _left(motion: Trajectory, node: Any, X: Array, s: float) -> Array:
+def _left(motion: Any, node: Any, X: Array, s: float) -> Array:
     """Return u at the points `X` of one node."""
     inner: Any = np.full(X.shape, node.inner.s)
     if node.step < 0:
@@ -189,7 +188,7 @@ def _left(motion: Trajectory, node: Any, X: Array, s: float) -> Array:
     return (np.exp(inner - s) * (d - (X + Y) ** 2))[0]
 
 
-def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) -> Array:
+def _integrals(motion: Any, nodes: NDArray[Any], s: Array, power: int) -> Array:
     """Return the integrals of [e^-(s - sigma) g(X, sigma)]^power over X on nodes, each at its time s."""
     found, strip = np.empty(len(nodes)), nodes["step"] < 0
     inner, outer = nodes[strip]["inner"][:, None], nodes[strip]["outer"][:, None]

@@ -20,7 +20,8 @@ forces follow (F33), obey, with I_n = int xi^n dxi, summed over both edges,
 An edge peels at p = 0, or touches the free surface, d - xi^2 = u: zero on ground that was never touched, and
 where an edge left it at sigma, the solution of u + c u' + sum s_i = 0, a sum of N modes, N + 1 with a damper.
 It peels as long as p of the element there would fall, and touches as long as the indenter presses faster than
-the free surface there would rise. Where lambda jumps, the pressure of a damper does: see `records.paused`.
+the free surface there would rise. Where lambda jumps, the pressure of a damper does, see
+`records.with_pauses`.
 
 A step stores `polynomials` over its length, and those of each arm in `memory`. A loop
 `for i in over(count)` runs over arms: compiled, i is one after the other; interpreted, all at once, as a

@@ -44,7 +44,6 @@ from kvtheory.models.continuum.prony.records import (
     together,
 )
 from kvtheory.models.continuum.prony.step import forces, moments
-from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as drive_
 
@@ -69,7 +68,7 @@ class Integrals(NamedTuple):
 class Ground:
     """The elements that the edges passed, with their stresses at any time."""
 
-    def __init__(self, motion: Trajectory) -> None:
+    def __init__(self, motion: Any) -> None:
         run, self.motion = motion.run, motion
         count = motion.counts.steps
         self.steps = motion.steps
@@ -287,10 +286,11 @@ class Ground:
         F, M = _of_arms(memory.force, index, theta), _of_arms(memory.moment, index, theta)
         l, r = (along(polynomials.edges[index, :, k]) for k in range(2))
         of_arrays: Any = forces
+        integrals_of: Any = moments
         c, lasts, d = self.damper, step["lasts"] > 0.0, self._depth(index, theta)
         damped = c * rate, 2.0 * c * number
         _, friction = of_arrays(l, r, d, damped, F.sum(axis=0), M.sum(axis=0))
-        I_0, I_1, I_2, _ = moments(l, r)
+        I_0, I_1, I_2, _ = integrals_of(l, r)
         pressed = rate * rate * I_0 - 4.0 * number * (rate * I_1 - number * I_2)
         power = 2.0 * self.arms.stiffness[:, None] * (rate * F - 2.0 * number * M)
         w = along(polynomials.offset_rate[index])
@@ -372,13 +372,13 @@ def _of_arms(powers: Array, index: Any, theta: Array) -> Array:
     return np.asarray(polynomial.polyval(theta, powers[index].T, tensor=False))
 
 
-def volume(motion: Trajectory, s: float) -> float:
+def volume(motion: Any, s: float) -> float:
     """Return U = int u dxi over the whole surface; f_z = 3/4 (U + sum S_i), S_i' = k_i U' - S_i/T_i (F14)."""
     within, outside = Ground(motion).integrals(motion.clock([s]))
     return float(within.volume[0] + outside.volume[0])
 
 
-def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
+def ledger(motion: Any, s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`, in their shape; its entries are as on Kelvin-Voigt.
 
     >>> from kvtheory.models.continuum.prony.trajectory import solve

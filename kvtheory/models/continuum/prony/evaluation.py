@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 from kvtheory.models.continuum.edge_states import FREE, PEELING
+from kvtheory.models.continuum.evaluation import forward
 from kvtheory.models.continuum.prony.contact import (
     Motion,
     accumulated,
@@ -63,8 +64,12 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         damped = c * at.v, 2.0 * c * at.number
         f_z, f_x = forces(l, r, at.d, damped, first, second)
         found.normal_force[i], found.friction_force[i] = f_z, f_x
+        spring, damping = run.given.spring, run.given.damping
+        found.spring_force[i] = spring * found.offset[i] + damping * found.offset_rate[i]
         if step.sides[0].state == FREE:
             l = r = math.nan
+        leads = at.number > 0.0 or (at.number == 0.0 and forward(run.pieces, 0, step.piece, s))
+        found.leading_edge[i], found.trailing_edge[i] = (l, r) if leads else (r, l)
         found.edges[i, 0], found.edges[i, 1] = l, r
         for side in range(2):
             found.edge_states[i, side] = step.sides[side].state
@@ -138,7 +143,7 @@ def about_peak(run: Run, at: Contact, first: int, end: int) -> tuple[int, int]:
         for i in range(first, end, apart):
             number = run.chain[i]
             segment = run.segments[number]
-            low, high = segment.a, min(segment.b, at.s)
+            low, high = segment.a, min(segment.b, at.motion.s)
             if segment.step == NEVER:
                 low, high = segment.X_a, segment.X_b
             for half in range(2):

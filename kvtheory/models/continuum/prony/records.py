@@ -42,7 +42,7 @@ STEP = record(
     kinked=("i8", (2,)), first="i8", count="i8", restart="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
 """Start and span of a step on the clock of the run; the time at its start, and how long it lasts, see
-`paused`; d and x at its start, the piece of the drive, whether the histories of the edges
+`with_pauses`; d and x at its start, the piece of the drive, whether the histories of the edges
 have a kink there; where the contact's segments are in `chain`, and their number; the first step since the
 last restart of the accumulators; both sides at its start."""
 NOW = record(

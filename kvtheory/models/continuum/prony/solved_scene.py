@@ -1,15 +1,15 @@
 """The transient of a scene on a Prony series in SI units, and its error, estimated as on Kelvin-Voigt."""
 
 import math
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum.edge_states import FREE, STATE_NAMES, TOUCHING
-from kvtheory.models.continuum.energy import Ledger
+from kvtheory.models.continuum.edge_states import FREE
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
     FLOOR,
@@ -20,19 +20,21 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTER,
     TIGHTEST,
 )
-from kvtheory.models.continuum.prony.energy import ledger
 from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
-from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solved_scene import (
+    SERIES,
     STEPS_A_PIECE,
-    ScaledMotion,
+    SolvedScene,
     end_of,
+    result,
     scaled_drive,
+    spring_of,
 )
 from kvtheory.progress import Progress
 from kvtheory.records import readable
-from kvtheory.results import AT_REST, Certificate, Event, SprungTransient, Transient
+from kvtheory.results import AT_REST, Certificate, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
@@ -40,11 +42,6 @@ from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
-SAME = (
-    "velocity", "sliding_velocity", "depth", "depth_rate", "normal_force", "friction_force",
-    "peak_pressure",
-)  # fmt: skip
-"""Quantities that are in the states as they are."""
 ROUNDING = 4e-16
 """Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
 LESS_TIGHT = 10.0
@@ -59,84 +56,6 @@ ANYWHERE = "pressure", "surface", "jump_time"
 """Errors besides those of the series."""
 FIRST = StepControl(longest=math.inf)
 SECOND = COMPARISON._replace(longest=math.inf)
-
-
-@dataclass(frozen=True)
-class SolvedPronyScene(ScaledMotion):
-    """A solved motion; evaluates every quantity of a transient in SI."""
-
-    motion: Trajectory
-
-    def series(self, time: ArrayLike) -> dict[str, Any]:
-        """Return the quantities and the states of the edges at the given times (s)."""
-        s, own = np.atleast_1d(self.scaled(time)), scales(self.units)
-        states = self.motion.states(s)
-        found = self.scaled_series(states, s)
-        left, right = states["edge_states"].T
-        leads = found["leading_edge"] == states["edges"][:, 0]
-        leading, trailing = np.where(leads, left, right), np.where(leads, right, left)
-        return {
-            "time": np.asarray(time, dtype=float),
-            **{name: value * own[name] for name, value in found.items()},
-            "leading_state": tuple(map(STATE_NAMES.__getitem__, leading.tolist())),
-            "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
-        }
-
-    def scaled_series(self, states: NDArray[Any], s: Array) -> dict[str, Array]:
-        """Return the scaled quantities of states at scaled times."""
-        units = self.units
-        own = scales(units)
-        found = {name: states[name] for name in SAME if name in own}
-        if not units.rigid_drive:
-            spring, damping = units.drive_stiffness_number, units.drive_damping_number
-            found["spring_force"] = spring * states["offset"] + damping * states["offset_rate"]
-        number = states["sliding_velocity"]
-        still = [] if number.all() else [self.drive.forward(t) for t in s.tolist()]
-        leads = np.where(number == 0.0, still, number > 0.0) if still else number > 0.0
-        left, right = states["edges"].T
-        found["leading_edge"] = np.where(leads, left, right)
-        found["trailing_edge"] = np.where(leads, right, left)
-        return found
-
-    @property
-    def events(self) -> tuple[Event, ...]:
-        """The changes of the edges, and the maxima of the forces, in order of time (s)."""
-        s, steps, found = self.motion.natural, self.motion.steps, []
-        for k, name in enumerate(("left", "right")):
-            states = steps["sides"]["state"][:, k]
-            before = np.append(TOUCHING, states[:-1])
-            for start, old, new in zip(steps["time"], before, states, strict=True):
-                kind = f"{name} edge {'touches' if new == TOUCHING else 'peels'}"
-                if FREE in (old, new):
-                    kind = "take-off" if new == FREE else "landing"
-                if old != new and (FREE not in (old, new) or k == 0):  # both edges fly
-                    found.append(Event(float(start) * self.units.time, kind))
-        if not self.drive.highest_speed > 0.0:  # nothing moves
-            return ()
-        whole = self.motion.states(s, peaks=False)
-        for force in ("normal", "friction"):
-            name = f"{force}_force"
-            k = int(np.argmax(np.abs(whole[name])))
-            low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
-            fine = np.linspace(low, high, 65)
-            k = int(np.argmax(np.abs(self.motion.states(fine, peaks=False)[name])))
-            found.append(Event(float(fine[k]) * self.units.time, f"{force} force maximum"))
-        return tuple(sorted(found, key=lambda event: event.time))
-
-    def pressure(self, x: ArrayLike, time: float) -> Array:
-        """Return p in Pa at the positions `x` (m)."""
-        return self.motion.pressure(self._xi(x), self.scaled(time)) * self.units.pressure
-
-    def surface(self, x: ArrayLike, time: float) -> Array:
-        """Return the compression u in m of the foundation at the positions `x` (m)."""
-        return self.motion.compression(self._xi(x), self.scaled(time)) * self.units.depth
-
-    def _xi(self, x: ArrayLike) -> Array:
-        return np.asarray(x, dtype=float) / self.units.half_length
-
-    def energy(self, time: ArrayLike) -> Ledger:
-        """Return the energy ledger in J/m at the times (s)."""
-        return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
 
 
 def own_units(scene: Scene) -> StaticState:
@@ -167,15 +86,11 @@ def transient(
     units = own_units(scene)
     drive = scaled_drive(scene, units)
     limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
-    foundation, spring = scene.foundation, None
+    foundation, spring = scene.foundation, spring_of(units)
     arms = [
         (arm.stiffness / foundation.stiffness, arm.relaxation_time / units.time)
         for arm in foundation.arms
     ]
-    if not units.rigid_drive:
-        spring = Spring(
-            units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
-        )
 
     def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
         def report(s: float) -> None:
@@ -199,39 +114,33 @@ def transient(
             f"the transient on a Prony series fails numerically at t = {s * units.time:.6g} s: {why}; "
             "try another tolerance"
         ) from None
-    fine = SolvedPronyScene(motion, drive, units, end_of(scene) / units.time)
+    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     other, why = None, NOTHING if certify else NOT_ASKED
     for tighter in (TIGHTER, LESS_TIGHT) if certify else ():
         with suppress(ValueError, ArithmeticError):  # it may fail where the first one did not
             other = solved(1, max(rtol / tighter, TIGHTEST), SECOND)
             break
-    kind = Transient if units.rigid_drive else SprungTransient
-    return kind(
-        **fine.series(time), events=fine.events, steps=motion.counts.steps,
-        evaluations=motion.counts.evaluations, compiled=motion.compiled, model="continuum",
-        certificate=certificate(fine, other, fine.scaled(time), rtol, scene, why),
-        solution=fine,
-    )  # fmt: skip
+    return result(fine, time, certificate(fine, other, fine.scaled(time), rtol, scene, why))
 
 
 def certificate(
-    fine: SolvedPronyScene, other: Trajectory | None, s: Array, rtol: float, scene: Scene, why: str
+    fine: SolvedScene, other: Trajectory | None, s: Array, rtol: float, scene: Scene, why: str
 ) -> Certificate:
     """Return the certificate of the states at scaled times, from a solution with a tighter tolerance.
 
     Where only one of them flies, the contact of the other is narrow: its width is the error of an edge.
     """
-    own, measures = scales(fine.units), scales(StaticState.of(scene))  # other units of time
+    own = scales(fine.units)
     if other is None:
         errors = dict.fromkeys([*own, *ANYWHERE], math.inf)
         return Certificate("estimated", why, {**errors, "time": 0.0}, AT_REST)
-    here = fine.scaled_series(fine.motion.states(s), s)
-    there = fine.scaled_series(other.states(s), s)
+    here, there = _series(fine.motion.states(s), own), _series(other.states(s), own)
     run = other.run
     depths = together(run.memory, ARM_STATE)["accumulated_depth"][: other.counts.steps, :, 0]
     stiffness, deepest = together(run.arms, ARM)["stiffness"], np.abs(depths).max(axis=0)
     rounding = ROUNDING * float(np.sum(stiffness * deepest * (1.0 + deepest)))
+    measures = scales(StaticState.of(scene))  # in other units of time
     errors, widths = {"time": 0.0}, np.zeros_like(s)
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
@@ -256,8 +165,12 @@ def certificate(
     return Certificate("estimated", STATEMENT, errors, AT_REST)
 
 
+def _series(states: NDArray[Any], own: Mapping[str, float]) -> dict[str, Array]:
+    return {name: states[name] for name in SERIES if name in own}
+
+
 def _anywhere(
-    fine: SolvedPronyScene, other: Trajectory, rtol: float, tolerance: float
+    fine: SolvedScene, other: Trajectory, rtol: float, tolerance: float
 ) -> tuple[dict[str, float], float]:
     """Return the scaled errors of pressure and surface, and that of the times of take-offs and landings.
 

@@ -12,11 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import compiled
+from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.edge_states import FREE, TOUCHING
+from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.evaluation import STATE
+from kvtheory.models.continuum.following import Solver, follow
+from kvtheory.models.continuum.maxima import EXTREME
 from kvtheory.models.continuum.prony import (
     contact,
+    energy,
     evaluation,
+    extremes,
     hops,
     records,
     restarts,
@@ -34,8 +41,8 @@ from kvtheory.models.continuum.prony.records import (
     with_more_room,
 )
 from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.solver import ScaledEvent
 from kvtheory.records import readable, structured
-from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -51,8 +58,8 @@ EVALUATED = 50
 SUBDIVISIONS = 4
 """Points shown for each step."""
 REFUSED = {
-    walk.STUCK: "no consistent state of the edges is found",
-    walk.PARTS: "the pressure in the contact, or the gap outside, has the wrong sign",
+    r_.STUCK: "no consistent state of the edges is found",
+    r_.INCONSISTENT: "the pressure in the contact, or the gap outside, has the wrong sign",
 }
 """Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
 
@@ -61,7 +68,7 @@ BLANK = np.zeros(1), np.zeros(1, STATE), np.zeros(1)
 """Times, states and profile of tasks that need none."""
 KERNEL = Kernel(
     evaluation.perform,
-    (b_, r_, records, contact, step, segments, restarts, hops, walk, evaluation),
+    (b_, r_, e_, records, contact, step, segments, restarts, hops, walk, evaluation),
     SECONDS,
     compiled.INLINED,
 )
@@ -134,6 +141,49 @@ class Trajectory:
         """Return the scaled compression of the foundation at places and one time."""
         return self._profile(evaluation.COMPRESSION, xi, s)
 
+    def ledger(self, s: ArrayLike) -> Ledger:
+        """Return the energy ledger at times."""
+        return energy.ledger(self, s)
+
+    @cached_property
+    def given(self) -> Any:
+        """Inertia, support, spring, tolerance, see `records.GIVEN`."""
+        return readable(self.run.given[0])
+
+    @property
+    def events(self) -> tuple[ScaledEvent, ...]:
+        """The changes of the edges, in order of time."""
+        steps, found = self.steps, []
+        for k, name in enumerate(("left", "right")):
+            states = steps["sides"]["state"][:, k]
+            before = np.append(TOUCHING, states[:-1])
+            for start, old, new in zip(steps["time"], before, states, strict=True):
+                kind = f"{name} edge {'touches' if new == TOUCHING else 'peels'}"
+                if FREE in (old, new):
+                    kind = "take-off" if new == FREE else "landing"
+                if old != new and (FREE not in (old, new) or k == 0):  # both edges fly
+                    found.append(ScaledEvent(float(start), kind))
+        return tuple(sorted(found, key=lambda event: event.s))
+
+    @cached_property
+    def samples(self) -> tuple[Array, NDArray[Any], int]:
+        """Dense times, the states there without peak pressures, and their number, see `extremes`."""
+        times = extremes.sampled(self)
+        return times, self.states(times, peaks=False), times.size
+
+    @cached_property
+    def samples_with_peaks(self) -> tuple[Array, NDArray[Any], int]:
+        """The same with peak pressures."""
+        return self.samples[0], self.states(self.samples[0]), self.samples[2]
+
+    def largest(self, *wanted: tuple[str, int]) -> NDArray[Any]:
+        """Return the extreme of each quantity in a sense as structured array, see `maxima.EXTREME`."""
+        return np.array([extremes.largest(self, *each) for each in wanted], EXTREME)
+
+    def settled(self, force: float, share: float) -> float:
+        """Return the time from which the friction force is settled, see `extremes`."""
+        return extremes.settled(self, force, share)
+
     def _profile(self, task: int, xi: Array, s: float) -> Array:
         now, profile = self.states([s], peaks=False), np.zeros(1 + xi.size)
         given = 0, np.append(self.clock(s), xi)
@@ -191,34 +241,16 @@ def solve(
     >>> print(f"{motion.states([2.0])['depth'][0]:.6f}")
     0.417162
     """
-    arrays = KERNEL.worthwhile() if fast is None else fast
     given = drive, arms, numbers, spring, end, rtol, control, damper
-    run = begin(*given, arrays=arrays)
-    if arrays and not prepared(run):
-        run = begin(*given, arrays=False)
-    left, status = max_steps, walk.PAUSED
-    begun = thread_time()
-    while status != walk.DONE:
-        interpreted = isinstance(run.steps, list)
-        perform = evaluation.perform if interpreted else KERNEL
-        with (
-            np.errstate(all="ignore"),  # an iteration that diverges ends a step, compiled or not
-            KERNEL.interpreting() if interpreted else nullcontext(),
-        ):
-            status = perform(evaluation.WALK, run, min(ATTEMPTS, left), *BLANK)
-        now = readable(run.now[0])
-        time = time_of(run)
-        left = max_steps - now.steps - now.rejected
-        if status in REFUSED:
-            raise ValueError(REFUSED[status], time)
-        if status == walk.FULL:
-            run = with_more_room(run)
-        if left <= 0 and status != walk.DONE:
-            raise TransientError(f"more than {max_steps} steps (`max_steps`)", time)
-        if fast is None and interpreted and status != walk.DONE and time:
-            to_come = (thread_time() - begun) * (end / time - 1.0)
-            if KERNEL.worthwhile(to_come) and prepared(same := as_arrays(run)):
-                run = same
-        if progress is not None:
-            progress(time)
-    return Trajectory(run)
+    solver = Solver(
+        kernel=KERNEL, attempts=ATTEMPTS, begin=lambda arrays: begin(*given, arrays=arrays),
+        prepared=prepared, as_arrays=as_arrays, with_more_room=with_more_room, walk=_walk,
+        time=time_of, refused=REFUSED, failure=ValueError,
+    )  # fmt: skip
+    return Trajectory(follow(solver, end, max_steps, fast, progress))
+
+
+def _walk(run: Run, attempts: int) -> int:
+    perform = evaluation.perform if isinstance(run.steps, list) else KERNEL
+    with np.errstate(all="ignore"):  # an iteration that diverges ends a step, compiled or not
+        return int(perform(evaluation.WALK, run, attempts, *BLANK))

@@ -40,6 +40,7 @@ from kvtheory.models.continuum.prony.records import NEVER, SMOOTH, Run
 from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
 from kvtheory.models.continuum.prony.segments import cross, left_behind, split, turn
 from kvtheory.models.continuum.prony.step import prepare, size_of, solve
+from kvtheory.models.continuum.run import DONE, FULL, INCONSISTENT, PAUSED, STUCK
 from kvtheory.scene import base_motion as b_
 
 SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
@@ -75,11 +76,6 @@ APPROACH = 0.85
 """Largest share of the time until the contact closes that a step takes."""
 RELIEF = 0.25
 """How far the ground may slide in a step of the flight above it, in units of a_0, if it is not far away."""
-
-DONE, PAUSED, FULL, STUCK, PARTS = range(5)
-"""How a walk ended: at the end; after the allowed attempts; without room for another step; with a step size
-of zero, or no consistent state of the edges; with pressures or gaps of the wrong sign. The last two are
-numerical failures."""
 
 
 class Monitors(NamedTuple):
@@ -310,7 +306,7 @@ def _after(run: Run, theta: float, violated: Monitors) -> int:
     interval = _one_interval(run)
     run.now.steps, run.now.toggles = run.now.steps + 1, 0
     if not interval:
-        return PARTS
+        return INCONSISTENT
     return _change(run, violated) if theta <= 1.0 else DONE
 
 
