@@ -82,15 +82,15 @@ def give_up(reasons: Collection[str]) -> None:
 def warn_unusable(why: str, remedy: str) -> None:
     """Use numba no more in this process, and warn why."""
     _unusable.append(why)
-    told = f"{why}, so that kernels are interpreted, which is slower; {remedy}"
-    warnings.warn(told, RuntimeWarning, stacklevel=2)
+    message = f"{why}, so that kernels are interpreted, which is slower; {remedy}"
+    warnings.warn(message, RuntimeWarning, stacklevel=2)
 
 
 def warn_not_kept(why: object) -> None:
     """Warn that kernels are compiled for this process only."""
-    told = f"compiled kernels cannot be kept, and every process compiles them again: {why}"
+    message = f"compiled kernels cannot be kept, and every process compiles them again: {why}"
     remedy = "set NUMBA_CACHE_DIR to a folder with space in which numba may write"
-    warnings.warn(f"{told}; {remedy}", RuntimeWarning, stacklevel=2)
+    warnings.warn(f"{message}; {remedy}", RuntimeWarning, stacklevel=2)
 
 
 def _types(arguments: Any) -> Any:

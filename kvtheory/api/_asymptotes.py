@@ -91,5 +91,5 @@ def _extrapolated(scene: Scene, report: AsymptoteReport, method: str) -> list[st
         state = METHODS[method](scene.at(np.where(np.isnan(V), 1.0, V)[()]))
         if extrapolates(foundation, V, state.trailing_edge - state.leading_edge):
             places.append(with_unit(V, "m/s"))
-    told = f"At the friction maximum at V = {'; '.join(places)}, V/c is {EXTRAPOLATED}."
-    return [told] if places else []
+    message = f"At the friction maximum at V = {'; '.join(places)}, V/c is {EXTRAPOLATED}."
+    return [message] if places else []

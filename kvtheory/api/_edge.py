@@ -32,9 +32,9 @@ def times_of(scene: Scene, at: list[float] | None) -> Any:
     """Return the times in s, or None; those after the end of the run raise one SceneError."""
     late = [time for time in at or () if time > scene.run.duration]
     if late:
-        told = f"is after the end of the run, run.duration = {scene.run.duration} s"
-        told += f"; so are {len(late) - 1} more" * (len(late) > 1)
-        raise mistake("`at`", f"{late[0]} s", told)
+        message = f"is after the end of the run, run.duration = {scene.run.duration} s"
+        message += f"; so are {len(late) - 1} more" * (len(late) > 1)
+        raise mistake("`at`", f"{late[0]} s", message)
     return at
 
 

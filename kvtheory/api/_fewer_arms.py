@@ -69,12 +69,12 @@ def fewer_arms(
     if not scene.foundation.arms:
         raise ValueError(f'`scene`: foundation.kind = "{scene.foundation.kind}" has no arms')
     if proved and not has_bound(scene):
-        told = "a bound is known for a parabola under a dead weight or at a fixed depth"
-        raise ValueError(f"`proved` = True: {told}; give False")
+        message = "a bound is known for a parabola under a dead weight or at a fixed depth"
+        raise ValueError(f"`proved` = True: {message}; give False")
     V = abs(scene.drive.final_velocity) * AROUND if velocities is None else np.abs(velocities)
     if not V.size or not V.all():
-        told = "expected one value or more, other than 0, at which there is no friction"
-        raise ValueError(f"`velocities`: {told}")
+        message = "expected one value or more, other than 0, at which there is no friction"
+        raise ValueError(f"`velocities`: {message}")
     with double_precision(scene):
         found = reduced(METHODS[method_for(scene, None)], scene, np.sort(V), rtol, proved=proved)
     return FewerArms(

@@ -109,12 +109,12 @@ def fit(
     scene = one_scene(scene, "a fit")
     given = list(data) if isinstance(data, (list, tuple)) else [data]
     if not given or any(each is None for each in given):
-        told = "missing; expected a file or arrays with velocity and friction coefficient"
-        raise ValueError(f"`data`: {told}, or time and forces")
+        message = "missing; expected a file or arrays with velocity and friction coefficient"
+        raise ValueError(f"`data`: {message}, or time and forces")
     solve = STEADY[method_for(scene, None)]
     if models == bool(list(free)):
-        told = "expected the keys of free quantities, or `models`"
-        raise ValueError(f"`free`: {told}, which frees all of the foundation")
+        message = "expected the keys of free quantities, or `models`"
+        raise ValueError(f"`free`: {message}, which frees all of the foundation")
     tried = (
         friction.models(scene) if models else {scene.foundation.kind: (scene, _keys(scene, free))}
     )
@@ -137,8 +137,8 @@ def fit(
             if models and found:
                 continue
             sources = " and ".join(one.source for one in sets)
-            told = f"{len(keys)} unknowns need more than {len(keys)} values"
-            raise ValueError(f"{sources}: holds {size} values; {told}")
+            message = f"{len(keys)} unknowns need more than {len(keys)} values"
+            raise ValueError(f"{sources}: holds {size} values; {message}")
         if any(one.time is not None for one in sets):
             if models and lacks_arms(each):
                 continue
@@ -232,8 +232,10 @@ def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:
         own = [key] if key in known else [each for each in known if each.startswith(f"{key}[")]
         value = scene.values().get(own[0]) if own else None
         if not own:
-            told = "is given by the data" if key in NOT_FREE else "is not a quantity of this scene"
-            problems.append(f"`free` {shown(key)}: {told}; {nearest(key, known)}")
+            message = (
+                "is given by the data" if key in NOT_FREE else "is not a quantity of this scene"
+            )
+            problems.append(f"`free` {shown(key)}: {message}; {nearest(key, known)}")
         elif not value or value < 0.0:
             problems.append(
                 f"`free` {shown(key)}: is not above 0 in the scene, so that it has no scale"

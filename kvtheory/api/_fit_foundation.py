@@ -110,8 +110,8 @@ def fit_foundation(
     factor, per_area = 1.0, found.measured.kind == "K"
     if found.measured.kind == "G":
         if poisson_ratio is None:
-            told = "the moduli are shear moduli: Young's modulus is 2 G (1 + nu)"
-            raise ValueError(f"`poisson_ratio`: missing; {told}")
+            message = "the moduli are shear moduli: Young's modulus is 2 G (1 + nu)"
+            raise ValueError(f"`poisson_ratio`: missing; {message}")
         factor = 2.0 * (1.0 + poisson_ratio)
     if per_area and thickness is not None:
         raise ValueError(
@@ -131,10 +131,10 @@ def fit_foundation(
         range_of_T = map(_rounded, master.temperatures[[0, -1]])
         thermal |= dict(zip(MEASURED_RANGES[1], range_of_T, strict=True))
     elif temperature is not None:
-        told = (
+        message = (
             "no law of the shift factor is known: it needs several temperatures, or `shift_factors`"
         )
-        raise ValueError(f"`temperature`: {told}")
+        raise ValueError(f"`temperature`: {message}")
     x, residuals = found.data.x, series.residuals(found.data)
     ends = x[[0, -1]] / math.tau if found.data.dynamic else 1.0 / x[[-1, 0]]
     frequencies = _rounded(ends[0]), _rounded(ends[1])

@@ -106,8 +106,8 @@ def derive(
     if (scene or overrides) and not numbers:
         raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
     if shape is not None and (only or numbers or closure):
-        told = "it does not go with --only, --closure or --numbers"
-        raise ValueError(f"--shape derives a separate chapter; {told}")
+        message = "it does not go with --only, --closure or --numbers"
+        raise ValueError(f"--shape derives a separate chapter; {message}")
     if recheck:
         placed = click.get_current_context().get_parameter_source("output")
         if formats or shape or numbers or notation or closure or placed != ParameterSource.DEFAULT:
@@ -251,10 +251,10 @@ def _edition(
     following = {label for label, _ in FOLLOWING} if given else set()
     needed = {*labels, *following} if labels else set()
     total, count = wanted_up_to(needed), len(labels)
-    told = f"all {total} records; --only chooses some"
+    message = f"all {total} records; --only chooses some"
     if count:
-        told = f"{total} records for the {count} asked for, since each uses earlier ones"
-    click.echo(f"kvtheory: deriving {told}", err=True)
+        message = f"{total} records for the {count} asked for, since each uses earlier ones"
+    click.echo(f"kvtheory: deriving {message}", err=True)
     derived: Iterable[Derivation] = catalogue(needed, report)
     if given:
         quantities, indenter, arms, where = given

@@ -79,8 +79,8 @@ def check_epoch() -> None:
     try:
         datetime.fromtimestamp(int(epoch), tz=UTC)
     except (ValueError, OverflowError, OSError):
-        told = "expected a whole number of seconds since 1970"
-        raise ValueError(f'environment variable SOURCE_DATE_EPOCH = "{epoch}": {told}') from None
+        message = "expected a whole number of seconds since 1970"
+        raise ValueError(f'environment variable SOURCE_DATE_EPOCH = "{epoch}": {message}') from None
 
 
 class Group(click.Group):

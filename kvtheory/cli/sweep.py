@@ -98,8 +98,8 @@ def sweep(
         save_plot(result, plot)
     if as_json:
         counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
-        told = {"failures": record(result.failures), "seconds": seconds}
-        console.print_json({"file": str(result.path), **counts, **told})
+        outcome = {"failures": record(result.failures), "seconds": seconds}
+        console.print_json({"file": str(result.path), **counts, **outcome})
         return
     click.echo(
         f"{output}: {result.points:,} points, {result.computed:,} of them computed now in "
@@ -156,10 +156,10 @@ def from_factory(text: str, jobs: int | None) -> Executor:
     except (Exception, SystemExit) as error:  # whatever a user's module raises
         known = [name for name in dir(getattr(error, "obj", None)) if name[0] != "_"]
         hint = f"; {nearest(text.partition(':')[2], known)}" if known else ""
-        told = (
+        message = (
             f"{error}"
             if isinstance(error, ValueError)
             else f"{type(error).__name__}: {error}{hint}"
         )
-        raise ValueError(f'--executor "{text}" cannot be imported and called: {told}') from None
+        raise ValueError(f'--executor "{text}" cannot be imported and called: {message}') from None
     return executor

@@ -42,15 +42,15 @@ def others(
     problem: Problem, found: Fit, limits: Sequence[Sequence[tuple[float, float]]]
 ) -> list[str]:
     """Return a note on each minimum in other pieces than the best fit: its values, and how good it is."""
-    specs, notes, told = problem.scene.replaceable, [], set()
+    specs, notes, seen = problem.scene.replaceable, [], set()
     sums = np.sum(problem.residuals(found.minima) ** 2, axis=1)
     for point, total in zip(found.minima, sums, strict=True):
         place = tuple(
             next((k for k, (low, high) in enumerate(pieces) if low <= y <= high), 0)
             for y, pieces in zip(point.tolist(), limits, strict=True)
         )
-        if any(place) and place not in told:
-            told.add(place)
+        if any(place) and place not in seen:
+            seen.add(place)
             values = ", ".join(
                 f"{key} = {value:.3g} {specs[key].unit}".removesuffix(" 1")
                 for key, value in zip(problem.keys, np.exp(point), strict=True)

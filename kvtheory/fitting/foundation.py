@@ -50,8 +50,8 @@ def fit(
     factors = None if shift_factors is None else shifting.read_factors(shift_factors)
     sweeps = measured.sweeps
     if vertical and not sweeps[0].moduli.dynamic:
-        told = "a relaxation modulus alone cannot tell a vertical shift from one in time"
-        raise ValueError(f"`vertical`: {told}; expected dynamic moduli")
+        message = "a relaxation modulus alone cannot tell a vertical shift from one in time"
+        raise ValueError(f"`vertical`: {message}; expected dynamic moduli")
     whole = sweeps[0].moduli
     if len(sweeps) > 1:
         master = shifting.shifted(sweeps, near, factors, vertical=vertical)
@@ -75,8 +75,8 @@ def fit(
         target = _target(thin, start, least, rtol)
     series = arms_of(thin, start, arms, target)
     if series.modulus.sum() <= UNRELAXED * series.relaxed:
-        told = "the moduli do not relax: no series with arms above 0 is closer than a constant"
-        raise ValueError(f"{measured.source}: {told}")
+        message = "the moduli do not relax: no series with arms above 0 is closer than a constant"
+        raise ValueError(f"{measured.source}: {message}")
     if _no_plateau(thin, series):
         series = _with_plateau(thin, series, measured.source)
         notes.append("The data show no relaxed modulus: the slowest arm was taken as the spring.")
@@ -90,8 +90,8 @@ def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> fl
     """Return the misfit that is allowed: `rtol`, or what the scatter about the best series makes likely."""
     if rtol is not None:
         if least > rtol:
-            told = f"no Prony series is as close: the least misfit of any is {least:.3g}"
-            raise ValueError(f"`rtol` = {rtol:g}: {told}")
+            message = f"no Prony series is as close: the least misfit of any is {least:.3g}"
+            raise ValueError(f"`rtol` = {rtol:g}: {message}")
         return rtol
     count = data.target.size
     free = max(count - 2 * start.time.size - 1, 0.5 * count)
@@ -110,9 +110,9 @@ def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
     while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
         found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
     if _no_plateau(data, found) or not found.time.size:
-        told = "the moduli relax to zero within the data, or stiffen as they relax"
+        message = "the moduli relax to zero within the data, or stiffen as they relax"
         expected = "expected data that show a relaxed modulus above 0, such as the rubber plateau"
-        raise ValueError(f"{source}: {told}; {expected}")
+        raise ValueError(f"{source}: {message}; {expected}")
     return found
 
 
@@ -120,8 +120,8 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     notes = []
     vague = [f"{T - 273.15:.4g}" for T in master.temperatures[master.errors > VAGUE]]
     if vague:
-        told = "The sweeps overlap too little, or are too flat, to tell their shift factors"
-        notes.append(f"{told} to {VAGUE} decades at {', '.join(vague)} degC.")
+        message = "The sweeps overlap too little, or are too flat, to tell their shift factors"
+        notes.append(f"{message} to {VAGUE} decades at {', '.join(vague)} degC.")
     if law is None:
         notes.append("Neither WLF's nor Arrhenius' law fits the shift factors.")
         return notes

@@ -295,8 +295,8 @@ def solve(
     point = points[0]
     r = problem.residuals(point[None])[0]
     if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
-        told = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
-        raise ValueError(f"{problem.data[0].source}: {told}; check the scene")
+        message = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
+        raise ValueError(f"{problem.data[0].source}: {message}; check the scene")
     J = problem.slopes(point[None], central=True)[0]
     return problem, Fit(point, r, J, problem.count(point), points)
 

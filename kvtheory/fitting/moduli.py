@@ -96,8 +96,10 @@ def read(data: Any, modulus: str | None = None) -> Measured:
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
             what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
             where = "" if one else f" at {temperature[each].mean() - 273.15:.4g} degC"
-            told = f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
-            raise ValueError(f"{table.source}: holds {told}")
+            message = (
+                f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
+            )
+            raise ValueError(f"{table.source}: holds {message}")
         sweeps.append(Sweep(float(np.mean(temperature[each])), Moduli(own[0], own[1:])))
     return Measured(table.source, tuple(sweeps), kind, tuple(notes))
 
@@ -132,8 +134,8 @@ def _rows(table: Table, dynamic: bool, modulus: str | None) -> tuple[list[Array]
         values, unit = table.si(name, "N/m^2", "N/m^3")
         kind = "K" if unit == "N/m^3" else name[0] if name[0] in "EG" else modulus
         if kind is None:
-            told = 'may be E or G; name the column so, or give `modulus` = "E" or "G"'
-            raise table.error(name, told)
+            message = 'may be E or G; name the column so, or give `modulus` = "E" or "G"'
+            raise table.error(name, message)
         if kind != "K" and modulus not in (None, kind):
             raise table.error(name, f'is {kind}, and `modulus` = "{modulus}"')
         kinds.add(kind)
@@ -165,9 +167,9 @@ def _by_temperature(table: Table, temperature: Array) -> list[NDArray[np.int_]]:
     for part in parts:
         low, high = temperature[part[0]] - 273.15, temperature[part[-1]] - 273.15
         if high - low > SPREAD:
-            told = (
+            message = (
                 f"drifts from {low:.4g} to {high:.4g} degC without a gap of {GAP:g} K; expected sweeps "
                 f"at temperatures constant to {SPREAD:g} K"
             )
-            raise table.error("temperature", told)
+            raise table.error("temperature", message)
     return parts

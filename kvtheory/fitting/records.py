@@ -104,10 +104,12 @@ class Data(NamedTuple):
             return np.asarray(np.add.reduceat(values, starts) / count)
 
         time = mean(self.time)
-        told = f"{size:,} rows over time were averaged to {starts.size:,}; the misfit is of these."
+        message = (
+            f"{size:,} rows over time were averaged to {starts.size:,}; the misfit is of these."
+        )
         return self._replace(
             measured={name: mean(values) for name, values in self.measured.items()},
-            notes=self.notes if starts.size == size else (*self.notes, told),
+            notes=self.notes if starts.size == size else (*self.notes, message),
             time=time,
             spread=np.sqrt(mean((self.time - np.repeat(time, count)) ** 2)),
             weight=np.sqrt(count / count.mean()),
@@ -161,8 +163,8 @@ def _against(table: Table, measured: Mapping[str, Array], V: Array) -> int:
     for name in measured.keys() & set(FRICTION):
         signs = np.sign(measured[name] * V)
         if signs.min() < 0.0 and signs.max() <= 0.0:
-            told = "has the opposite sign of the velocity throughout"
-            raise table.error(name, f"{told}; expected friction with the sign of the velocity")
+            message = "has the opposite sign of the velocity throughout"
+            raise table.error(name, f"{message}; expected friction with the sign of the velocity")
         against = max(against, int(np.count_nonzero(signs < 0.0)))
     return against
 
@@ -177,20 +179,22 @@ def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Arra
         if name == "time" or (over_time and name == "drive.velocity"):
             continue
         if name == "spring_force" and (scene.drive.rigid or not over_time):
-            told = "is measured over time, with drive.stiffness; in steady sliding it is the friction force"
-            raise table.error(name, told)
+            message = (
+                "is measured over time, with drive.stiffness; in steady sliding it is friction"
+            )
+            raise table.error(name, message)
         if key in keys:
             spec = keys[key]
             values = table.number(name) if spec.unit == "1" else table.si(name, spec.dimension)[0]
             good = np.array([spec.admits(float(value)) for value in values])
             table.require(name, good, f"is out of range; expected {spec.range}")
             if over_time:
-                told = "is not that of the first row; a time series has one value"
-                table.require(name, values == values[0], told)
+                message = "is not that of the first row; a time series has one value"
+                table.require(name, values == values[0], message)
             conditions[key] = float(values[0]) if over_time else values
         elif name == "foundation.temperature":
-            told = "needs a scene with foundation.wlf or foundation.activation_energy"
-            raise table.error(name, f"{told}, and foundation.reference_temperature")
+            message = "needs a scene with foundation.wlf or foundation.activation_energy"
+            raise table.error(name, f"{message}, and foundation.reference_temperature")
         elif name in FRICTION or name.removeprefix("-") in STATIC:
             shown = "normal_force" if over_time and name == "load" else name.removeprefix("-")
             measured[shown] = _measured(table, name, scene)
@@ -212,8 +216,8 @@ def plausible(table: Table, name: str, values: Array) -> Array:
     """Return the values of a column in SI, or raise at the first one of a size that nothing measured has."""
     size = np.abs(values)
     good = (size == 0.0) | ((size > 1.0 / LARGEST) & (size < LARGEST))
-    told = f"is not plausible; expected a size from {1.0 / LARGEST:g} to {LARGEST:g} in SI units"
-    table.require(name, good, told)
+    message = f"is not plausible; expected a size from {1.0 / LARGEST:g} to {LARGEST:g} in SI units"
+    table.require(name, good, message)
     return values
 
 
@@ -229,16 +233,20 @@ def _over_time(table: Table, data: Data, scene: Scene) -> Data:
     """Return a time series from t = 0 on; the drive must be that of the scene."""
     time, drive = plausible(table, "time", table.si("time", "s")[0]), scene.drive
     if not largest_speed(scene, time) > 0.0:
-        told = "`drive` of the scene is at rest throughout; friction needs sliding"
-        raise ValueError(f"{table.source}: {told}")
+        message = "`drive` of the scene is at rest throughout; friction needs sliding"
+        raise ValueError(f"{table.source}: {message}")
     table.require("time", np.append(True, np.diff(time) > 0.0), "does not follow the time before")
     if "drive.velocity" in table and drive.function is None:
         V = table.si("drive.velocity", "m/s")[0]
         at, given = np.array(drive.points).T
         off = np.median(np.abs(V - np.where(time < 0.0, V, np.interp(time, at, given))))
         if off > SAME_DRIVE * np.abs(V).max():
-            told = "is not the drive of the scene; name this file as drive.file there, or leave out"
-            raise table.error("drive.velocity", f"{told} the time, for steady sliding row by row")
+            message = (
+                "is not the drive of the scene; name this file as drive.file there, or leave out"
+            )
+            raise table.error(
+                "drive.velocity", f"{message} the time, for steady sliding row by row"
+            )
     notes, first = list(data.notes), int(np.searchsorted(time, 0.0))
     if first == time.size:
         raise table.error("time", "is before t = 0, where sliding begins, throughout")

@@ -30,9 +30,9 @@ def alike(problem: Problem, point: Array) -> list[str]:
         over_time = data.time is not None
         if correlation > least and float(np.std(r)) > VISIBLE[over_time]:
             over = "time" if over_time else "velocity"
-            told = f"The residuals of {name} over {over} are alike from row to row"
+            message = f"The residuals of {name} over {over} are alike from row to row"
             off = "the model is off, and the standard errors are too small"
-            notes.append(f"{told} (correlation {correlation:.2f}): {off}.")
+            notes.append(f"{message} (correlation {correlation:.2f}): {off}.")
     return notes
 
 
@@ -57,5 +57,5 @@ def large(problem: Problem, point: Array) -> list[str]:
         most = max(most, float(np.max(ratio)))
     if most <= LARGE:
         return []
-    told = f"The fitted contact is up to {most:.3g} radii long on each side of the lowest point"
-    return [f"{told}, where no ball or cylinder is a parabola: check radius, load and friction."]
+    message = f"The fitted contact is up to {most:.3g} radii long on each side of the lowest point"
+    return [f"{message}, where no ball or cylinder is a parabola: check radius, load and friction."]

@@ -117,8 +117,8 @@ def _misspelt(heads: Iterable[str]) -> Iterator[str]:
     """Yield the headers that are similar to a known name."""
     for head in heads:
         if near := READER.meant(head):
-            told = f'column "{head}": unknown name, did you mean "{near}"?'
-            yield f"{told} Rename a column that is something else"
+            message = f'column "{head}": unknown name, did you mean "{near}"?'
+            yield f"{message} Rename a column that is something else"
 
 
 def _si(table: Table, name: str, unit: str) -> Array:

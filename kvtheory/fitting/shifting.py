@@ -106,8 +106,8 @@ def read_factors(data: Any) -> tuple[Array, Array]:
             "temperature", f"{T[twice[0]] - 273.15:g} degC occurs twice", int(order[twice[0]])
         )
     if np.abs(log_shift).min() > 1e-6:
-        told = "holds no temperature with a_T = 1, the reference"
-        raise ValueError(f"{table.source}: {told}")
+        message = "holds no temperature with a_T = 1, the reference"
+        raise ValueError(f"{table.source}: {message}")
     table.require(name, small, f"is not plausible; expected log10 a_T from {-most:g} to {most:g}")
     return T, log_shift
 
@@ -132,8 +132,8 @@ def shifted(
         far = np.abs(factors[0][place] - T)
         if far.max() > SAME:
             worst = int(far.argmax())
-            told = f"the file of shift factors has none for {T[worst] - 273.15:.4g} degC"
-            raise ValueError(f"`shift_factors`: {told}")
+            message = f"the file of shift factors has none for {T[worst] - 273.15:.4g} degC"
+            raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         rows = np.column_stack([factors[1][place], np.zeros((T.size, 2))])
     parts = [

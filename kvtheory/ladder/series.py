@@ -250,12 +250,12 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
         model, line = Model.of(scene), scene.indenter.per_width
         length, measures = 2.0 * model.at_rest.half_length, scales(model.at_rest)
         count, finer, before = ELEMENTS, math.nan, None
-        held, effect, told = scene, dict[str, float](), ""
+        held, effect, message = scene, dict[str, float](), ""
         while True:
             result = models.elements(held, per_length=count / length, at=request.times)
             answer = _picked(result, request)
             if before is None:
-                held, effect, told = _with_fewer_arms(models, scene, request, answer, result)
+                held, effect, message = _with_fewer_arms(models, scene, request, answer, result)
             if before is not None and request.times is not None:
                 own, errors = answer.certificate, dict(answer.certificate.relative_error)
                 for name in errors.keys() & measures.keys():
@@ -265,8 +265,8 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
                 statement = f"{own.statement}; {COARSER}"
                 own = Certificate(own.kind, statement, errors, AT_REST)
                 answer = answer._replace(certificate=own)
-            if told:
-                answer = _widened(answer, told, effect)
+            if message:
+                answer = _widened(answer, message, effect)
             error = max(answer.certificate.relative_error[name] for name in request.quantities)
             enough = error <= request.rtol and before is not None
             needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)

@@ -33,8 +33,8 @@ class _Fit(Exported):
     @property
     def _found(self) -> Scene:
         if self.scene is None:
-            told = "a foundation from moduli is a layer: give `thickness` and `poisson_ratio`"
-            raise ValueError(told)
+            message = "a foundation from moduli is a layer: give `thickness` and `poisson_ratio`"
+            raise ValueError(message)
         return self.scene
 
     def to_toml(self) -> str:

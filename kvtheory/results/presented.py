@@ -91,13 +91,13 @@ class Presented(Exported):
         worst = max((float(np.max(error, initial=0.0)) for error in errors), default=0.0)
         scale, kind = self.certificate.relative_to, self.certificate.kind
         known = f"errors up to {worst:.1e} of {scale} ({kind})"
-        told = self.certificate.sentence if kind == "none" else known
-        return "\n".join([self._title, *pairs, told, *getattr(self, "notes", ())])
+        message = self.certificate.sentence if kind == "none" else known
+        return "\n".join([self._title, *pairs, message, *getattr(self, "notes", ())])
 
     def _repr_html_(self) -> str:
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
-        told = self.certificate.sentence, *getattr(self, "notes", ())
-        notes = "".join(f"<p>{escape(note)}</p>" for note in told)
+        said = self.certificate.sentence, *getattr(self, "notes", ())
+        notes = "".join(f"<p>{escape(each)}</p>" for each in said)
         return html_table(self._title, heads, self._shown()) + notes
 
     def plot(self, *, ax: Any = None, **style: Any) -> Any:

@@ -75,8 +75,8 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
 def a_scene(value: Any) -> Scene:
     """Read a scene."""
     if not isinstance(value, Scene):
-        told = "expected a Scene; kvtheory.load_scene reads one from a file"
-        raise TypeError(problem("`scene`", value, told))
+        message = "expected a Scene; kvtheory.load_scene reads one from a file"
+        raise TypeError(problem("`scene`", value, message))
     return value
 
 
@@ -200,6 +200,6 @@ def replacements(value: Any) -> Mapping[Any, Any]:
         raise ValueError('expected keys and their values, such as {"drive.velocity": "50 mm/s"}')
     for key in value:
         if not all(isinstance(name, str) for name in (key if isinstance(key, tuple) else [key])):
-            told = 'expected a key as text, such as "drive.velocity"'
-            raise SceneError([f"`over` {shown(SHORT.repr(key))}: {told}"])
+            message = 'expected a key as text, such as "drive.velocity"'
+            raise SceneError([f"`over` {shown(SHORT.repr(key))}: {message}"])
     return value

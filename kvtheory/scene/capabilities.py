@@ -46,8 +46,8 @@ class Scenes:
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
-            told = f'indenter.shape = "{shape.removesuffix("-callable")}"'
-            found.append(f"holds for {named} only, not for {told}")
+            message = f'indenter.shape = "{shape.removesuffix("-callable")}"'
+            found.append(f"holds for {named} only, not for {message}")
         for key, valid, name in (
             ("foundation.kind", self.laws, law), ("support.kind", self.supports, support)
         ):  # fmt: skip
@@ -76,17 +76,17 @@ class Needs:
 
     def __init__(self, *sets: Scenes) -> None:
         self.sets = sets
-        self.told: dict[Kind, str] = {}
+        self.messages: dict[Kind, str] = {}
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
         kind = scene.kind
-        if kind not in self.told:
+        if kind not in self.messages:
             shape = kind[0]
             sets = sorted(self.sets, key=lambda s: (shape not in s.shapes, -len(s.laws)))
             nearest = min((each.lacking(*kind) for each in sets), key=len)
-            self.told[kind] = nearest[0] if nearest else ""
-        return self.told[kind]
+            self.messages[kind] = nearest[0] if nearest else ""
+        return self.messages[kind]
 
     def laws(self, shape: str, support: str, drive: str) -> list[str]:
         """Return the foundation laws for which a shape, support and drive meet the requirement."""
@@ -196,8 +196,8 @@ IN_MOTION = (
 def lacks_one_scene(scene: Scene) -> str:
     """Return why a function for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
-    told = "use `sweep`, or give one value of each"
-    return f"is for one scene, not for arrays ({keys}); {told}" if keys else ""
+    message = "use `sweep`, or give one value of each"
+    return f"is for one scene, not for arrays ({keys}); {message}" if keys else ""
 
 
 def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:

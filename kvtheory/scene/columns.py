@@ -81,11 +81,11 @@ class Table:
     def __contains__(self, quantity: str) -> bool:
         return quantity in self.columns
 
-    def error(self, quantity: str, told: str, row: int | None = None) -> ValueError:
+    def error(self, quantity: str, message: str, row: int | None = None) -> ValueError:
         """Return an error about a column, and a row of it."""
         line = "" if row is None else f"line {self.lines[row]}, "
         return ValueError(
-            f'{self.source}: {line}column "{shown(self.columns[quantity].head)}": {told}'
+            f'{self.source}: {line}column "{shown(self.columns[quantity].head)}": {message}'
         )
 
     def si(self, quantity: str, *units: str) -> tuple[Array, str]:
@@ -95,14 +95,14 @@ class Table:
             raise self.error(
                 quantity, f'has no unit; expected "{column.head} [{units[0]}]" or the like'
             )
-        told = ""
+        message = ""
         for unit in units:
             try:
                 scale, zero = (to_si(f"{x} {_spelt(column.unit, unit)}", unit) for x in ("1", "0"))
                 return column.values * (scale - zero) + zero, unit
             except ValueError as error:
-                told = told or str(error)
-        raise self.error(quantity, told)
+                message = message or str(error)
+        raise self.error(quantity, message)
 
     def number(self, quantity: str) -> Array:
         """Return a column of dimensionless numbers."""
@@ -111,13 +111,13 @@ class Table:
             raise self.error(quantity, f'has the unit "{column.unit}"; expected none')
         return column.values
 
-    def require(self, quantity: str, good: NDArray[np.bool_], told: str) -> None:
+    def require(self, quantity: str, good: NDArray[np.bool_], message: str) -> None:
         """Raise unless all values of a column are good; name the first line that is not."""
         bad = np.flatnonzero(~good)
         if bad.size:
             value = self.columns[quantity].values[bad[0]]
             more = f", and {bad.size - 1} more" if bad.size > 1 else ""
-            raise self.error(quantity, f"{value:g} {told}{more}", int(bad[0]))
+            raise self.error(quantity, f"{value:g} {message}{more}", int(bad[0]))
 
 
 def _key(name: str) -> str:
@@ -173,8 +173,8 @@ class Reader:
         elif isinstance(data, Mapping) or hasattr(data, "columns"):
             table = self._of_arrays(data)
         else:
-            told = f"expected a path or a mapping of arrays; got {type(data).__name__}"
-            raise TypeError(f"`data`: {told}")
+            message = f"expected a path or a mapping of arrays; got {type(data).__name__}"
+            raise TypeError(f"`data`: {message}")
         for name, column in table.columns.items():
             if name not in self.partial:
                 table.require(name, np.isfinite(column.values), "is not a finite number")
@@ -195,8 +195,8 @@ class Reader:
             columns[name] = Column(head, written or unit, array)
         sizes = {column.values.size for column in columns.values()}
         if len(sizes) > 1:
-            told = " and ".join(map(str, sorted(sizes)))
-            raise ValueError(f"`data`: the columns differ in length: {told}")
+            message = " and ".join(map(str, sorted(sizes)))
+            raise ValueError(f"`data`: the columns differ in length: {message}")
         rows = np.arange(1, sizes.pop() + 1)
         return Table("`data`", columns, rows, self._others(heads, found))
 
@@ -206,8 +206,8 @@ class Reader:
         except UnicodeDecodeError:
             text = "\0"
         if "\0" in text:
-            told = "not a text file; export a table as text or CSV"
-            raise ValueError(f"{path}: {told}; expected {self.example}")
+            message = "not a text file; export a table as text or CSV"
+            raise ValueError(f"{path}: {message}; expected {self.example}")
         lines, at, header = text.splitlines(), 0, None
         skipped = -1
         tables: list[tuple[Known, dict[str, Array], list[int], tuple[str, ...]]] = []
@@ -234,14 +234,16 @@ class Reader:
                 values = _numbers(path, lines, rows, header, found, self.partial)
                 tables.append((found, values, rows, self._others(cells, found)))
         if not tables:
-            told = "holds a header and no rows" if header else self._headless(lines, skipped, None)
-            raise ValueError(f"{path}: {told}")
+            message = (
+                "holds a header and no rows" if header else self._headless(lines, skipped, None)
+            )
+            raise ValueError(f"{path}: {message}")
         kinds = {
             tuple(sorted((name, unit) for name, _, unit in found.values())) for found, *_ in tables
         }
         if len(kinds) > 1:
-            told = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
-            raise ValueError(f"{path}: its tables differ in their columns or units: {told}")
+            message = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
+            raise ValueError(f"{path}: its tables differ in their columns or units: {message}")
         columns = {
             name: Column(head, unit, np.concatenate([values[name] for _, values, *_ in tables]))
             for name, head, unit in tables[0][0].values()
@@ -251,8 +253,8 @@ class Reader:
 
     def _header(self, line: str, first: str) -> tuple[list[str], str] | None:
         """Return the cells and the separator, that of ``sep=;`` or the best, of a row that is a header."""
-        told, best, most = SEPARATED.match(first), None, 0
-        for separator in told[1] if told else SEPARATORS:
+        named, best, most = SEPARATED.match(first), None, 0
+        for separator in named[1] if named else SEPARATORS:
             cells = _split(line, separator)
             known = {self._quantity(cell)[0] for cell in cells if cell} - {None}
             if len(known) > most and self.needed({name for name in known if name}):
@@ -280,8 +282,8 @@ class Reader:
                 raise ValueError(f"{source}: {both} are both the {name}; keep one of them")
             below = units[i] if i < len(units) else ""
             if unit and below and unit != below:
-                told = f'has the unit "{unit}" in its name and "{below}" below it'
-                raise ValueError(f'{source}: column "{shown(cell)}": {told}')
+                message = f'has the unit "{unit}" in its name and "{below}" below it'
+                raise ValueError(f'{source}: column "{shown(cell)}": {message}')
             seen[name] = cell
             found[i] = name, cell, unit or below
         return found
@@ -294,24 +296,24 @@ class Reader:
         if text >= 0:
             cells = max((_split(lines[text], each) for each in SEPARATORS), key=len)
             words = [cell for cell in cells if number(cell, ",") is None]
-            told = self._lacking(cells)
+            message = self._lacking(cells)
             if 0 < len(words) < len(cells):  # a row of numbers with a mistake; no header has any
-                told = f'"{shown(words[0])}" is not a number'
-            return f'line {text + 1}, "{shown(lines[text])}": {told}'
-        told = "is empty"
+                message = f'"{shown(words[0])}" is not a number'
+            return f'line {text + 1}, "{shown(lines[text])}": {message}'
+        message = "is empty"
         if numbers is not None:
-            told = f"line {numbers + 1} holds numbers, and no row above it names the columns"
-        return f"{told}; expected {self.example}"
+            message = f"line {numbers + 1} holds numbers, and no row above it names the columns"
+        return f"{message}; expected {self.example}"
 
     def _lacking(self, heads: Sequence[str]) -> str:
         """Return what columns lack to be those of a table."""
         found = dict.fromkeys(name for head in heads if (name := self._quantity(head)[0]))
-        told = f"has only {', '.join(found)}" if found else "has no column that is known"
+        message = f"has only {', '.join(found)}" if found else "has no column that is known"
         unknown = [head for head in heads if head and not self._quantity(head)[0]]
         hints = [
             f'"{shown(head)}" may be "{near}"' for head in unknown if (near := self.meant(head))
         ]
-        return "; ".join([told, *hints, f"expected {self.example}"])
+        return "; ".join([message, *hints, f"expected {self.example}"])
 
 
 def _blank(line: str) -> bool:
@@ -367,9 +369,11 @@ def _numbers(
         while len(cells) > len(heads) and not cells[-1]:
             del cells[-1]
         if len(cells) > len(heads):
-            told = f"line {k + 1} has {len(cells)} cells, the header has {len(heads)}"
-            told += "; are there decimal commas? Then separate by semicolons" * (separator == ",")
-            raise ValueError(f"{path}: {told}")
+            message = f"line {k + 1} has {len(cells)} cells, the header has {len(heads)}"
+            message += "; are there decimal commas? Then separate by semicolons" * (
+                separator == ","
+            )
+            raise ValueError(f"{path}: {message}")
         row = []
         for i, (name, head, _) in found.items():
             cell = cells[i] if i < len(cells) else ""
@@ -377,8 +381,8 @@ def _numbers(
             if value is None:
                 hint = "; write the decimal mark as a point" if "," in cell else ""
                 hint += ", and no thousands separator" if "," in cell and "." in cell else ""
-                told = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
-                raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {told}')
+                message = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
+                raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {message}')
             marks |= {mark: k + 1 for mark in ",." if mark in cell}
             if len(marks) > 1:
                 where = f"a comma in line {marks[',']} and a point in line {marks['.']}"

@@ -94,12 +94,12 @@ class Drive(Part):
         function = None if self.function is self.waveform else self.function  # of a copy
         ways = self.velocity, self.history, function, self.waveform
         if sum(given is not None for given in ways) != 1:
-            told = "drive: expected one of velocity, history and waveform, such as "
-            problems.append(told + 'velocity = "100 mm/s"; or, in Python, a function')
+            message = "drive: expected one of velocity, history and waveform, such as "
+            problems.append(message + 'velocity = "100 mm/s"; or, in Python, a function')
         if not isinstance(self.waveform, Waveform | None):
             *names, last = (cls.__name__ for cls in WAVEFORMS.values())
-            told = f"expected a {', '.join(names)} or {last}"
-            problems.add("drive.waveform", self.waveform, told)
+            message = f"expected a {', '.join(names)} or {last}"
+            problems.add("drive.waveform", self.waveform, message)
         elif self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
             self.mark([self.waveform])
@@ -107,8 +107,8 @@ class Drive(Part):
             validate(self, "drive")
         for name, value in {"damping": self.damping, "mass": self.mass}.items():
             if self.rigid and value is not None:
-                told = "needs drive.stiffness, of the spring between drive and indenter"
-                problems.add(f"drive.{name}", value, told)
+                message = "needs drive.stiffness, of the spring between drive and indenter"
+                problems.add(f"drive.{name}", value, message)
         if self.damping is None:
             object.__setattr__(self, "damping", Derived(0.0))
         if self.history is not None:
@@ -149,8 +149,10 @@ class Drive(Part):
         """
         if self.function is not None:
             way = "function" if self.waveform is None else "waveform"
-            told = "it moves the foundation in a transient only; give a velocity or a history here"
-            raise SceneError([f"drive.{way}: {told}"])
+            message = (
+                "it moves the foundation in a transient only; give a velocity or a history here"
+            )
+            raise SceneError([f"drive.{way}: {message}"])
         if self.history is None:
             return ((0.0, self.velocity),)  # type: ignore[return-value]
         history = self.history
@@ -258,8 +260,8 @@ class Drive(Part):
             return BaseMotion.from_points(self.points, end)
         wave = self.waveform or Waveform()
         if end > MOST_CYCLES * wave.period:
-            told = f"more than {MOST_CYCLES:,} cycles until {end:.6g} s; expected a shorter run"
-            raise mistake("drive.frequency", f"{1.0 / wave.period:g} Hz", told)
+            message = f"more than {MOST_CYCLES:,} cycles until {end:.6g} s; expected a shorter run"
+            raise mistake("drive.frequency", f"{1.0 / wave.period:g} Hz", message)
         if (points := getattr(wave, "points", None)) is not None:
             return BaseMotion.from_points(points(end), end)
         first = min(end, wave.period, wave.settled)
@@ -274,8 +276,8 @@ class Drive(Part):
             with np.errstate(all="ignore"):  # an infinity is reported below
                 given = self.function(time)  # type: ignore[misc]
         except Exception as error:
-            told = f"drive.function raised {type(error).__name__} at t = {time!r} s: {error}"
-            raise ValueError(told) from error
+            message = f"drive.function raised {type(error).__name__} at t = {time!r} s: {error}"
+            raise ValueError(message) from error
         value = math.nan
         if not isinstance(given, str):
             with suppress(TypeError, ValueError):
@@ -291,8 +293,8 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
     if isinstance(points, np.ndarray):
         points = points.tolist()
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:
-        told = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
-        raise mistake(key, points, told)
+        message = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
+        raise mistake(key, points, message)
     problems = Problems()
     values: list[float] = []
     for index, point in enumerate(points):
@@ -309,9 +311,9 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
                 times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
         if times[0] != 0.0:
             problems.add(f"{key}[0]", points[0], "the first time must be 0 s")
-        told = "times must not decrease, and a time may occur at most twice"
+        message = "times must not decrease, and a time may occur at most twice"
         for i in range(1, len(times)):
             if times[i] < times[i - 1] or (i > 1 and times[i] == times[i - 2]):
-                problems.add(f"{key}[{i}]", points[i], told)
+                problems.add(f"{key}[{i}]", points[i], message)
     problems.report()
     return tuple(zip(times, velocities, strict=True))

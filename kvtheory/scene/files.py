@@ -144,10 +144,10 @@ def template(support: str = "dead-weight") -> str:
     for name, spec in given(part).items():
         lines.append(f'{name} = "{usual[spec.unit]}"'.ljust(36) + f"# {spec.words}")
     if support != "fixed":
-        told = (
+        message = (
             "instead of mass times gravity, a load; the mass is then inertia alone (load/gravity)"
         )
-        lines += [f"# or, {told}:", '# load = "9.80665 N/mm"']
+        lines += [f"# or, {message}:", '# load = "9.80665 N/mm"']
     text = files("kvtheory.scene").joinpath("template.toml").read_text(encoding="utf-8")
     return text.replace("# SUPPORT", "\n".join(lines)).replace("# SHAPES", ", ".join(SHAPES))
 
@@ -199,17 +199,17 @@ def _read(path: Path) -> dict[str, Any]:
         text = read_text(path)
         return tomllib.loads(text)
     except UnicodeDecodeError:
-        told = "it is not text in UTF-8, UTF-16 or Windows-1252"
+        message = "it is not text in UTF-8, UTF-16 or Windows-1252"
     except RecursionError:
-        told = "its brackets are nested too deep"
+        message = "its brackets are nested too deep"
     except ValueError as error:  # invalid TOML, or too long an integer
         number = re.search(r"at line (\d+)", str(error))
         line = f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
         hint = 'a quantity is text in quotes, such as radius = "10 mm"'
         if path.suffix.lower() == ".csv":
             hint = "measured or simulated data are read by `fit` and `compare`"
-        told = f"{error}{line}; {hint}"
-    raise SceneError([f"{path} is not a TOML file: {told}"])
+        message = f"{error}{line}; {hint}"
+    raise SceneError([f"{path} is not a TOML file: {message}"])
 
 
 def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], Problems]:
@@ -231,8 +231,8 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
         models = [(each, cls) for each, known in MODELS.items() for cls in known.values()]
         near = closest(key.strip(), [f"{each}.{own}" for each, cls in models for own in _keys(cls)])
         hint = f'did you mean "{near}"? ' if near not in ("", None, key.strip()) else ""
-        told = f'{hint}expected KEY=VALUE, such as drive.velocity="50 mm/s"'
-        problems.append(f'`overrides` "{text}": {told}')
+        message = f'{hint}expected KEY=VALUE, such as drive.velocity="50 mm/s"'
+        problems.append(f'`overrides` "{text}": {message}')
     for (section, name), value in new.items():
         if section in CHOOSERS and name == CHOOSERS[section]:
             tables[section] = _switched(tables.get(section), section, value, path is None)
@@ -286,8 +286,8 @@ def _is_per_width(tables: Mapping[str, Any]) -> bool:
 def _part(section: str, table: Any, per_width: bool) -> Any:
     """Make one part of a scene from its table."""
     if not isinstance(table, dict):
-        told = f"expected one table with this name, not {type(table).__name__}"
-        raise SceneError([f"[{section}]: {told}"])
+        message = f"expected one table with this name, not {type(table).__name__}"
+        raise SceneError([f"[{section}]: {message}"])
     chooser, models = CHOOSERS.get(section), MODELS[section]
     if section == "drive" and "waveform" in table:
         chooser, models = "waveform", WAVEFORMS
@@ -327,8 +327,8 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
             ball = BALL if spec != specs[name] else ""
             problems.append(missing(section, name, spec, of + ball))
     for key in unknown:
-        told = f"unknown key{of}; {_hint(section, key, valid)}"
-        problems.add(f"{section}.{key}", table[key], told)
+        message = f"unknown key{of}; {_hint(section, key, valid)}"
+        problems.add(f"{section}.{key}", table[key], message)
     values = {key: _unitless(table[key]) for key in valid if key in table}
     values |= dict.fromkeys(needed)
     if not per_width:
@@ -360,9 +360,9 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     if misspelt & set(DRIVES):
         reported.append("drive: ")
     problems += [
-        told.replace(": missing;", f": missing{of};", 1)
-        for told in found
-        if not told.startswith(tuple(reported))
+        message.replace(": missing;", f": missing{of};", 1)
+        for message in found
+        if not message.startswith(tuple(reported))
     ]
     problems.report()
     return made

@@ -253,8 +253,8 @@ class _Relaxed(Part):
         elif self.wlf is not None and not given:
             problems.append(missing("foundation", "reference_temperature", REFERENCE))
         elif self.wlf is None and self.activation_energy is None and given:
-            told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
-            problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
+            message = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
+            problems.append(f"foundation.{given[0]}: {message}, or foundation.activation_energy")
 
     def _order_ranges(self) -> None:
         """Raise `SceneError` if a measured range is empty."""
@@ -286,17 +286,19 @@ class _Relaxed(Part):
         if T is not None and self.wlf is not None:
             pole = self.reference_temperature - self.wlf.c_2
             if np.any(pole >= T):
-                told = f"expected above T_ref - C_2 = {np.max(pole):g} K, the pole of the WLF law"
-                raise mistake(key, shown, told)
+                message = (
+                    f"expected above T_ref - C_2 = {np.max(pole):g} K, the pole of the WLF law"
+                )
+                raise mistake(key, shown, message)
         a_T = self.shift_factor
         for part, name in times:
             given = getattr(part, name)
             with np.errstate(all="ignore"):
                 shifted = given * a_T
             if not quantities(part)[name].admits(shifted):
-                told = f"shifts times by a_T = {np.ravel(a_T)[0]:g}, beyond double precision; check {key}"
+                message = f"shifts times by a_T = {np.ravel(a_T)[0]:g}, beyond double precision; check {key}"
                 keys = f"foundation.reference_temperature and foundation.{law}"
-                raise mistake(key, shown, f"{told}, {keys}")
+                raise mistake(key, shown, f"{message}, {keys}")
             derive(part, "foundation", name, shifted, key, given)
 
     def plain(self, factor: float = 1.0) -> Any:

@@ -263,8 +263,8 @@ class Revolved(Shape):
 
     def __post_init__(self) -> None:
         if not (isinstance(self.profile, Shape) and self.profile.per_width):
-            told = "expected a shape h(x) of a line contact"
-            raise mistake("indenter.profile", self.profile, told)
+            message = "expected a shape h(x) of a line contact"
+            raise mistake("indenter.profile", self.profile, message)
         self.mark([self.profile])
 
     convex = property(

@@ -20,8 +20,8 @@ class SceneError(ValueError):
     def __init__(self, problems: Sequence[str]) -> None:
         self.problems = tuple(problems)
         more = len(self.problems) - self.SHOWN
-        told = [f"and {more:,} more mistakes"] if more > 0 else []
-        super().__init__("\n".join([*self.problems[: self.SHOWN], *told]))
+        rest = [f"and {more:,} more mistakes"] if more > 0 else []
+        super().__init__("\n".join([*self.problems[: self.SHOWN], *rest]))
 
     def __reduce__(self) -> Any:  # pickled by the workers of a sweep
         return type(self), (self.problems,)

@@ -163,8 +163,8 @@ class Scene(Part):
         problems = Problems()
         for name, kinds in PARTS.items():
             if not isinstance(parts[name], kinds):
-                told = " or ".join(kind.__name__ for kind in kinds)
-                problems.add(f"`{name}`", parts[name], f"expected {told}")
+                message = " or ".join(kind.__name__ for kind in kinds)
+                problems.add(f"`{name}`", parts[name], f"expected {message}")
         problems.report()
         inconsistencies(parts).report()
         for name in PARTS:
@@ -182,10 +182,10 @@ class Scene(Part):
         try:
             return np.broadcast_shapes(*(each.shape for each in arrays.values()))
         except ValueError:
-            told = ", ".join(f"{key} {each.shape}" for key, each in arrays.items())
+            message = ", ".join(f"{key} {each.shape}" for key, each in arrays.items())
             remedy = "`sweep` with `over` takes every combination"
             raise SceneError(
-                [f"the arrays of the scene do not broadcast: {told}; {remedy}"]
+                [f"the arrays of the scene do not broadcast: {message}; {remedy}"]
             ) from None
 
     def flat(self) -> "Scene":
@@ -364,8 +364,8 @@ def inconsistencies(parts: Mapping[str, Any]) -> Problems:
             unit = quantities(part)[name].fitting(per_width).unit
             what, contact = ("that of a ball", "line") if per_width else ("per unit width", "point")
             shape = f'indenter.shape = "{indenter.shape}"'
-            told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
-            found.add(f"{section}.{name}", value, told)
+            message = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
+            found.add(f"{section}.{name}", value, message)
     if support and drive and not drive.rigid and drive.mass is None and support.depth is not None:
         spec = quantities(drive)["mass"].fitting(per_width)
         needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')

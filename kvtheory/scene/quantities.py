@@ -275,8 +275,8 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
         if written is None and values.dtype.kind in "fiu":
             array = values.astype(float)
             if not spec.admits(array):
-                told = f"is out of range; expected {spec.range} in {spec.unit} throughout"
-                raise ValueError(told)
+                message = f"is out of range; expected {spec.range} in {spec.unit} throughout"
+                raise ValueError(message)
             return array
         items = values.reshape(-1).tolist()
         if written is not None:
@@ -355,15 +355,17 @@ def validate(instance: Any, section: str) -> None:
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
         except ValueError as error:
-            told = str(error)
-            if spec.per_width and told.endswith(expected(spec.unit)):  # the shape is not known here
-                told += f", of a line contact, or {expected(WHOLE[spec.unit])}, of a ball"
-            problems.add(f"{section}.{name}", value, told)
+            message = str(error)
+            if spec.per_width and message.endswith(
+                expected(spec.unit)
+            ):  # the shape is not known here
+                message += f", of a line contact, or {expected(WHOLE[spec.unit])}, of a ball"
+            problems.add(f"{section}.{name}", value, message)
         if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:
-                told = f"cannot be given beside {', '.join(others)}"
-                problems.add(f"{section}.{name}", value, told)
+                message = f"cannot be given beside {', '.join(others)}"
+                problems.add(f"{section}.{name}", value, message)
     problems.report()
     if written:
         object.__setattr__(instance, "written", written)

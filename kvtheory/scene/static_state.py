@@ -154,8 +154,8 @@ def out_of_range(scene: Scene, why: str = "") -> str:
         if 0.0 < size < math.inf
     }
     least = min(FAR, 0.5 * max(far.values()))
-    told = ", ".join(text for text, distance in far.items() if distance >= least > 0.0)
+    message = ", ".join(text for text, distance in far.items() if distance >= least > 0.0)
     return (
         "the scene leaves the range of double precision: "
-        f"{why and f'{why}; '}check {told or 'its values'}"
+        f"{why and f'{why}; '}check {message or 'its values'}"
     )

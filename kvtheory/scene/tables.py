@@ -72,8 +72,8 @@ def read_text(path: Path) -> str:
             raise OSError(errno.EINVAL, "is a device; expected a file", str(path))
         data = file.read(MOST + 1)
     if len(data) > MOST:
-        told = f"holds more than {MOST / 1e6:.0f} MB, the most that is read"
-        raise OSError(errno.EFBIG, told, str(path))
+        message = f"holds more than {MOST / 1e6:.0f} MB, the most that is read"
+        raise OSError(errno.EFBIG, message, str(path))
     encodings = [name for mark, name in MARKS.items() if data.startswith(mark)]
     if not encodings and b"\0" in data[:2]:
         encodings = ["utf-16-be" if data.startswith(b"\0") else "utf-16-le"]

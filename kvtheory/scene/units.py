@@ -105,8 +105,8 @@ def to_si(value: Any, unit: str) -> float:
     """
     if isinstance(value, str):
         if "," in value:
-            told = "write the decimal mark as a point, and no thousands separator"
-            raise ValueError(f"{told}; expected {expected(unit)}")
+            message = "write the decimal mark as a point, and no thousands separator"
+            raise ValueError(f"{message}; expected {expected(unit)}")
         text = value.strip()
         digits = _NUMBER.match(text)
         if digits is None:
@@ -205,16 +205,16 @@ def _factor(written: str, unit: str) -> Fraction:
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
     if unit == "delta K" and TEMPERATURES.get(written, (1, 0))[1]:  # a scale with another zero
-        told = f'"{written}" is the unit of a temperature, not of a difference'
-        raise ValueError(f"{told}; expected {expected(unit)}")
+        message = f'"{written}" is the unit of a temperature, not of a difference'
+        raise ValueError(f"{message}; expected {expected(unit)}")
     try:
         factor, angle = _in_root_units(written, unit.removeprefix("delta "))
     except Exception:  # pint raises many kinds, not all of them documented
         known = {example.split(" ", 1)[1].lower(): example for example in EXAMPLES[unit]}
         near = difflib.get_close_matches(written.lower(), known, n=1, cutoff=0.5)
         hint = f', did you mean "{known[near[0]].split(" ", 1)[1]}"?' if near else ""
-        told = f'"{written}" is not a known unit{hint}; expected {expected(unit)}'
-        raise ValueError(told) from None
+        message = f'"{written}" is not a known unit{hint}; expected {expected(unit)}'
+        raise ValueError(message) from None
     if angle:
         raise ValueError(
             f'the unit "{written}" holds an angle or a count; expected {expected(unit)}'

@@ -94,9 +94,9 @@ def columns_of(
     if not names:
         raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
     if unknown := [name for name in names if name not in known]:
-        told = " (see the help of sweep)"
+        message = " (see the help of sweep)"
         raise SceneError(
-            [problem("`quantities`", name, nearest(name, known) + told) for name in unknown]
+            [problem("`quantities`", name, nearest(name, known) + message) for name in unknown]
         )
     units = units_for(indenter, {name: known[name].unit for name in names})
     return tuple(known[name]._replace(unit=unit) for name, unit in units.items())
@@ -302,8 +302,8 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None) -> None:
         limits[f'free beside "{path}"; choose fewer points'] = shutil.disk_usage(path.parent).free
     for where, limit in limits.items():
         if needed > limit:
-            told = f"{plan.points:,} points need about {_size(needed)}"
-            raise ValueError(f"{told}; there are {_size(limit)} {where}")
+            message = f"{plan.points:,} points need about {_size(needed)}"
+            raise ValueError(f"{message}; there are {_size(limit)} {where}")
 
 
 def _size(count: float) -> str:

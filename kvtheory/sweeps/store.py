@@ -71,8 +71,8 @@ class WorkFile:
             if not anew:
                 why = f"it differs in {', '.join(differing)}"
                 what = "finish that one, remove the file, or choose another name"
-                told = f'"{self.path}" is the unfinished work of another sweep: {why}; {what}'
-                raise ValueError(told)
+                message = f'"{self.path}" is the unfinished work of another sweep: {why}; {what}'
+                raise ValueError(message)
             run("DELETE FROM blocks")
             run("UPDATE sweep SET record = ?", (self._record,))
         damaged = [
