@@ -150,7 +150,8 @@ class Theory:
 
         Those of F22, or with a rigid drive of M s^2 + C B s + K A + k_s = 0, B = x_TE + a (F12). On arms
         the contact, of length L, acts on M as if it kept its elements, M s^2 + k_s + L (K + sum K_i tau_i s/
-        (1 + tau_i s)) = 0. These and those of a ball are approximate; they only set windows and allowances.
+        (1 + tau_i s)) = 0; but no element is in it for longer than it takes to pass, and remembers more. These
+        and those of a ball are approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
         if not self.scene.drive.rigid:
@@ -161,14 +162,17 @@ class Theory:
             return None
         state = self.steady_state
         if arms := self.scene.foundation.arms:
-            extent = float(self.width(state.depth)) * abs(state.trailing_edge - state.leading_edge)
-            K, k_s = self.scene.foundation.stiffness, self.scene.support.spring
-            terms, product = np.poly1d([M, 0.0, k_s + extent * K]), np.poly1d([1.0])
+            length = abs(state.trailing_edge - state.leading_edge)
+            extent, law = float(self.width(state.depth)) * length, self.scene.foundation
+            stiffness = self.scene.support.spring + extent * law.stiffness
+            terms, product = np.poly1d([M, extent * law.damping, stiffness]), np.poly1d([1.0])
             for arm in arms:
                 relaxes = np.poly1d([arm.relaxation_time, 1.0])
                 damps = np.poly1d([extent * arm.stiffness * arm.relaxation_time, 0.0])
                 terms, product = terms * relaxes + product * damps, product * relaxes
-            return Rates.of((-1.0 / terms.roots.astype(complex)).tolist())
+            passing = length / abs(self.final_velocity) if self.final_velocity else math.inf
+            constants = (-1.0 / terms.roots.astype(complex)).tolist()
+            return Rates.of([T if T.imag or T.real < passing else complex(passing) for T in constants])
         a, l_r = state.half_length, state.retardation_length
         stiffness = float(self.stiffness(state.depth, a, l_r))
         extent = float(self.width(state.depth)) * a * (trailing_edge_ratio(l_r / a) + 1.0)

@@ -192,6 +192,7 @@ def strip_width(s: Surface, depth: float, dx: float) -> float:
 def surface_of(indenter: Indenter) -> Surface:
     """Return the indenter as the kernels know it.
 
+    >>> from kvtheory.scene.indenters import Wedge
     >>> surface_of(Wedge(inclination=0.5))[:3]
     (1.0, 1.0, 0.5)
     """
@@ -216,6 +217,7 @@ def surface_of(indenter: Indenter) -> Surface:
 def span(s: Surface, depth: float) -> tuple[float, float]:
     """Return the places, left and right of the lowest point, where h = `depth`, at most the reach.
 
+    >>> from kvtheory.scene.indenters import Wedge
     >>> span(surface_of(Wedge(inclination=0.5)), 0.25)
     (-0.5, 0.5)
     """
