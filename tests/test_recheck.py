@@ -9,8 +9,9 @@ from importlib.util import find_spec
 import pytest
 from click.testing import CliRunner
 from kvtheory.derivations.catalogue import catalogue
-from kvtheory.derivations.recheck.checks import _CHECKS, Record, Verdict
+from kvtheory.derivations.recheck.checks import _CHECKS, Question, Record, Verdict
 from kvtheory.derivations.recheck.report import counts, having, recheck
+from kvtheory.derivations.recheck.trees import read
 from kvtheory.derivations.render import edition
 from kvtheory.derivations.render import json as written
 
@@ -94,6 +95,58 @@ def test_what_is_not_understood_is_not_confirmed(records):
         {"left": claim["right"]},
     ):
         assert Record(record, {}).verdict({**claim, **strange}).status == "unconfirmed"
+
+
+def small(claim, *premises, symbols="x y z", functions=()):
+    """Return the verdict on a claim under premises, all letters being real."""
+    claims = [
+        {
+            "id": f"new/{i}",
+            "kind": "definition",
+            "domain": [],
+            "premises": [],
+            "left": a,
+            "right": b,
+        }
+        for i, (a, b) in enumerate(premises)
+    ]
+    asked = {"premises": [each["id"] for each in claims], "domain": [], "id": "new/9", **claim}
+    names = {name: ["real"] for name in symbols.split()}
+    record = {"label": "new", "symbols": names, "functions": dict(functions), "claims": claims}
+    return Record(record, {}).verdict(asked)
+
+
+def test_a_premise_about_an_expression_is_used_as_its_value():
+    """x^2 / y = 1 - z has no letter in which it is linear, nor is z a letter of the left side."""
+    compound, value = ["*", ["^", "x", "2"], ["^", "y", "-1"]], ["+", "1", ["*", "-1", "z"]]
+    root = {"kind": "root", "expression": compound, "variable": "z", "value": "1"}
+    assert small(root, (compound, value)).status == "confirmed"
+    assert small({**root, "value": "2"}, (compound, value)).status == "unconfirmed"
+    more = {"kind": "equality", "left": ["+", compound, "z"], "right": "1"}
+    assert small(more, (compound, value)).status == "confirmed"
+    assert small({**more, "right": "2"}, (compound, value)).status == "refuted"
+
+
+def test_a_letter_that_a_premise_gives_a_value_has_it_everywhere():
+    """The name y of f(x) is asked for before the premise y - z^2 = 1 gives f(x) its value."""
+    name, place = read("y"), read(["call", "f", "x"])
+    premise = {read(["+", "y", ["*", "-1", ["^", "z", "2"]]]): read("1")}
+    question = Question({name: place}, premise, [], {"f()": ["real"]}, "new/0")
+    for point in question.points(name):
+        assert point.value(name) == point.value(place) == 1 + point.value(read("z")) ** 2
+
+
+def test_a_positive_function_may_fall_as_well_as_rise():
+    """int_0^1 (1 - 2 x) f(x) dx is positive where f falls, and of no sign for every positive f."""
+    inner = ["*", ["+", "1", ["*", "-2", "x"]], ["call", "f", "x"]]
+    moment = ["integral", inner, ["x", "0", "1"]]
+    claim = {"kind": "inequality", "left": moment, "relation": ">", "right": "0"}
+    given = {"f": ["positive"]}
+    assert small(claim, functions=given).status == "refuted"
+    assert small({**claim, "relation": "<"}, functions=given).status == "refuted"
+    doubled = ["*", "2", moment]
+    same = {**claim, "domain": [["<", "0", moment]], "left": doubled}
+    assert small(same, functions=given).status == "supported"
 
 
 def test_z3_decides_inequalities_of_several_letters_where_it_is_installed():

@@ -50,8 +50,8 @@ class Question:
     """A claim with its premises: what names stand for, other equations, conditions."""
 
     values: dict[Tree, Tree]
-    equations: list[Tree]
-    """Differences that vanish by a premise that gives no name its value."""
+    equations: dict[Tree, Tree]
+    """The sides of premises that give no name its value."""
     conditions: list[Tree]
     facts: Facts
     seed: str
@@ -62,7 +62,11 @@ class Question:
     rules: Rules = field(init=False)
 
     def __post_init__(self) -> None:
-        self.rules = Rules(self.values, (*self.conditions, *self.equations))
+        self.rules = Rules(self.values, (*self.conditions, *self.gaps()))
+
+    def gaps(self) -> list[Tree]:
+        """Return differences that vanish by a premise that gives no name its value."""
+        return [left - right for left, right in self.equations.items()]
 
     def where(self, *conditions: Tree) -> "Question":
         """Return the question under more conditions; an equation gives a name its value."""
@@ -76,17 +80,24 @@ class Question:
             self, values={lhs: rhs for lhs, rhs in self.values.items() if lhs not in names}
         )
 
+    def named(self) -> "Question":
+        """Return the question with each equation as the value of its left side, wherever that is written.
+
+        The letters of the left side are then free: what holds of them all holds where the equations do.
+        """
+        return replace(self, values={**self.equations, **self.values}, equations={})
+
     def points(self, *trees: Tree, wanted: int = POINTS) -> Iterator[Point]:
         """Yield points at which those premises and conditions hold that matter to some trees."""
         draw, found, reach, near = random.Random(self.seed), 0, frozenset[Tree](), list[Tree]()
-        given, wider = (*self.conditions, *self.equations), frozenset(trees)
+        given, wider = (*self.conditions, *self.gaps()), frozenset(trees)
         while wider != reach:  # what shares a letter with the trees matters, or with what matters
             reach = wider.union(*map(self.rules.reach, trees))
             near = [each for each in given if self.rules.reach(each) & reach]
             wider = reach.union(*map(self.rules.reach, near))
         names, ranges = [lhs for lhs in self.values if lhs in reach], self.ranges()
         conditions = [each for each in self.conditions if each in near]
-        equations = [each for each in self.equations if each in near]
+        equations = [each for each in self.gaps() if each in near]
         for _ in range(TRIES * wanted):
             point = Point(self.rules, self.facts, draw)
             try:
@@ -156,7 +167,7 @@ class Question:
             except (UndefinedError, UnsupportedError):
                 continue
             if _is_zero(two - one - one + zero) and not _is_zero(one - zero):
-                point.bound[letter] = -zero / (one - zero)
+                point.set(letter, -zero / (one - zero))
                 if not self._admits(letter, point):
                     raise UndefinedError("a premise cannot hold here")
                 return
@@ -180,14 +191,26 @@ class Record:
 
     def verdict(self, claim: Claim) -> Verdict:
         """Check one claim."""
-        check, found = _CHECKS.get(claim["kind"]), Verdict("unconfirmed", "a claim of unknown kind")
-        before = flint.ctx.prec
+        if claim["kind"] not in _CHECKS:
+            return Verdict("unconfirmed", "a claim of unknown kind")
         try:
-            for precision in PRECISIONS:
-                flint.ctx.prec = precision
-                if check is None or found.status != "unconfirmed":
+            question = self._question(claim)
+        except UnsupportedError as error:
+            return Verdict("unconfirmed", str(error))
+        if question.equations:
+            wider = self._found(claim, question.named())
+            if wider.status in {"supported", "confirmed"}:
+                return wider
+        return self._found(claim, question)
+
+    def _found(self, claim: Claim, question: Question) -> Verdict:
+        """Ask a question, with wider precision where the balls do not decide."""
+        found, before = NO_POINT, flint.ctx.prec
+        try:
+            for flint.ctx.prec in PRECISIONS:
+                found = _CHECKS[claim["kind"]](self, claim, question)
+                if found.status != "unconfirmed":
                     break
-                found = check(self, claim, self._question(claim))
         except (UnsupportedError, UndefinedError, RecursionError) as error:
             return Verdict("unconfirmed", str(error))
         finally:
@@ -195,7 +218,7 @@ class Record:
         return found
 
     def _question(self, claim: Claim) -> Question:
-        values, equations, proved = {}, [], set()
+        values, equations, proved = {}, {}, set()
         for premise in map(self.claims.__getitem__, claim["premises"]):
             left, right = _sides(premise)
             if premise["kind"] == left.op == "integral":
@@ -203,7 +226,7 @@ class Record:
             if left.op in {"symbol", "call", "integral", "sum"}:
                 values[left] = right
             else:
-                equations.append(left - right)
+                equations[left] = right
         conditions = [read(each) for each in claim["domain"]]
         return Question(values, equations, conditions, self.facts, claim["id"], frozenset(proved))
 
@@ -213,10 +236,12 @@ class Record:
         if source is None:
             return Verdict("unconfirmed", "its source is not in the file")
         places = {read(name): read(place) for name, place in claim.get("at", ())}
-        plain = Question({}, [], [], self.facts, claim["id"])
-        for other in (each for each in source["claims"] if each["kind"] in _ESTABLISHING):
+        plain = Question({}, {}, [], self.facts, claim["id"])
+        known = [each for each in source["claims"] if each["kind"] in _ESTABLISHING]
+        left, _ = _sides(claim)
+        for other in sorted(known, key=lambda each: _sides(each)[0] is not left):
             pairs = [
-                (put(side, places), mine)
+                (put(side, places) if side.has(*places) else side, mine)
                 for side, mine in zip(_sides(other), _sides(claim), strict=True)
             ]
             if all(
@@ -449,7 +474,7 @@ def _equal(question: Question, left: Tree, right: Tree) -> Verdict:
     if left is right:
         return Verdict("confirmed", "")
     exact, count = True, 0
-    close = QUADRATURE if _integrates(left) or _integrates(right) else CLOSE
+    close = QUADRATURE if question.rules.integrates(left - right) else CLOSE
     for point in question.points(left, right, wanted=8 * POINTS):
         one, other = sides = [_value(point, side) for side in (left, right)]
         if None in sides:
@@ -477,10 +502,6 @@ def _alternatives(question: Question, point: Point) -> list[Question]:
     return (
         [*found, replace(question, linear=True)] if point.linear and not question.linear else found
     )
-
-
-def _integrates(tree: Tree) -> bool:
-    return tree.op == "integral" or any(map(_integrates, tree.children()))
 
 
 def _differ(point: Point, gap: Value) -> Verdict:
@@ -513,7 +534,7 @@ def _signed(question: Question, gap: Tree, relation: str) -> Verdict:
         return NO_POINT
     if proved:
         return Verdict("confirmed", "by the signs of polynomials")
-    given = question.rules, question.facts, question.conditions, question.equations
+    given = question.rules, question.facts, question.conditions, question.gaps()
     return (
         Verdict("confirmed", "by z3")
         if proves(gap, relation, *given)

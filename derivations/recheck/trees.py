@@ -225,6 +225,17 @@ class Rules:
             return reduce(Tree.__add__, moved, rest)
         raise UnsupportedError(f"the derivative of {op}")
 
+    def integrates(self, tree: Tree) -> bool:
+        """Tell whether an integral occurs in a tree, or in what the names in it stand for."""
+        seen, open_ones = set[Tree](), [tree]
+        while open_ones and open_ones[-1].op != "integral":
+            each = open_ones.pop()
+            if each not in seen:
+                seen.add(each)
+                law = self.law(each)
+                open_ones += each.children() if law is None else [law]
+        return bool(open_ones)
+
     def reach(self, tree: Tree) -> frozenset[Tree]:
         """Return the symbols and functions on which a tree depends, through the names in it."""
         if tree not in self._reach:

@@ -53,6 +53,16 @@ class Point:
         other._analytic = analytic or self._analytic
         return other
 
+    def set(self, letter: Tree, value: Value) -> None:
+        """Give a letter a value, and forget what followed from another one."""
+        self.bound[letter] = value
+        kept = {
+            tree: found
+            for tree, found in self._memo.items()
+            if letter not in self.rules.reach(tree)
+        }
+        self._memo = kept
+
     def value(self, tree: Tree) -> Value:
         """Return the value of a tree."""
         if tree in self.bound:
@@ -165,7 +175,10 @@ class Point:
                         * letter ** number(order)
                     )
             cubic += reduce(mul, letters) / number(3)
-            form = Tree("exp", cubic / number(8)) if facts & (POSITIVE | NEGATIVE) else cubic
+            if facts & (POSITIVE | NEGATIVE):  # it rises or falls
+                form = Tree("exp", number(self.draw.choice((-1, 1))) * cubic / number(8))
+            else:
+                form = cubic
             self._forms[name] = (number(-1) * form if facts & NEGATIVE else form, *letters)
         return self._forms[name]
 
@@ -179,9 +192,15 @@ class Point:
             each.args[0] in self.rules.related and not self.rules.law(each) for each in calls
         ):
             root.linear = True
-            weights = [(drawn((), self.draw), drawn((), self.draw)) for _ in range(NODES)]
-            weights = root._opaque.setdefault(tuple(_rounded([low, high])), weights)
-            return reduce(add, (w * self.at({variable: x}).value(inner) for x, w in weights))
+            shares = [
+                (drawn({"positive"}, self.draw), drawn((), self.draw, 0, 1)) for _ in range(NODES)
+            ]
+            shares = root._opaque.setdefault(tuple(_rounded([low, high])), shares)
+            width = (
+                high - low
+            )  # places inside, and weights of one sign: it keeps the sign of its integrand
+            terms = (w * self.at({variable: low + width * x}).value(inner) for w, x in shares)
+            return width * reduce(add, terms)
 
         def integrand(place: acb, analytic: bool) -> acb:
             try:
