@@ -182,7 +182,7 @@ def _on_arms(known: Numbers, arms: Arms) -> Numbers:
     found = {sym.a: half, sym.x_le: -half, sym.x_te: c - half, relaxation.c: c}
     found |= {viscoelastic.b: half / c, viscoelastic.e: half / c - mpmath.mpf(1) / 2}
     memory = relaxation.G(relaxation.c), *(part(relaxation.c) for part in relaxation.repeated)
-    found |= {name: repeated(n, c) for n, name in enumerate(memory)}
+    found |= {integral: repeated(n, c) for n, integral in enumerate(memory)}
     if len(series) == 2:  # else the letters of an arm stand for several
         found[viscoelastic.arm_number] = c / series[1][1]
     if ball.across in known:

@@ -100,7 +100,7 @@ ARGUED = {
     *("F28", "F29", "F30-field", "F32-series", "F32-ball-series"),
 }
 """Results whose title rests on words, as their text says: there may be fewer, not more."""
-BY_WORDS = 20
+BY_WORDS = 7
 """As many more use a result in words and recall no step of it: there may be fewer, not more."""
 
 

@@ -63,7 +63,7 @@ def test_both_roots_of_equation_33_and_the_scaled_forces():
         assert close(found, value(expr.subs(named), point), mp.mpf("1e-3"))
     point = {
         s.d: DEPTH / STATIC, s.d_s: TAU * RATE / STATIC, s.lam: V * TAU / a_0,
-        s.left: leading / a_0, s.right: trailing / a_0,
+        transient_motion.left: leading / a_0, transient_motion.right: trailing / a_0,
     }  # fmt: skip
     load, friction = (
         mp.quad(lambda x, arm=arm: arm(x) * dimensional_pressure(x), [leading, trailing])

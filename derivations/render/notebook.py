@@ -185,5 +185,5 @@ def _declared(names: dict[Any, str]) -> list[str]:
         )
         kind = "Function" if function else "Symbol"
         shown = part.__name__ if function else part.name
-        lines.append(f'{name} = {kind}("{shown}"{facts})')
+        lines.append(f"{name} = {kind}({json.dumps(shown)}{facts})")
     return lines

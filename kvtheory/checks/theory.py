@@ -172,7 +172,9 @@ class Theory:
                 terms, product = terms * relaxes + product * damps, product * relaxes
             passing = length / abs(self.final_velocity) if self.final_velocity else math.inf
             constants = (-1.0 / terms.roots.astype(complex)).tolist()
-            return Rates.of([T if T.imag or T.real < passing else complex(passing) for T in constants])
+            return Rates.of(
+                [T if T.imag or T.real < passing else complex(passing) for T in constants]
+            )
         a, l_r = state.half_length, state.retardation_length
         stiffness = float(self.stiffness(state.depth, a, l_r))
         extent = float(self.width(state.depth)) * a * (trailing_edge_ratio(l_r / a) + 1.0)

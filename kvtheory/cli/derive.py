@@ -203,10 +203,12 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
         )
     state, values, line = steady(scene), scene.values(), scene.indenter.per_width
     quantities = {
-        "K": scene.foundation.stiffness, "tau": scene.foundation.retardation_time,
-        "C": scene.foundation.damping, "V": velocity,
+        "K": scene.foundation.stiffness, "V": velocity,
         "delta": float(state.depth), "mu": abs(float(state.friction_coefficient)),
     }  # fmt: skip
+    if not scene.foundation.arms:
+        quantities["tau"] = scene.foundation.retardation_time
+        quantities["C"] = scene.foundation.damping
     if line:
         quantities |= {"W": float(state.load), "F": abs(float(state.friction_force))}
     if small := [name for name, value in quantities.items() if not 0.0 < value < math.inf]:
@@ -226,8 +228,6 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
     where = UNUSUAL_CHARACTER.sub("_", Path(path).name) if path else "Table 1"
     parts = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
     arms = tuple((arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms)
-    if arms:
-        quantities = {name: value for name, value in quantities.items() if name not in ("C", "tau")}
     if arms and isinstance(scene.indenter, Sphere):
         quantities["R_y"] = scene.indenter.radius * scene.indenter.stretch**2
     return quantities, scene.indenter.shape, arms, f"{where} ({parts})"

@@ -83,7 +83,13 @@ class Needs:
         kind = scene.kind
         if kind not in self.messages:
             shape = kind[0]
-            sets = sorted(self.sets, key=lambda s: (shape not in s.shapes, -len(s.laws)))
+            # What is named, shapes or laws, is as much as holds.
+            sets = sorted(
+                self.sets,
+                key=lambda s: (
+                    (False, -len(s.laws)) if shape in s.shapes else (True, -len(s.shapes))
+                ),
+            )
             nearest = min((each.lacking(*kind) for each in sets), key=len)
             self.messages[kind] = nearest[0] if nearest else ""
         return self.messages[kind]
