@@ -150,8 +150,8 @@ class Theory:
 
         Those of F22, or with a rigid drive of M s^2 + C B s + K A + k_s = 0, B = x_TE + a (F12). On arms
         the contact, of length L, acts on M as if it kept its elements, M s^2 + k_s + L (K + sum K_i tau_i s/
-        (1 + tau_i s)) = 0; but no element is in it for longer than it takes to pass, and remembers more. These
-        and those of a ball are approximate; they only set windows and allowances.
+        (1 + tau_i s)) = 0; a decay takes no longer than elements do to pass. These and those of a ball are
+        approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
         if not self.scene.drive.rigid:
