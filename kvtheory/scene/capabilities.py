@@ -15,8 +15,7 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
 
 SHAPES = {cls.shape: cls.words for cls in (*CLASSES.values(), Profile, Revolved)}
-SHAPES["revolved-callable"] = "a revolved profile of functions"
-"""The shapes of the table, in words; a revolved profile of functions is not known to be convex."""
+"""The shapes of the table, in words."""
 LAWS = "kelvin-voigt", "generalized-maxwell", DAMPED, "fractional-kelvin-voigt"
 """The laws of the table: the kinds of foundation, and arms beside a damper."""
 SUPPORTS = tuple(KINDS)
@@ -46,7 +45,7 @@ class Scenes:
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
-            message = f'indenter.shape = "{shape.removesuffix("-callable")}"'
+            message = f'indenter.shape = "{shape}"'
             found.append(f"holds for {named} only, not for {message}")
         for key, valid, name in (
             ("foundation.kind", self.laws, law), ("support.kind", self.supports, support)
@@ -116,7 +115,6 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
-lacks_swept_transient = Needs(Scenes(laws=FINITE))
 lacks_scripts = Needs(
     Scenes(QUADRATIC, (*ONE_OF_BOTH, LAWS[-1])), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
 )
@@ -175,7 +173,7 @@ QUESTIONS = {
     ),
     "sweep": Question("sweeps of steady sliding", "sweep(scene, over=...)", lacks_quadrature),
     "sweep over time": Question(
-        "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_swept_transient, _NO_ELEMENTS
+        "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_arms, _NO_ELEMENTS
     ),
     "footprint": Question(
         "the footprint", "footprint(scene)", lacks_ball,

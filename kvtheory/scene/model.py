@@ -220,12 +220,9 @@ class Scene(Part):
         >>> Scene().kind
         ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
         """
-        body, drive = self.indenter, "rigid" if self.drive.rigid else "spring"
-        functions = isinstance(body, Revolved) and not body.convex
-        shape = "revolved-callable" if functions else body.shape
-        foundation = self.foundation
+        foundation, drive = self.foundation, "rigid" if self.drive.rigid else "spring"
         law = DAMPED if foundation.arms and np.any(foundation.damping) else foundation.kind
-        return shape, law, self.support.kind, drive
+        return self.indenter.shape, law, self.support.kind, drive
 
     @property
     def held(self) -> bool:
