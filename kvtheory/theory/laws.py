@@ -47,10 +47,8 @@ FRACTION_TERMS = 10
 FAR = 1e150
 """z of an arm that relaxes immediately: its square is still finite."""
 NEAR = 2.0
-"""Arguments of phi below which the recurrence upwards loses digits; Gauss's rule takes them."""
-NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(14))
-NODES = 0.5 + NODES
-SHARES = [WEIGHTS * (1.0 - NODES) ** n / math.factorial(n) for n in range(4)]
+"""Arguments of phi below which the recurrence upwards loses digits, and the power series does not."""
+INVERSE_FACTORIALS = [1.0 / math.factorial(n) for n in range(26)]
 
 
 class Moments(NamedTuple):
@@ -265,14 +263,23 @@ def phi(m: Complex) -> list[Complex]:
     """Return phi_1 to phi_4 at -m."""
     near = np.abs(m) < NEAR
     far = np.where(near, NEAR, m)
-    found: list[Complex] = [np.asarray(-np.expm1(-far) / far, complex)]
+    found: list[Complex] = [np.asarray((1.0 - np.exp(-far)) / far, complex)]
     for n in range(1, 4):
-        found.append((1.0 / math.factorial(n) - found[-1]) / far)
+        found.append((INVERSE_FACTORIALS[n] - found[-1]) / far)
     if near.any():
-        fall = np.exp(-m[near][:, np.newaxis] * NODES)
-        for each, share in zip(found, SHARES, strict=True):
-            each[near] = fall @ share
+        for each, (value, _) in zip(found, power_series(-m[near], 0.0), strict=True):
+            each[near] = value
     return found
+
+
+def power_series(x: Any, y: Any) -> list[tuple[Any, Any]]:
+    """Return phi_1 to phi_4 at x by Horner's scheme, and their divided differences between x and y."""
+    value, divided, found = 0.0, 0.0, []
+    for coefficient in INVERSE_FACTORIALS[:0:-1]:
+        divided = divided * y + value
+        value = value * x + coefficient
+        found.append((value, divided))
+    return found[:-5:-1]
 
 
 def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
@@ -284,20 +291,14 @@ def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
     near = np.abs(pivot) < NEAR
     pivot = np.where(near, NEAR, pivot)
     others = phi(np.where(fast, m, z).astype(complex))
-    small = np.abs(sigma) < 1.0
-    part = -np.expm1(-np.where(sigma == 0.0, 1.0, sigma)) / np.where(sigma == 0.0, 1.0, sigma)
-    slow = np.exp(-z) * np.where(sigma == 0.0, 1.0, np.where(small, part, 0.0))
-    apart = (np.exp(-z) - np.exp(-m)) / np.where(small, 1.0, sigma)
-    found = [np.where(small, slow, apart)]
+    small, fall = np.abs(sigma) < 1.0, np.exp(-z)
+    slow = fall * phi(np.where(small, sigma, 1.0).astype(complex))[0]
+    found = [np.where(small, slow, (fall - np.exp(-m)) / np.where(small, 1.0, sigma))]
     for n in range(4):
         found.append((others[n] - found[-1]) / pivot)
     if near.any():
-        here, turn = z[near][:, np.newaxis] * NODES, sigma[near][:, np.newaxis] * NODES
-        zero = turn == 0.0
-        ratio = np.where(zero, 1.0, -np.expm1(-turn) / np.where(zero, 1.0, turn))
-        fall = NODES * np.exp(-here) * ratio
-        for n in (2, 3, 4):
-            found[n][near] = fall @ SHARES[n - 1]
+        for each, (_, divided) in zip(found[1:], power_series(-z[near], -m[near]), strict=True):
+            each[near] = divided
     return tuple(sigma * each for each in found[2:])
 
 
