@@ -1,9 +1,9 @@
 """How the tests are shared out among processes, and what becomes of them without the programs that they need.
 
-What takes longest starts first, and all derivations are in one process.
-
-To derive everything takes half a minute, once in the life of a process. What a file sets up is shared by its
-tests, so other scopes are files. Kernels that are compiled in one process are loaded by the others.
+What takes longest starts first: in one process the tests that compile all kernels, which the others load,
+and in another one all derivations, whose proofs take half a minute and are kept, too. Where neither is known
+yet, no process then does what another one does. What a file sets up is shared by its tests, so other scopes
+are files.
 """
 
 import os
@@ -23,11 +23,20 @@ settings.register_profile("any processor", settings(), deadline=None)
 settings.load_profile("any processor")  # a busy machine fails no test
 
 FIRST = (
-    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_prony_continuum"),
+    *(
+        "kernels",
+        "derivations",
+        "test_compare_faults",
+        "test_figures",
+        "test_docs",
+        "test_prony_continuum",
+    ),
     *("test_cli", "test_compare", "test_fit", "test_energy", "test_planted", "test_explorer"),
     *("test_sweep_executors", "test_prony_reference", "test_charts_stability", "test_asperities"),
 )
-"""Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
+"""Scopes in the order in which they begin, then all others."""
+COMPILING = "test_compiled_kernels"
+"""The tests whose names begin so compile every kernel, whether it pays or not."""
 DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"
 """In the text of a file of tests, or of a page, that derives everything or most of it."""
 
@@ -98,8 +107,10 @@ def derives(path: Path) -> bool:
 
 
 def scope_of(nodeid: str) -> str:
-    """Return the name of the scope of a test: its file, or what shares the derivations."""
+    """Return the name of the scope of a test: its file, or what shares kernels or derivations."""
     path, _, name = nodeid.partition("::")
+    if name.startswith(COMPILING):
+        return "kernels"
     page = name.partition("[")[2].rstrip("]")
     deriving = path.startswith("tests/") and (
         derives(ROOT / path) or (page.endswith(".md") and derives(ROOT / "docs" / page))

@@ -39,7 +39,7 @@ def both(request):
     ]
 
 
-def test_the_same_bits(both):
+def test_compiled_kernels_give_the_same_bits(both):
     for case, fast, slow in both:
         assert (fast.compiled, slow.compiled) == (True, False)
         assert np.array_equal(fast.records, slow.records)

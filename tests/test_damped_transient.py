@@ -18,7 +18,6 @@ from tests.spring_random import of_unit_scales
 
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=[(2e10, 5e-3), (1e10, 0.2)], damping=5e8)
 QUANTITIES = "depth", "depth_rate", "normal_force", "friction_force", "peak_pressure"
-pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def history(points, end):

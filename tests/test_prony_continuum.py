@@ -23,7 +23,6 @@ SERIES = (
     "trailing_edge",
     "peak_pressure",
 )
-pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def sliding(arms, velocity=0.05, duration=0.06, **parts):
@@ -307,7 +306,7 @@ def test_it_takes_off_from_ground_that_was_in_contact_at_rest(amplitude):
     assert found.certificate.relative_error["depth"] < 1e-6
 
 
-def test_many_arms_are_interpreted_at_once():
+def test_many_arms_are_interpreted_at_once(interpreted):
     """A hundred arms need little more Python than a few, each of which an array would not make faster."""
     calls = []
     for count in (4, 100):
@@ -421,7 +420,7 @@ def test_a_history_of_many_points_has_steps_for_each(monkeypatch):
     assert kv.transient(scene, at=[1.2e-3], certify=False).steps > 0
 
 
-def test_a_history_of_many_points_costs_as_much_for_each_of_them(monkeypatch):
+def test_a_history_of_many_points_costs_as_much_for_each_of_them(monkeypatch, interpreted):
     """The contact has a segment for each point: no step copies or looks at all of them, nor does a peak."""
     corners = [(2e-4 * i, 0.05 + 0.02 * (i % 2)) for i in range(41)]
     scene = sliding([(3e10, 0.01)], kv.Drive(history=corners), 8e-3, support=kv.Fixed(1e-4))

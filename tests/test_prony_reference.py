@@ -25,7 +25,6 @@ FINE = "start, fixed", "start, suspended", "stop, fixed", "reversal, fixed"
 ROUGH = "start, ten arms", "ramp", "to and fro", "spring and damper", "stick-slip, fixed", "hop"
 FINE_CASES = [(name, 1e-9) for name in (CASES if ALL else (*FINE, "ramp"))]
 ROUGH_CASES = [(name, 1e-6) for name in (CASES if ALL else ROUGH)]
-pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def scene_of(case):
