@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations.engine import book
+from kvtheory.derivations.engine import book, nomenclature
 from kvtheory.derivations.engine.book import StepError, established
 from kvtheory.derivations.engine.chapter import Chapter
 from kvtheory.derivations.engine.step import Proof
@@ -249,3 +249,12 @@ def test_a_title_that_words_prove_is_argued_and_its_lines_are_proved():
     assert words.status == "argued"
     assert words.text == "Twice. Argued, not checked by machine. It is seen in a plot."
     assert {words.steps[0].status, resting.status} == {"proved"}
+
+
+def test_a_letter_declared_twice_with_different_assumptions_is_refused(monkeypatch):
+    for name in ("BY_NAME", "SYMBOLS", "DECLARED"):
+        monkeypatch.setattr(nomenclature, name, getattr(nomenclature, name).copy())
+    letter = nomenclature.symbol("own_letter")
+    assert nomenclature.symbol("own_letter") == letter
+    with pytest.raises(ValueError, match="the letter own_letter is declared twice"):
+        nomenclature.symbol("own_letter", real=True)

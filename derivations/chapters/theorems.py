@@ -22,7 +22,7 @@ xi, P, P_max, n, w, phi, m, s, r, f, f_s, f_ss, G, G_s, lam, kappa = symbols(r""
     w       -              1  scaled load, $W/(K \delta a)$
     phi     \varphi        1  scaled friction force, $F R/(K \delta a^{2})$
     m       -              1  scaled friction coefficient, $\mu R/a$
-    s       -              1  half length in units of the static one, $a/a_0 = \sqrt{d}$  prints \hat
+    s_a     s              1  half length in units of the static one, $a/a_0 = \sqrt{d}$  prints \hat
             a  from scaled-load
     r       -              1  $\sqrt{\hat a^2 + \lambda^2}$  prints \hat r
     f       -              1  scaled load of an indenter that has been lifted, $W/W_0$  prints \hat f
