@@ -421,7 +421,8 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     fading = {each: c for each, (c, k) in exponents.items() if each.has(h) and k.is_negative}
     if not fading:
         return 0, local
-    least, faded = min(fading, key=sp.count_ops), sp.Dummy("faded")
+    least = min(fading, key=lambda each: (sp.count_ops(each), str(each)))  # the same in every run
+    faded = sp.Dummy("faded")
     if not (fading[least].is_negative or fading[least].is_positive):
         raise UndecidedError(f"{sp.exp(least)} has no known limit")
     least = least if fading[least].is_negative else -least
