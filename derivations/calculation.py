@@ -81,7 +81,7 @@ ON_ARMS = {
 }
 """The records, and families of records, that hold on a Prony series, by the shape."""
 OTHER_LAWS = ("springpot", "voigt", "limits")
-"""Ends of the labels of records about other laws, or about limits: their letters are not those of the scene."""
+"""Ends of the labels of records about other laws, or about limits: their letters have other values there."""
 
 CONSTANTS = (sym.R, sym.M, sym.K, sym.C, sym.tau, sym.g, sym.a_0, sym.delta_0, sym.W_0)
 """The constants of a scene, the same in every state."""
