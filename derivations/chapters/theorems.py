@@ -137,7 +137,8 @@ def _peak_pressure(proof: Proof) -> None:
         n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
     )
     proof.define(P_max, form, "its height in one form")
-    proof.equal(sp.Piecewise((1 + l**2, l <= 1), (2 * l, True)), form, "for both cases")
+    for case, height in ((l < 1, 1 + l**2), (l > 1, 2 * l)):
+        proof.equal(form, height, "as it is there", cases=(case,))
     proof.done(P_max, form)
 
 
