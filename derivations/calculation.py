@@ -80,8 +80,8 @@ ON_ARMS = {
     "sphere": ("eq26", "eq28", "F17-strip", "F20-any"),
 }
 """The records, and families of records, that hold on a Prony series, by the shape."""
-OTHER_LAWS = ("springpot", "kelvin-voigt")
-"""Ends of the labels of records about other laws."""
+OTHER_LAWS = ("springpot", "voigt", "limits")
+"""Ends of the labels of records about other laws, or about limits: their letters have other values there."""
 
 CONSTANTS = (sym.R, sym.M, sym.K, sym.C, sym.tau, sym.g, sym.a_0, sym.delta_0, sym.W_0)
 """The constants of a scene, the same in every state."""
@@ -101,6 +101,7 @@ _PREFIXES = (
 )
 _NEEDLESS = re.compile(r"\{\(([^()]*)\)\}")
 """Parentheses around everything between two braces."""
+_BRACKET = re.compile(r"\\(left|right)(?![A-Za-z])")
 _NUMBER = re.compile(r"(-?[\d.]+)e([+-]\d+)")
 
 
@@ -120,8 +121,10 @@ def with_numbers(
 
 def _concerns(label: str, shape: str, arms: Arms = ()) -> bool:
     family = label.split("-", maxsplit=1)[0]
+    if label.endswith(OTHER_LAWS):
+        return False
     if arms:
-        return bool({family, label} & {*ON_ARMS[shape]}) and not label.endswith(OTHER_LAWS)
+        return bool({family, label} & {*ON_ARMS[shape]})
     if shape in OWN:
         return family == OWN[shape] or label in SHARED[shape]
     return family not in OWN.values()
@@ -314,7 +317,7 @@ def _calculation(
     formula = relations(step.right)[-1].removeprefix("=").strip()
     note = ""
     if claim.check == "leading_order":
-        formula = formula.rpartition(r" \left(1 ")[0] or formula
+        formula = _without_series(formula)
         note = "an asymptote"
         if exact:
             note += f", {float(value / exact - 1):+.3%} off the exact value"
@@ -329,6 +332,20 @@ def _calculation(
         unit=unit,
         note=note,
     )
+
+
+def _without_series(formula: str) -> str:
+    r"""Leave out the last bracket, the series by which a leading term is multiplied.
+
+    >>> _without_series(r"\frac{a}{2} \left(1 - \frac{\left(1 + a\right) b}{3} + O\left(b^{2}\right)\right)")
+    '\\frac{a}{2}'
+    """
+    open_ones = 0
+    for bracket in reversed([*_BRACKET.finditer(formula)]):
+        open_ones += 1 if bracket[1] == "right" else -1
+        if not open_ones:
+            return formula[: bracket.start()].strip() or formula
+    return formula
 
 
 def _substituted(formula: str, known: Numbers) -> str:

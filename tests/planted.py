@@ -398,6 +398,9 @@ FALSE = {
         "display of another root": root(x - 3, x, 3, right="4"),
     },
     "recall outside its domain": {
+        "exchanged one after the other":
+            (recalled((a + 2 * b) ** 2, a**2 + 4 * a * b + 4 * b**2, at={a: b, b: a}),
+             equal((a + 2 * a) ** 2, b**2 + 4 * b * a + 4 * a**2), "9 a^2"),
         "root at a negative place":
             (where(x < -1), recalled(SHIFTED, y + 1, at={y: x}), equal(sqrt(x**2 + 2 * x + 1), x + 1),
              "x = -3: 2 is not -2"),
@@ -810,6 +813,10 @@ FALSE = {
         "letters that do not commute": (equal(TURN * x, x * TURN), "no number"),
     },
     "beside what fades": {
+        "quotient that does not fade": (order(1 + h + exp(-1 / h) / (exp(-1 / h) + exp(-2 / h)), 1), "2 + h"),
+        "logarithm beside what grows": (order(1 + h + log(1 + exp(-1 / h)) * exp(1 / h), 1), "2 + h"),
+        "power of a sum": (order(1 + h + exp(-1 / h) * (1 + h) ** (1 / h**2), 1), "1 + e^(-1/2)"),
+        "power of two at infinity": (order(2 + 1 / z + 2**z * exp(-z / 2), 2, z, oo, 1 / z), "(4/e)^(z/2)"),
         "hyperbolic sine": (order(1 + h + exp(-1 / h) * sp.sinh(1 / h), 1), "3/2 + h"),
         "faster than it fades": (order(1 + h + exp(-1 / h) * sp.sinh(2 / h), 1), "without bound"),
         "power with a pole": (order(1 + h + exp(-1 / h) * h ** (-1 / h), 1), "without bound"),
@@ -820,9 +827,16 @@ FALSE = {
         "poles of a tangent": (order(1 + h + exp(-1 / h) * sp.tan(1 / h), 1), "poles at 1/h = pi/2, 3 pi/2"),
     },
     "not uniform in a parameter": {
+        "hypotenuse": (order(sqrt(m**2 + h**2) + h**2, m), "m = 0: h"),
+        "angle of a ratio": (order(1 + h + h * atan(m / h), 1), "m = 0: 1 + h, else more"),
+        "decay at a rate": (order(1 + h + h * exp(-m / h), 1), "m = 0: 1 + 2 h"),
         "under a root": (order(1 + h + h**2 / sqrt((a - b) ** 2 + h**2), 1), "a = b: 1 + 2 h"),
     },
     "a parameter that may vanish": {
+        "rate of a power":
+            (define(b, a), integral(y ** (a - b - 1), (y, 1, 2), y ** (a - b) / (a - b)), "log 2"),
+        "slope that may vanish": (root(f(a) * x - f(a), x, 1), "f = 0: every x"),
+        "both coefficients": (define(b, a), root((a - b) * x + a - b, x, -1), "a = b: every x"),
         "coefficient of all": (root((a - b) * x - (a - b), x, 1), "a = b: every x"),
         "pole by a premise": (define(b, a), root((x - a) / (x - b), x, a), "no root: it is 1"),
         "peak without width": (define(b, a), order(1 + h + h**2 / ((a - b) ** 2 + h**2), 1), "2 + h"),
@@ -833,6 +847,13 @@ FALSE = {
         "used where it does not hold": (_at_its_pole, "a = b: 1"),
     },
     "integrals that do not exist": {
+        "difference of logarithms":
+            (equal(Integral(1 / (1 - x) - x / (1 - x), (x, 0, 1)),
+             Integral(1 / (1 - x), (x, 0, 1)) - Integral(x / (1 - x), (x, 0, 1))),
+             "both diverge"),
+        "growing exponential": (integral(exp(y), (y, 0, oo), exp(y)), "diverges"),
+        "growing power": (integral(x**2, (x, -oo, 0), x**3 / 3), "diverges"),
+        "mean over all": (integral(sp.S.One, (x, -oo, oo), x), "diverges"),
         "difference of two that diverge":
             (equal(Integral((cos(y) - 1) / y, (y, 0, 1)), Integral(cos(y) / y, (y, 0, 1)) - Integral(1 / y,
              (y, 0, 1))),
@@ -849,6 +870,9 @@ FALSE = {
         "sign to infinity": (holds(Integral(y, (y, 0, oo)), ">="), "diverges"),
     },
     "tiny differences": {
+        "pole beyond an end": (sign(1 / (1 - x), ">", (x, 0, 1 + sp.Rational(1, 10**80))), "by 10^-80"),
+        "root beyond an end": (unique(x - 1, (x, 0, 1 - sp.Rational(1, 10**80))), "by 10^-80"),
+        "value of a name": (define(a**2, 2), define(a, sqrt(2) - sp.Rational(1, 10**80)), "below 2"),
         "end beyond a root": (sign(2 - x**2, ">", (x, 0, sqrt(2) + sp.Rational(1, 10**70))), "by 10^-70"),
         "end farther beyond": (sign(3 - x**2, ">=", (x, 0, sqrt(3) + sp.Rational(1, 10**100))), "by 10^-100"),
         "logarithm and exponential":
@@ -858,6 +882,10 @@ FALSE = {
         "sine and angle": (define(sin(x), half), define(x, pi / 6 + sp.Rational(1, 10**60)), "more than 1/2"),
     },
     "premises and conditions that exclude each other": {
+        "slope against a law": (define(f(x), x), define(Derivative(f(u), u), 2), "f' = 1"),
+        "two values of a function": (define(f(sp.S(1)), 2), define(f(x), x**2), "f(1) = 1"),
+        "square below 1": (where(x**2 < 1, x > 1), "no x is both"),
+        "larger of two below one": (define(sp.Max(a, b), 1), where(a > 2), "max >= a"),
         "case below a bound": (where(x > 2), holds(x**2, cases=(sp.Lt(x, half),)), "no x is both"),
         "case above a bound": (where(y < 1), holds(y, cases=(sp.Gt(y, 2),)), "no y is both"),
         "case at a place": (where(x > 2), equal(x * x, 1, cases=(sp.Eq(x, 1),)), "x = 1 is below 2"),
@@ -871,6 +899,10 @@ FALSE = {
         "integral of an exponential": (define(Integral(exp(f(x)), (x, 0, 1)), 0), "e^f > 0"),
     },
     "a letter declared twice": {
+        "bound in an integral": (equal(Integral(other_x, (other_x, 0, 1)) + x, x + half), "two letters x"),
+        "place of a recalled result":
+            (equal(x + 1, 1 + x), recalled(SHIFTED, y + 1, at={y: other_x}), "two letters x"),
+        "variable of a root": (where(x > 1), root(other_x - 2, other_x, 2), "two letters x"),
         "in a condition": (where(other_x > 2), holds(x), "x is another letter"),
         "in a case": (equal(x * (x - 1), 0, cases=(sp.Eq(other_x, 0), sp.Eq(other_x, 1))), "another letter"),
         "after an equation": (equal((x + 1) ** 2, x**2 + 2 * x + 1), where(other_x > 2), "another letter"),
@@ -904,7 +936,6 @@ TRUE = {
         "at infinity": order(sp.sqrt(1 + h**2) - h, 1 / (2 * h), h, sp.oo, 1 / h),
         "at a point": order((1 - h**3) / 3, 1 - h, h, 1, 1 - h),
         "in another small quantity": order(h + h**3, h, h, 0, 4 * h**2),
-        "logarithm of a series": order(sp.log(1 + h), h),
         "with a parameter": order(h / (a + h), h / a),
     },
     "roots": {
@@ -919,11 +950,8 @@ TRUE = {
         "with a condition": steps(where(sp.Gt(u, 0)), root(x**2 - u, x, sp.sqrt(u), over=(x, 0, sp.oo))),
         "in an exponential": root(x * sp.exp(y) - z, x, z * sp.exp(-y)),
         "unique root": unique(x**2 - 2, (x, 0, 2)),
-        "unique root to an irrational end": unique(x**2 - 2, (x, 0, sp.sqrt(3))),
-        "unique root from an irrational end": unique(x**2 - 4, (x, sp.sqrt(2), sp.oo)),
         "unique root without ends": unique(x**3 + x - 1, (x, -sp.oo, sp.oo)),
         "ends do not count": unique(x * (2 * x - 1) * (x - 1), (x, 0, 1)),
-        "irrational ends do not count": unique((x**2 - 2) * (x - 2), (x, sp.sqrt(2), 3)),
         "triple root changes the sign": unique((x - 1) ** 3, (x, 0, 2)),
     },
     "premises": {
@@ -963,7 +991,6 @@ TRUE = {
         "parabola": sign(x * (1 - x), ">", (x, 0, 1)),
         "square with a touch": sign((2 * x - 1) ** 2, ">=", (x, 0, 1)),
         "bound": sign(x * (1 - x), "<=", (x, 0, 1), sp.Rational(1, 4)),
-        "to an irrational end": sign(2 - x**2, ">", (x, 0, sp.sqrt(2))),
         "with a positive factor": sign(y * (x + 1), ">", (x, 0, 1)),
         "derivative of known sign": sign(sp.Derivative(x**3 + x, x), ">", (x, -sp.oo, sp.oo)),
         "inequality": holds(y**2 + y * z),
@@ -993,8 +1020,6 @@ TRUE = {
         ),
     },
     "bounds and angles": {
-        "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges"),
-        "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm"),
     },
     "steady sliding": {
         "trailing edge":
@@ -1035,11 +1060,9 @@ TRUE = {
         "exponential above its tangent": (holds(exp(a) - 1 - a), "a > 0"),
     },
     "calculus and algebra": {
-        "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2"),
         "root of a sum": (holds(sqrt(a) + sqrt(b) - sqrt(a + b)), "concave"),
         "derivative with respect to an end":
             (equal(Derivative(Integral(exp(-(u**2)), (u, 0, x)), x), exp(-(x**2))), "fundamental theorem"),
-        "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi"),
         "inverse of the hyperbolic sine": (equal(sp.asinh(x), log(x + sqrt(x**2 + 1))), "one branch"),
         "larger less smaller": (equal(sp.Max(x, u) - sp.Min(x, u), Abs(x - u)), "distance"),
         "order of a hypotenuse": (order(sqrt(a**2 + h**2), a, h, 0, h**2 / a**2), "analytic"),
@@ -1064,8 +1087,6 @@ TRUE = {
             (where(a > b), order(1 + h + h**2 / ((a - b) ** 2 + h**2), 1), "as the condition says"),
         "rate that cannot vanish":
             (where(a > b), integral(exp((a - b) * x), (x, 0, 1), exp((a - b) * x) / (a - b)), "a > b"),
-        "end just before a root":
-            (sign(2 - x**2, ">", (x, 0, sqrt(2) - sp.Rational(1, 10**70))), "by 10^-70"),
         "cases within a condition": (where(x > 2), holds(x**2, cases=(sp.Gt(x, 3), sp.Lt(x, 4))), "both are"),
         "hyperbolic sine that is small": (order(1 + h + exp(-1 / h) * sp.sinh(h), 1), "it does not grow"),
         "exponentials of one":
@@ -1074,6 +1095,23 @@ TRUE = {
         "not positive": (define(FALLEN, -exp(r)), "-e^r < 0"),
     },
     "premises and displays": {
+        "letters exchanged at once":
+            (define(z, (b + 2 * a) ** 2),
+             recalled((a + 2 * b) ** 2, a**2 + 4 * a * b + 4 * b**2, at={a: b, b: a}),
+             equal(z, b**2 + 4 * b * a + 4 * a**2), "simultaneous"),
+        "quarter of a turn to infinity":
+            (integral(1 / (1 + y**2), (y, 0, oo), atan(y), value=pi / 2), "atan -> pi/2"),
+        "moment to infinity":
+            (integral(y**2 * exp(-y), (y, 0, oo), -(y**2 + 2 * y + 2) * exp(-y), value=2), "by parts"),
+        "from minus infinity": (integral(exp(x), (x, -oo, 0), exp(x), value=1), "e^x -> 0"),
+        "power and exponential to infinity":
+            (integral(y * exp(-a * y), (y, 0, oo), -(y / a + 1 / a**2) * exp(-a * y), value=1 / a**2),
+             "by parts"),
+        "tail of a rational function": (integral(1 / y**2, (y, 1, oo), -1 / y, value=1), "1/y -> 0"),
+        "three times an angle": (equal(sin(3 * x), 3 * sin(x) - 4 * sin(x) ** 3), "trisection"),
+        "power as an exponential": (equal(exp(nu * log(y)), y**nu), "y > 0"),
+        "smaller of two, in order": (where(a < b), equal(sp.Min(a, b), a), "as the condition says"),
+        "sum of angles, expanded": (equal(sin(x + u), sin(x) * cos(u) + cos(x) * sin(u)), "a rule"),
         "recalled at a place of its domain":
             (recalled(SHIFTED, y + 1, at={y: z**2 + 1}), equal(sqrt(z**4 + 4 * z**2 + 4), z**2 + 2),
              "positive"),
@@ -1091,6 +1129,17 @@ TRUE = {
 
 BEYOND = {
     "true, but no record needs a rule for it": {
+        "unique root from an irrational end": unique(x**2 - 4, (x, sp.sqrt(2), sp.oo)),
+        "logarithm of a series": order(sp.log(1 + h), h),
+        "unique root to an irrational end": unique(x**2 - 2, (x, 0, sp.sqrt(3))),
+        "irrational ends do not count": unique((x**2 - 2) * (x - 2), (x, sp.sqrt(2), 3)),
+        "to an irrational end": sign(2 - x**2, ">", (x, 0, sp.sqrt(2))),
+        "means": (holds((a + b) / 2 - sqrt(a * b), ">="), "bound of a pair of edges"),
+        "logarithm below its argument": (holds(a - log(1 + a)), "relaxed share of an arm"),
+        "below a right angle": (holds(pi / 2 - atan(a)), "arctan < pi/2"),
+        "half angle": (equal(sin(x) / (1 + cos(x)), sp.tan(x / 2)), "both undefined at pi"),
+        "end just before a root":
+            (sign(2 - x**2, ">", (x, 0, sqrt(2) - sp.Rational(1, 10**70))), "by 10^-70"),
         "two less a sine": (holds(2 - sin(x)), "a denominator"),
         "springpot and spring":
             (where(nu < 1), order(h**nu + h, h**nu, h, 0, h ** (1 - nu)), "its dashpot is small"),

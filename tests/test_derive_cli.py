@@ -203,12 +203,12 @@ ARMS = 'foundation.arms=[["50 GN/m^3", "100 ms"], ["20 GN/m^3", "5 ms"]]'
 
 @pytest.mark.parametrize("shape", ["parabola", "sphere"])
 def test_numbers_on_a_prony_series_are_those_of_the_scene(tmp_path, shape):
-    """Also where the load follows by quadrature over the strips; what is about dashpots has none."""
+    """Also where the load follows by quadrature over the strips; dashpots and limits have none."""
     overrides = ["foundation.kind=generalized-maxwell", "foundation.stiffness=5 GN/m^3", ARMS,
                  f"indenter.shape={shape}", "indenter.radius=10 mm", "drive.velocity=50 mm/s"]  # fmt: skip
     if shape == "sphere":
         overrides += ["support.mass=1 kg", "indenter.radius_across=20 mm"]
-    labels = "28,29,F1,F17-concave,F17-kelvin-voigt,F17-moments,F17-parts,F20,F20-any"
+    labels = "28,29,F1,F17-concave,F17-kelvin-voigt,F17-limits,F17-moments,F17-parts,F18-voigt,F20,F20-any"
     records = derived(tmp_path, labels, "--numbers", overrides=overrides)
     found = {
         (label, row["symbol"]): row["value"]

@@ -17,7 +17,7 @@ from kvtheory.derivations.render import json as written
 
 from kvtheory.cli import main
 from tests.commands import python
-from tests.planted_claims import OPERATORS, planted
+from tests.planted_claims import OPERATORS, another_place, planted
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +49,15 @@ def test_no_claim_is_refuted_and_every_known_kind_is_decided(records):
     weaker = Counter(each.kind for each in having(verdicts, "supported").values())
     assert set(weaker) <= {"limit", "inequality", "integral", "maximum", "crossing", "pair"}
     assert counts(verdicts)["confirmed"] > 5 * sum(weaker.values())
+
+
+@pytest.mark.parametrize("name", ["F13/8", "F10-touch/1", "F10-touch/2", "F10-touch/15", "F3/3"])
+def test_a_root_elsewhere_is_refuted_also_where_only_a_premise_has_its_variable(records, name):
+    record = of(records, name.split("/")[0])
+    claim = next(each for each in record["claims"] if each["id"] == name)
+    for wrong in another_place(record, claim, None):
+        claims = [wrong if each is claim else each for each in record["claims"]]
+        assert Record({**record, "claims": claims}, {}).verdict(wrong).status == "refuted"
 
 
 def test_a_hundred_wrong_claims_are_found(records):

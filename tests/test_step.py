@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations.engine import book
+from kvtheory.derivations.engine import book, nomenclature
 from kvtheory.derivations.engine.book import StepError, established
 from kvtheory.derivations.engine.chapter import Chapter
 from kvtheory.derivations.engine.step import Proof
@@ -143,17 +143,6 @@ def test_leading_order(proof, expr, leading, point, eps, expected):
         proof.leading_order(expr, sp.Rational(101, 100) * leading, y, point, "no", eps=eps)
 
 
-def test_sampled_finds_a_small_error(proof):
-    ranges = [(y, sp.Rational(1, 10), 10)]
-    left = sp.exp(sp.log(y) / 3)
-    proof.sampled(left, y ** sp.Rational(1, 3), ranges, "powers")
-    assert proof.done(left, y ** sp.Rational(1, 3)).status == "sampled"
-    with pytest.raises(StepError, match="difference"):
-        proof.sampled(left, left * (1 + sp.Rational(1, 10**38)), ranges, "planted error")
-    with pytest.raises(StepError, match="difference"):
-        proof.sampled(sp.sqrt(y - 5), sp.sqrt(y - 5), ranges, "not real everywhere")
-
-
 def test_a_result_carries_premises_and_domain_through_two_recalls():
     planted.fixed_at_one()
     middle = Proof("middle", None, section="Trial", title="Middle")
@@ -169,19 +158,9 @@ def test_a_result_carries_premises_and_domain_through_two_recalls():
     assert result.domain == ("x > 1",)
 
 
-def test_a_sampled_step_stays_sampled_when_it_is_recalled_twice():
-    names = "first", "second", "third"
-    first, second, third = (Proof(name, None, section="Trial", title=name) for name in names)
-    first.define(z, sp.exp(sp.log(y) / 3))
-    first.sampled(z, y ** sp.Rational(1, 3), [(y, 1, 2)], "numbers")
-    first.done(z, y ** sp.Rational(1, 3))
-    second.recall("first", (z, y ** sp.Rational(1, 3)))
-    second.equal(z**3, y, "cubed")
-    assert second.done(z**3, y).status == "sampled"
-    third.recall("second", (z**3, y))
-    third.equal(2 * z**3, 2 * y, "doubled")
-    assert third.done(2 * z**3, 2 * y).status == "sampled"
-    by_words = Proof("by-words", None, section="Trial", title="By words", uses=("second",))
+def test_what_a_record_uses_in_words_makes_it_argued():
+    planted.fixed_at_one()
+    by_words = Proof("by-words", None, section="Trial", title="By words", uses=("at-one",))
     by_words.equal(x + x, 2 * x, "sum")
     assert by_words.done(x + x, 2 * x).status == "argued"
 
@@ -249,3 +228,12 @@ def test_a_title_that_words_prove_is_argued_and_its_lines_are_proved():
     assert words.status == "argued"
     assert words.text == "Twice. Argued, not checked by machine. It is seen in a plot."
     assert {words.steps[0].status, resting.status} == {"proved"}
+
+
+def test_a_letter_declared_twice_with_different_assumptions_is_refused(monkeypatch):
+    for name in ("BY_NAME", "SYMBOLS", "DECLARED"):
+        monkeypatch.setattr(nomenclature, name, getattr(nomenclature, name).copy())
+    letter = nomenclature.symbol("own_letter")
+    assert nomenclature.symbol("own_letter") == letter
+    with pytest.raises(ValueError, match="the letter own_letter is declared twice"):
+        nomenclature.symbol("own_letter", real=True)

@@ -17,15 +17,14 @@ from .friction_identity import LOAD as STRIP_LOAD
 from .friction_identity import p_le, p_te, r
 from .model import C, F_x, F_z, K, R, V, delta, delta_t, t, t_0, u_i, x
 from .steady import W, a, any_pressure, l, l_r, p, trailing_edge, x_le, x_te
-from .theorems import kappa, lam
+from .theorems import kappa, lam, s
 
 (
-    s, aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
+    aside, ball_angle, ball_load, ball_mean, ball_rest, ball_kept, ball_lost, ball_tail,
     ball_loss, strip_half, ball_friction, ball_coefficient, ball_share, ball_scaled, ball_scaled_s,
     ball_scaled_ss, ball_cross, ball_lam_cross, ball_slip, ball_l1, ball_l2, ball_load_low,
     ball_load_high, ball_friction_low, ball_friction_high, ball_low, ball_high,
 ) = symbols(r"""
-    s           -                 1  scaled time, $t/\tau$  from scaled-pressure
     y_b         \tilde \zeta      1  place of a strip of a ball over the half width $a
             \sqrt{R_{\mathrm{y}}/R}$  from coordinate
     -           R_{\mathrm{y}}    m  radius of a ball across the sliding direction  from scene

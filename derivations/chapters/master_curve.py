@@ -22,7 +22,7 @@ Lambda_peak, mu_peak, Lambda_fixed, Lambda_weight, X, Y, T, mu_max, V_max = symb
             \tau/\sqrt{R \delta}$
     Lambda_weight  \Lambda^{*}_{\mathrm{MI}}  1    scaled crossing velocity, dead weight, $V^{*} \tau
             (K/(R W))^{1/3}$
-    X           -                 1    $\Lambda^3$  prints \hat X
+    X_m         X                 1    $\Lambda^3$  prints \hat X
     Y           -                 1    cube of the scaled friction coefficient, $\mu^3 K R^2/W$  prints
             \hat Y
     T           -                 1    ratio of the friction coefficient to its low-velocity

@@ -21,12 +21,14 @@ from .power_law import (
 )
 from .steady import l, q
 
-w_rest, m_low, m_high, l_cross = symbols(r"""
+w_rest, m_low, m_high, l_cross, more_load, more_work = symbols(r"""
     -        \bar z        1  $1 - q^n$
     w_rest   w_{n,0}       1  scaled load of a power law at rest
     m_low    m_{n,0}'      1  friction coefficient of a power law at low velocity, over $l$
     m_high   m_{n,\infty}  1  friction coefficient of a power law at high velocity
     l_cross  l^{*}         1  scaled retardation length where the asymptotes meet
+    e_w      e_w           1  $w_n/l$ less its limit at high velocity
+    e_phi    e_{\varphi}   1  $\varphi_n/l$ less its limit at high velocity
 """)
 
 AT_REST = 2 * n / (n + 1)
@@ -97,20 +99,26 @@ def _low(proof: Proof) -> None:
 def _high(proof: Proof) -> None:
     r"""Power law: high velocity.
 
-    For $l \to \infty$ the edge goes to the tip, $q \to 0$ and $Q \to 0$ with $n l Q \to 1$: $W \to C V
-    \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$.
+    For $l \to \infty$ what is left of the limits is at most of the order $1/l$: $W \to C V \delta$, which
+    the damper carries, and $\mu \to \frac{\delta}{a} m_{n,\infty}$.
     """
-    proof.define(l, z / (n * Q), "$n l Q = 1 - q^n = z$")
+    in_q(proof)
     proof.recall("F19-load")
     proof.recall("F19-friction")
-    fast = {q: 0, Q: 0, z: 1}
-    share = n * ((1 + q) * n * Q / z + 1 + z / n) / (n + 1)
-    damper = n**2 * (SQUARES + z * Q / (2 * n))
-    proof.equal(w_n / l, share, "load per $l$")
-    proof.equal(phi_n / l, damper, "friction force per $l$")
-    proof.equal(share.subs(fast), sp.S.One, "the damper carries the total load")
-    proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
-    proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
+    proof.recall("F19", (m_n, phi_n / w_n))
+    proof.define(z, 1 - q**n, "a share")
+    proof.define(m_high, HIGH_COEFFICIENT, r"the limit of $\mu$, in units of $\delta/a$")
+    for name, whole, form, most, what in (
+        (more_load, w_n / l - 1, (n * (1 + q) - q * z / n) / ((n + 1) * l), 2 * n / ((n + 1) * l),
+         "load"),
+        (more_work, phi_n / l - m_high, z**2 / (2 * l) + q * z**2 / ((2 * n - 1) * l**2),
+         1 / (2 * l) + 1 / ((2 * n - 1) * l**2), "friction force"),
+    ):  # fmt: skip
+        proof.equal(whole, form, f"{what} per $l$, less its limit")
+        proof.holds(form, ">", 0, "more than the limit")
+        proof.holds(most, ">", form, "which it approaches")
+        proof.define(name, whole, "by this")
+    proof.equal(m_n, (m_high + more_work) / (1 + more_load), "friction coefficient")
 
 
 @result("F19-crossing")
@@ -120,6 +128,6 @@ def _crossing(proof: Proof) -> None:
     At a given depth; for $n = 2$ this is Eq. (47).
     """
     proof.recall("F19-low")
-    proof.recall("F19-high")
+    proof.recall("F19-high", m_high)
     reason = r"the asymptotes meet, at $V^{*} \tau/a$"
     proof.root(m_low * l_cross - m_high, l_cross, n / (n + 1), reason)

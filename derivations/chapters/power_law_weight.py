@@ -111,7 +111,7 @@ def _exponents(proof: Proof) -> None:
     power = 1 - 1 / n
     proof.define(delta, W / (C * V), r"F19-high, $W = C V \delta$")
     proof.define(a, (n * L ** (n - 1) * delta) ** (1 / n), r"$h(a) = \delta$")
-    proof.recall("F19-high")
+    proof.recall("F19-high", m_high)
     proof.define(mu, m_high * delta / a, "the asymptote for high velocity")
     result = HIGH_COEFFICIENT * n ** (-1 / n) * (W / (C * V * L)) ** power
     shown = r"\frac{n^{2 - 1/n}}{2 n - 1} \left(\frac{W}{C V L}\right)^{1 - 1/n}"

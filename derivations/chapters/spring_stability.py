@@ -38,7 +38,7 @@ from .transient_scaling import eps
     Omega_m  \Omega_{-}        1  smaller root $\Omega$ of the quadratic of onset  real
     m_c      \check m          1  $\check h - \vartheta_z \check g \varrho_{\mathrm{c}}$  real
     D_c      \check D          1  discriminant of the quadratic in $\Omega$, over $\vartheta_z^{4}$  real
-    s_c      \check w          1  root of the discriminant of the quadratic in $\Omega$  nonnegative
+    root_c   \check w          1  root of the discriminant of the quadratic in $\Omega$  nonnegative
     n_c      \check n          1  $\check m - 2 \vartheta_z \check e$  real
     p_p      \check p_{+}      1  $\varrho_z - \vartheta_z \Omega_{+}$
     c_h1     \check c_1        1  coefficient of a quadratic factor  real

@@ -65,7 +65,7 @@ drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
 CONTACT = (x, x_le, x_te)
 _half = sp.sqrt(2 * R * delta_t)
 _x_minus = symbol("x_-", "smaller zero of the pressure", "m", latex="x_{-}", real=True)
-_x_plus = symbol("x_TE", latex=r"x_{\mathrm{TE}}", real=True)
+_x_plus = symbol("x_+", latex=r"x_{\mathrm{TE}}", real=True)
 """Zeros of the pressure; x_TE may be negative under an indenter that moves."""
 TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
 """Eq. 33: the zeros of the pressure."""

@@ -22,7 +22,7 @@ xi, P, P_max, n, w, phi, m, s, r, f, f_s, f_ss, G, G_s, lam, kappa = symbols(r""
     w       -              1  scaled load, $W/(K \delta a)$
     phi     \varphi        1  scaled friction force, $F R/(K \delta a^{2})$
     m       -              1  scaled friction coefficient, $\mu R/a$
-    s       -              1  half length in units of the static one, $a/a_0 = \sqrt{d}$  prints \hat
+    s_a     s              1  half length in units of the static one, $a/a_0 = \sqrt{d}$  prints \hat
             a  from scaled-load
     r       -              1  $\sqrt{\hat a^2 + \lambda^2}$  prints \hat r
     f       -              1  scaled load of an indenter that has been lifted, $W/W_0$  prints \hat f
@@ -137,7 +137,8 @@ def _peak_pressure(proof: Proof) -> None:
         n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
     )
     proof.define(P_max, form, "its height in one form")
-    proof.equal(sp.Piecewise((1 + l**2, l <= 1), (2 * l, True)), form, "for both cases")
+    for case, height in ((l < 1, 1 + l**2), (l > 1, 2 * l)):
+        proof.equal(form, height, "as it is there", cases=(case,))
     proof.done(P_max, form)
 
 

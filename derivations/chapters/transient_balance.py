@@ -26,7 +26,7 @@ letter(r"E_{\mathrm{s}}", "energy of the surface outside the contact")
 
 _ends = sp.symbols("X_1 X_2", real=True)
 """A stretch of the foundation outside of which no element was ever pressed."""
-_left, _right = (sp.Function(str(end), real=True)(time) for end in (left, right))
+_left, _right = (sp.Function(name, real=True)(time) for name in ("ell", "r"))
 _IN_TIME = {**OF_TIME, lam: sp.Derivative(travel, time), left: _left, right: _right}
 
 _u = compression(material, time)

@@ -38,7 +38,7 @@ start, left, right, b, rho, drift, lift, c = symbols(r"""
     -           d_0             1  depth at an earlier instant or at the beginning of a step
     -           X_{\mathrm{e}}  1  element at an edge
     ell         -               1  scaled left edge of the contact  real
-    r           -               1  scaled right edge of the contact  real
+    right       r               1  scaled right edge of the contact  real
     b           -               1  scaled length of the contact, from edge to edge  from F11-peel
     rho         -               1  $\sqrt{d + d' + \lambda^2}$, which is $r + \lambda$ at an edge that
             peels

@@ -14,7 +14,7 @@ from .tables import delta_0
 from .theorems import lam
 from .transient_scaling import P, d, d_s, xi
 
-time = symbol("s", real=True)
+time = symbol("s", r"scaled time, $t/\tau$", source="scaled-pressure", real=True)
 earlier = symbol("s_1", "earlier instant", real=True)
 end = symbol("s_2", "end of a step", real=True)
 depth = function("d", real=True)(time)

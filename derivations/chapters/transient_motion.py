@@ -129,7 +129,7 @@ def _derivatives(proof: Proof) -> None:
     touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to
     $\partial f_z/\partial d$.
     """
-    ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
+    ends = {right: sp.Function("r", real=True)(d, d_s), left: sp.Function("ell", real=True)(d, d_s)}
     proof.notation |= {r"\hat p": sp.Lambda(xi, PRESSURE), r"\ell": ends[left], "r": ends[right]}
     proof.recall("F11", f_normal, f_friction)
     for end, moves in ends.items():

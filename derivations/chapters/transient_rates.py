@@ -33,7 +33,7 @@ eps_critical, quadratic, f, change, per_depth, per_rate, sigma, drive_excess, be
     -          \sigma_2          1  slower of two rates
     -          T_1               s  shorter time constant
     -          T_2               s  longer time constant
-    n          -                 1  parameter of the slow manifold, $(\lambda - \hat a)/(2
+    n_s        n                 1  parameter of the slow manifold, $(\lambda - \hat a)/(2
             f_{\mathrm{b}})^{1/3}$  prints \bar n  real
     beta       -                 1  scaled length of the contact on the slow manifold, $b/(2
             f_{\mathrm{b}})^{1/3}$  prints \bar b

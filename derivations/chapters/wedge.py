@@ -33,8 +33,8 @@ inclination, side, held, s_peeling, s_peeled = symbols(r"""
     c_1   c       1  slope of a wedge  prints \hat c
     sigma_w  \hat \sigma  1  1 behind the tip of a wedge, -1 ahead of it  real
     held  \bar w  1  scaled load beyond the support of a wedge
-    s_1   -       1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
-    s_2   -       1  half length of a wedge whose contact ends at its tip  prints \hat a_2
+    s_w1  s_1     1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
+    s_w2  s_2     1  half length of a wedge whose contact ends at its tip  prints \hat a_2
 """)
 
 c = inclination

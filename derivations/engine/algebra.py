@@ -40,7 +40,7 @@ DISTANCE = sp.Dummy("h", positive=True)
 """The distance from the point of a limit: no other letter, whatever its name, is this one."""
 _CONTINUOUS = (sp.Abs, sp.Min, sp.Max)
 """Functions without jumps or poles where they are real."""
-KINKS = (*_CONTINUOUS, sp.sign, sp.Piecewise)
+KINKS = (*_CONTINUOUS, sp.sign)
 """What need not be smooth."""
 _WRITTEN = {
     sp.tan: lambda u: sp.sin(u) / sp.cos(u),
@@ -53,58 +53,33 @@ _WRITTEN = {
 
 @lru_cache(maxsize=4096)
 def normalise(expr: sp.Expr) -> sp.Expr:
-    """Write functions by others, minima by cases, and factor radicands.
+    """Write functions by others, extremes of two by their distance, and factor radicands.
 
     Factoring lets ``sqrt((1 - q**2)**2/(4*q**2) + 1)`` become ``(q**2 + 1)/(2*q)`` where the
     assumptions on the symbols allow it.
     """
     for kind, written in _WRITTEN.items():
         expr = expr.replace(kind, written)
-    if expr.has(sp.Max):
-        expr = expr.replace(_is_of_two, _by_distance)
-    expr = expr.replace(sp.Min, lambda *args: sp.Min(*args).rewrite(sp.Piecewise))
+    expr = expr.replace(_is_of_two, _by_distance)
+    if expr.has(sp.log):  # e**(c log b) = b**c
+        expr = expr.replace(sp.exp, lambda u: sp.exp(u).rewrite(sp.Pow))
     return expr.replace(
         lambda e: e.is_Pow and e.exp.is_Rational and not e.exp.is_Integer,
         lambda e: sp.expand_power_base(sp.factor(sp.together(e.base)) ** e.exp),
     )
 
 
-def in_one_angle(*expressions: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Write the sines and cosines of several expressions in those of one angle, sin**2 as 1 - cos**2.
-
-    As they are, if their angles are no small multiples of one.
+def _in_sines(expr: sp.Expr) -> sp.Expr:
+    """Write sines and cosines of sums by those of the terms, and even powers of cosines by sines.
 
     >>> x = sp.Symbol("x", real=True)
-    >>> in_one_angle(1 + sp.cos(x), sp.cos(x / 2))
-    (2*cos(x/2)**2, cos(x/2))
+    >>> _in_sines(sp.sin(2 * x)), _in_sines(sp.cos(x) ** 3)
+    (2*sin(x)*cos(x), (1 - sin(x)**2)*cos(x))
     """
-    waves = set().union(*(expr.atoms(sp.sin, sp.cos) for expr in expressions))
-    angles = sorted({wave.args[0] for wave in waves if wave.free_symbols}, key=str)
-    ratios = [sp.cancel(angle / angles[0]) for angle in angles]
-    if not angles or not all(ratio.is_Rational for ratio in ratios):
-        return expressions
-    part = sp.Rational(sp.igcd(0, *(r.p for r in ratios)), sp.ilcm(1, *(r.q for r in ratios)))
-    if max(abs(ratio / part) for ratio in ratios) > _MOST_TURNS:
-        return expressions
-    one, sine, cosine = sp.Dummy(real=True), sp.Dummy("sine"), sp.Dummy("cosine")
-    names = {sp.sin(one): sine, sp.cos(one): cosine}
-    many = dict(zip(angles, ratios, strict=True))
-    new = {w: sp.expand_trig(w.func(many[w.args[0]] / part * one)) for w in waves if w.free_symbols}
-    angle, found = angles[0] * part, []
-    for expr in expressions:
-        sides = sp.fraction(sp.together(expr.xreplace(new).xreplace(names)))
-        if not all(side.is_polynomial(sine, cosine) for side in sides):
-            return expressions
-        reduced = (sp.rem(side, sine**2 + cosine**2 - 1, sine) for side in map(sp.expand, sides))
-        top, bottom = (
-            each.xreplace({sine: sp.sin(angle), cosine: sp.cos(angle)}) for each in reduced
-        )
-        found.append(top / bottom if bottom != 0 else expr)
-    return tuple(found)
-
-
-_MOST_TURNS = 6
-"""Largest multiple of an angle whose sine is written in that of the angle."""
+    return sp.expand_trig(expr).replace(
+        lambda e: e.is_Pow and isinstance(e.base, sp.cos) and e.exp.is_Integer and e.exp > 1,
+        lambda e: (1 - sp.sin(e.base.args[0]) ** 2) ** (e.exp // 2) * e.base ** (e.exp % 2),
+    )
 
 
 def _is_of_two(expr: sp.Expr) -> bool:
@@ -123,8 +98,8 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     """Return left - right in a form that is literally 0 when it is identically zero.
 
     What is a fraction of symbols, roots and powers is decided in a ring of polynomials. Else the
-    numerator over the common denominator is expanded, with every root an algebraic generator; a
-    number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
+    numerator over the common denominator is expanded, with every root an algebraic generator, and a
+    number is decided by its minimal polynomial.
     """
     if left == right:
         return sp.S.Zero
@@ -153,10 +128,10 @@ def _difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
     if vanishes(rest):
         return sp.S.Zero
-    if rest.has(sp.sin, sp.cos) and vanishes(in_one_angle(rest)[0]):
+    if rest.has(sp.sin, sp.cos) and vanishes(_in_sines(rest)):
         return sp.S.Zero
     rest = (rest / denominator).doit(integrals=False, sums=False)
-    return sp.S.Zero if vanishes(rest) else sp.simplify(rest, doit=False)
+    return sp.S.Zero if vanishes(rest) else rest
 
 
 def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
@@ -191,7 +166,7 @@ def parted(integral: sp.Integral, known: Conditions) -> sp.Expr:
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
     """Count the zeros of a rational expression inside the open interval: all, and those of odd order.
 
-    By Sturm's theorem; where an end is an irrational number, by isolating the roots.
+    By Sturm's theorem.
     """
     variable, low, high = over[0], *map(_number, over[1:])
     numerator = sp.fraction(_reduced(expr))[0]
@@ -201,42 +176,20 @@ def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
 
 
 def _number(end: sp.Expr | int) -> sp.Expr:
-    """Return the end of an interval, which must be a number or infinite."""
+    """Return the end of an interval, which must be a rational number or infinite."""
     end = sp.sympify(end)
-    if end in (sp.oo, -sp.oo) or (end.is_number and end.is_real and end.is_algebraic):
+    if end in (sp.oo, -sp.oo) or end.is_Rational:
         return end
-    raise UndecidedError(f"the end {end} of the interval is not a known algebraic number")
+    raise UndecidedError(f"the end {end} of the interval is no rational number")
 
 
 def _count(factor: sp.Poly, low: sp.Expr, high: sp.Expr) -> int:
     """Count the roots of a square-free polynomial between two numbers, the ends excluded."""
-    if not all(end.is_Rational or end.is_infinite for end in (low, high)):
-        return sum(_less(low, root) and _less(root, high) for root in factor.real_roots())
     for end in (low, high):
         if end.is_finite and factor.eval(end) == 0:
             factor = factor.quo(sp.Poly(factor.gen - end, factor.gen))
     below, above = (end if end.is_finite else None for end in (low, high))
     return int(factor.count_roots(below, above)) if factor.degree() > 0 else 0
-
-
-def _less(one: sp.Expr, other: sp.Expr) -> bool:
-    """Compare two real algebraic numbers, exactly."""
-    if one == -sp.oo or other == sp.oo:
-        return one != other
-    if one == sp.oo or other == -sp.oo:
-        return False
-    variable, gap = sp.Dummy(), other - one
-    if sp.minimal_polynomial(gap, variable) == variable:
-        return False
-    for digits in _DIGITS:
-        value = sp.N(gap, digits, maxn=10 * digits)
-        if value.is_comparable and abs(value) > sp.Float(10, digits) ** (-digits // 2):
-            return bool(value > 0)
-    raise UndecidedError(f"{one} and {other} are too close")
-
-
-_DIGITS = 30, 300, 3000
-"""Digits with which two numbers that differ are compared, until their difference shows."""
 
 
 def sign_between(expr: sp.Expr, over: Interval) -> str:
@@ -328,13 +281,9 @@ def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
         raise UndecidedError("the expression is identically zero, it has no leading term")
     local = local.replace(sp.atan, lambda u: _arc(u, h))
     found = _lowest_powers(local, h) or leading_of_series(local, h)
-    if found:
-        return found
-    try:
-        coefficient, exponent = local.leadterm(h)
-    except (ValueError, NotImplementedError, sp.PoleError) as error:
-        raise UndecidedError(f"{local} has no leading power of {h}") from error
-    return without_root(coefficient), exponent
+    if found is None:
+        raise UndecidedError(f"{local} has no known series in whole powers of {h}")
+    return found
 
 
 def _arc(tangent: sp.Expr, h: sp.Symbol) -> sp.Expr:
@@ -370,16 +319,21 @@ def near(
     expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol, side: int
 ) -> sp.Expr:
     """Write the expression in the distance h > 0 from the point, on one side of it."""
+    power, shown = _faded(expr, variable, point, h, side)
+    if power:
+        raise UndecidedError(f"{expr} is smaller or larger than any power of {h}")
+    return shown
+
+
+def _faded(
+    expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol, side: int
+) -> tuple[int, sp.Expr]:
+    """Return n, f with expr = T**n f near the point, as `_without_faded` does."""
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = 1 / h if point == sp.oo else point + side * h
     local = _reduced(_in_exponentials(put(expr, {variable: place}), h))
-    if not local.has(sp.exp):
-        return local
-    power, shown = _without_faded(local, h)
-    if power:
-        raise UndecidedError(f"{local} is smaller or larger than any power of {h}")
-    return shown
+    return _without_faded(local, h) if local.has(sp.exp) else (0, local)
 
 
 def _in_exponentials(expr: sp.Expr, h: sp.Symbol) -> sp.Expr:
@@ -421,7 +375,8 @@ def _without_faded(local: sp.Expr, h: sp.Symbol) -> tuple[int, sp.Expr]:
     fading = {each: c for each, (c, k) in exponents.items() if each.has(h) and k.is_negative}
     if not fading:
         return 0, local
-    least, faded = min(fading, key=sp.count_ops), sp.Dummy("faded")
+    least = min(fading, key=lambda each: (sp.count_ops(each), str(each)))  # the same in every run
+    faded = sp.Dummy("faded")
     if not (fading[least].is_negative or fading[least].is_positive):
         raise UndecidedError(f"{sp.exp(least)} has no known limit")
     least = least if fading[least].is_negative else -least
@@ -488,9 +443,6 @@ def _next_on(
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
-    regular = is_rational(local) or local.is_meromorphic(h, 0)
-    if not regular or local.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
-        raise UndecidedError(f"{local} has no series in whole powers of {h}")
     top, bottom = sp.fraction(local)
     rest = expanded(top - bottom) / bottom if is_rational(local) else _reduced(local - 1)
     next_c, next_k = _leading(rest, h)
@@ -499,8 +451,6 @@ def _next_on(
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
     c = without_root(next_c / eps_c**k)
-    if h in c.free_symbols or not next_k.is_Integer:
-        raise UndecidedError(f"no power of {eps} follows, but {c}")
     return c, k, (next_k + 1) / eps_k, bool(eps_c.is_positive)
 
 
@@ -538,10 +488,20 @@ def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
     """Return the value at the end of an interval, which may be infinite."""
     if end.is_finite:
         return put(expr, {variable: end})
-    try:
-        return sp.limit(expr, variable, end)
-    except NotImplementedError as error:
-        raise UndecidedError(f"{expr} has no known limit: {error}") from error
+    if end == -sp.oo:
+        expr = put(expr, {variable: -variable})
+    return limit(expr, variable, sp.oo)
+
+
+def limit(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int) -> sp.Expr:
+    """Return the finite limit at infinity, or at a point from above."""
+    power, local = _faded(expr, variable, point, DISTANCE, 1)
+    if power > 0 or local == 0:
+        return sp.S.Zero
+    coefficient, exponent = _leading(local, DISTANCE)
+    if power < 0 or exponent.is_negative:
+        raise UndecidedError(f"{expr} has no finite limit")
+    return coefficient if exponent == 0 else sp.S.Zero
 
 
 def is_continuous(
@@ -557,17 +517,10 @@ def is_continuous(
     inside = known.with_interval(over)
     if expr.is_Pow:
         return _is_continuous_power(expr, over, known, smooth)
-    if isinstance(expr, sp.tan):
-        return is_continuous(_WRITTEN[expr.func](*expr.args), over, known, smooth=smooth)
-    if isinstance(expr, (sp.log, sp.asin)):
+    if isinstance(expr, sp.asin) and not smooth:
         (argument,) = expr.args
-        if isinstance(expr, sp.log):
-            real = _throughout(proves_positive, argument, over, inside)
-        elif smooth:
-            real = _throughout(proves_positive, 1 - argument**2, over, inside)
-        else:
-            real = _throughout(proves_nonnegative, 1 - argument**2, over, inside)
-        return real and is_continuous(argument, over, known, smooth=smooth)
+        real = _throughout(proves_nonnegative, 1 - argument**2, over, inside)
+        return real and is_continuous(argument, over, known)
     if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
         expr = expr.expr
     allowed = expr.is_Add or expr.is_Mul

@@ -572,10 +572,8 @@ class Book:
         They do where the text says so, and where it uses what no step recalls: only that is a premise.
         Words count here alone: what others use of this proof are its lines.
         """
-        used = (_finished[label].derivation.status for label in self._uses)
-        weak = [status for status in used if status == "sampled"]
         words = ["argued"] if by_words or ARGUED in self._text else []
-        return weakest([*(step.status for step in self._steps), *weak, *words])
+        return weakest([*(step.status for step in self._steps), *words])
 
     def _meant(self, argument: object) -> None:
         """Refuse what is not in the language, letters of one name, and places where a letter cannot be."""

@@ -185,8 +185,8 @@ _DERIVATIVES, _LONGEST = 6, 60
 def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
     """Tell whether a smooth function of one positive letter is positive by its slope and a value.
 
-    It rises from a value at 0 that is not negative, or falls to such a limit at infinity; an analytic
-    function whose slope never changes its sign does so strictly, if it is not constant.
+    It rises from a value at 0 that is not negative; an analytic function whose slope never changes its
+    sign does so strictly, if it is not constant.
     """
     from .algebra import is_continuous
 
@@ -207,17 +207,13 @@ def _by_slope(expr: sp.Expr, left: int = _DERIVATIVES) -> bool:
     if slope == 0 or not is_continuous(expr, (letter, 0, sp.oo), NONE, smooth=True):
         return False
     start = expr.subs(letter, 0)
-    return bool(
-        start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1))
-    ) or bool(
-        expr.has(sp.atan)
-        and (slope.is_nonpositive or _never_below(-slope, left - 1))
-        and sp.limit(expr, letter, sp.oo).is_nonnegative
-    )
+    return bool(start.is_nonnegative and (slope.is_nonnegative or _never_below(slope, left - 1)))
 
 
 def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
     """Decide a rational function and an arc tangent times a polynomial: over that, the slope is rational."""
+    from .algebra import limit
+
     arcs = sorted(expr.atoms(sp.atan), key=str)
     if len(arcs) != 1 or expr.atoms(sp.Function) - {*arcs}:
         return False
@@ -233,7 +229,7 @@ def _by_arc(expr: sp.Expr, letter: sp.Symbol) -> bool:
     if not slope.is_rational_function(letter) or slope.is_number:
         return False
     end = {1: sp.S.Zero, -1: sp.oo}.get(_sign_by_roots(slope, NONE))
-    return end is not None and bool(sp.limit(whole, letter, end).is_nonnegative)
+    return end is not None and bool(limit(whole, letter, end).is_nonnegative)
 
 
 def _never_below(slope: sp.Expr, left: int) -> bool:
@@ -284,25 +280,12 @@ def _name(place: int) -> sp.Dummy:
 
 def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     yield expr
-    squares = {
-        power.base: sp.Dummy(positive=True) ** power.exp.q
-        for power in sorted(expr.atoms(sp.Pow), key=str)
-        if power.exp.is_Rational and not power.exp.is_Integer and power.base.is_Symbol
-        if power.base.is_positive
-    }
-    if squares and not known.intervals and not known.positive:
-        yield expr.subs(squares)  # roots of letters are letters too
     for place, (variable, *ends) in enumerate(known.intervals):
         low, high = map(sp.sympify, ends)
         step = _name(place)
-        if not expr.has(variable) or not (low.is_finite or high.is_finite):
-            continue
-        if low.is_finite and high.is_finite:
-            value = (low + high * step) / (1 + step)
-        else:
-            value = low + step if low.is_finite else high - step
-        expr = put(expr, {variable: value})
-        yield expr
+        if expr.has(variable) and low.is_finite and high.is_finite:
+            expr = put(expr, {variable: (low + high * step) / (1 + step)})
+            yield expr
     for place, positive in enumerate(known.positive, len(known.intervals)):
         if positive.free_symbols <= expr.free_symbols:
             yield from _named(expr, positive, _name(place))
@@ -474,7 +457,7 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
         return []
     if expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer:
         return open_factors(expr.base, known)
-    if expr.has(sp.Derivative, sp.Integral, sp.Piecewise) or not expr.free_symbols:
+    if expr.has(sp.Derivative, sp.Integral) or not expr.free_symbols:
         return [expr]
     sign, unknown = 1, []
     for part in sp.fraction(sp.together(expr)):

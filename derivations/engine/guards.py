@@ -6,7 +6,7 @@ from typing import Unpack
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .algebra import KINKS, UndecidedError, in_one_angle, is_continuous, leading_term, normalise
+from .algebra import KINKS, UndecidedError, is_continuous, leading_term, normalise
 from .book import Book, Said, Shown, StepError, asked
 from .conditions import (
     NONE,
@@ -153,13 +153,11 @@ class Guarded(Book):
                     forms.setdefault(normalise(base), []).append(base)
                 demanded.append(forms)
             shared = demanded[0].keys() & demanded[1].keys()
-            found = [self._unproved(forms, forms.keys() - shared, proves) for forms in demanded]
-            if not any(found):
+            one, other = (
+                shared | self._unproved(forms, forms.keys() - shared, proves) for forms in demanded
+            )
+            if one == other:
                 continue
-            common = self._unproved(demanded[0], shared, proves)
-            sides = [sorted(each | common, key=str) for each in found]
-            written = iter(in_one_angle(*sides[0], *sides[1]))
-            one, other = ({base for _, base in zip(each, written, strict=False)} for each in sides)
             if kind == 0:
                 one, other = (set().union(*map(_parts, each)) for each in (one, other))
             unproved = {base for base in one ^ other if not proves(base, self._conditions)}
@@ -207,7 +205,7 @@ def _is_smooth_inside(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
 def _value_near(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr, sign: int) -> sp.Expr:
     """Return what has the sign of the expression close to an end: its value or leading coefficient."""
     value = expr.subs(variable, end) if end.is_finite else sp.nan
-    if value.is_finite and value.is_nonzero:
+    if value.is_finite and sp.factor(value).is_nonzero:
         return value
     return leading_term(expr, variable, end, side=-1 if end == sp.oo else -sign)[0]
 

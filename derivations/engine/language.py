@@ -20,19 +20,9 @@ FUNCTIONS = (
 )
 _NUMBERS = (sp.Rational, type(sp.pi), type(sp.E), type(sp.oo), type(-sp.oo))
 _COMPOUND = (
-    *(
-        sp.Add,
-        sp.Mul,
-        sp.Pow,
-        AppliedUndef,
-        sp.Derivative,
-        sp.Integral,
-        sp.Sum,
-        sp.Subs,
-        sp.Piecewise,
-    ),
-    *(sp.Indexed, sp.UnevaluatedExpr, sp.Tuple, sp.functions.elementary.piecewise.ExprCondPair),
-    *(Relational, sp.And, type(sp.true), sp.ImmutableDenseMatrix, Computed),
+    *(sp.Add, sp.Mul, sp.Pow, AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs),
+    *(sp.Indexed, sp.UnevaluatedExpr, sp.Tuple, Relational, sp.And, type(sp.true)),
+    *(sp.ImmutableDenseMatrix, Computed),
 )
 
 

@@ -44,6 +44,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
         "x_{LE}": r"x_{\mathrm{LE}}", "x_{TE}": r"x_{\mathrm{TE}}",
     },
     "True circle": _CIRCLE,
+    "Ball": {"s": r"\hat a"},
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
     "Transient: theorems": {
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",

@@ -54,6 +54,8 @@ def sign_of(letter: sp.Expr) -> str:
 
 BY_LATEX: dict[str, Symbol] = {}
 """The rows by what is printed, complete once the chapters are imported (`catalogue`)."""
+BY_NAME: dict[str, sp.Symbol] = {}
+"""The declared letters by their names in SymPy."""
 TEX: dict[sp.Symbol, str] = {}
 """How symbols are printed where SymPy's own choice differs from the paper's."""
 SYMBOLS: set[str] = set()
@@ -99,6 +101,8 @@ def symbol(
     another one (`letters`). Without a meaning it is no row: a derivative, or a letter declared elsewhere.
     """
     found = sp.Symbol(name, **(assumptions or {"positive": True}))
+    if BY_NAME.setdefault(name, found) != found:
+        raise ValueError(f"the letter {name} is declared twice, with different assumptions")
     SYMBOLS.add(latex or sp.latex(found))
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")

@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-STATUSES = ("definition", "proved", "proved-leading-order", "sampled", "argued")
+STATUSES = ("definition", "proved", "proved-leading-order", "argued")
 """The status of an equality, strongest first."""
 ARGUED = "Argued, not checked by machine."
 """In the text of a record, before the inferences that no line of it states."""

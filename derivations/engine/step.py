@@ -11,7 +11,6 @@ Traceback (most recent call last):
 derivations.engine.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
 """
 
-from collections.abc import Iterable
 from contextlib import ExitStack
 from typing import Unpack
 
@@ -44,7 +43,6 @@ from .identity import is_rational, letters_of
 from .points import signs
 from .premises import Premise, violates
 from .roots import domain_of, only_root
-from .sampling import disagreement, refutation
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
 _STRICT = (sp.StrictGreaterThan, sp.StrictLessThan)
@@ -91,9 +89,6 @@ class Proof(Guarded):
         left, right = self._resolve(lhs), self._resolve(rhs)
         self._vanish(left, right, claim)
         self._equally_defined((lhs, left), (rhs, right), claim)
-        found = refutation(left, right, self._conditions.positive)
-        if found:
-            raise StepError(f"{self.label}: {claim} fails {found}")
 
     @asked
     def proportional(
@@ -479,21 +474,6 @@ class Proof(Guarded):
         )
         self._leading.setdefault((sp.sympify(expr), sp.sympify(leading)), fact)
         return c, k
-
-    @asked
-    def sampled(
-        self,
-        lhs: sp.Expr,
-        rhs: sp.Expr,
-        ranges: Iterable[Interval],
-        reason: str,
-        **shown: Unpack[Shown],
-    ) -> None:
-        """Compare both sides at many random points of the ranges with 50 digits."""
-        found = disagreement(self._resolve(lhs), self._resolve(rhs), ranges)
-        if found:
-            raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
-        self._record(lhs, "=", rhs, reason, "sampled", shown)
 
     def _defined_alike(self, integral: sp.Expr, *forms: tuple[sp.Expr, sp.Expr]) -> None:
         """Exclude where an antiderivative or a value has a pole in a parameter that the integral has not."""

@@ -4,9 +4,10 @@ Letters are drawn, the equations solved one after the other with 120 digits, at 
 slopes and integrals of unknown functions are letters of their own.
 """
 
+import math
 import random
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
 from itertools import chain
 
@@ -16,7 +17,6 @@ from sympy.core.function import AppliedUndef
 
 from .conditions import known_sign, linear, proves_nonnegative, proves_positive
 from .identity import letters_of
-from .sampling import value_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
 _TRIES, _DIGITS, _NONE = 800, 120, mpmath.mpf(10) ** -90
@@ -220,3 +220,31 @@ def _meets(point: _Point, gaps: _Expressions, signed: _Expressions) -> bool:
     least = [(gap, _NONE) for gap in gaps] + [(gap, -_NONE) for gap in signed]
     values = ((value_of(gap, point), low) for gap, low in least)
     return all(isinstance(value, mpmath.mpf) and value > low for value, low in values)
+
+
+def value_of(  # noqa: PLR0911 one return for each kind of node
+    expr: sp.Expr, point: Mapping[sp.Expr, mpmath.mpf]
+) -> mpmath.mpf:
+    """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
+    if expr.is_Symbol:
+        return point[expr]
+    if expr.is_Number or expr.is_NumberSymbol:
+        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+    if expr.is_Pow and expr.exp.is_Integer:
+        return value_of(expr.base, point) ** int(expr.exp)
+    parts = [value_of(part, point) for part in expr.args]
+    if expr.is_Add:
+        return sum(parts[1:], parts[0])
+    if expr.is_Mul:
+        return math.prod(parts[1:], start=parts[0])
+    if expr.is_Pow:
+        return parts[0] ** parts[1]
+    kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))
+    if kind is None:
+        raise TypeError(f"{type(expr).__name__} is no function that has a value here")
+    return mpmath.mpmathify(kind(*parts))
+
+
+_KINDS: dict[type, Callable[..., mpmath.mpf]] = {
+    sp.Abs: abs, sp.Max: max, sp.Min: min, sp.UnevaluatedExpr: mpmath.mpmathify,
+}  # fmt: skip

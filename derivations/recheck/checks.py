@@ -334,7 +334,10 @@ class Record:
         ]
         if "over" in claim:
             ends = [read(end) for end in claim["over"][1:]]
-        inserted = _equal(question, put(expression, {variable: value}), ZERO)
+        placed = replace(question, values={**question.values, variable: value})
+        inserted = _equal(placed, expression, ZERO)
+        if inserted.status == "refuted":
+            return inserted
         return _worst([inserted, _only(question, expression, variable, ends, value)])
 
     def unique_root(self, claim: Claim, question: Question) -> Verdict:
@@ -588,8 +591,10 @@ def _only(
                 high is None or holds("<", root - high)
             )
 
+        if value is not None and not inside(point.value(value)):
+            return Verdict("refuted", "at a point it is outside of the interval")
         found = sum(map(inside, real_roots(expression, variable, point)))
-        if found != 1 or (value is not None and not inside(point.value(value))):
-            return Verdict("refuted", f"{found} roots at a point, or another one")
+        if found != 1:
+            return Verdict("refuted", f"{found} roots at a point")
         count += 1
     return Verdict("confirmed", "by isolation of roots") if count else NO_POINT

@@ -45,22 +45,22 @@ function dissipated_in_contact(q) {
   return (4 * q * q - 4 * q + 4) / (q * q - q + 4);
 }
 
-/** f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem scaled-load. */
-function scaled_load(s, lam) {
-  const r = Math.hypot(lam, s);
-  return s * s * (lam * lam / (lam + r) + r + s) / 2;
+/** f = W/W_0 at s_a = a/a_0, lam = V tau/a_0; theorem scaled-load. */
+function scaled_load(s_a, lam) {
+  const r = Math.hypot(lam, s_a);
+  return s_a * s_a * (lam * lam / (lam + r) + r + s_a) / 2;
 }
 
-/** df/ds at fixed lam; theorem scaled-load. */
-function scaled_load_slope(s, lam) {
-  const r = Math.hypot(lam, s);
-  return 3 * s * (r + s) / 2;
+/** df/ds_a at fixed lam; theorem scaled-load. */
+function scaled_load_slope(s_a, lam) {
+  const r = Math.hypot(lam, s_a);
+  return 3 * s_a * (r + s_a) / 2;
 }
 
-/** d2f/ds2 at fixed lam; theorem scaled-load. */
-function scaled_load_curvature(s, lam) {
-  const r = Math.hypot(lam, s);
-  return 3 * (r + s) * (r + s) / (2 * r);
+/** d2f/ds_a2 at fixed lam; theorem scaled-load. */
+function scaled_load_curvature(s_a, lam) {
+  const r = Math.hypot(lam, s_a);
+  return 3 * (r + s_a) * (r + s_a) / (2 * r);
 }
 
 /** c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed. */
@@ -126,14 +126,14 @@ function power_law_high(n) {
   return n * n / (2 * n - 1);
 }
 
-/** f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load. */
-function power_law_scaled_load(n, s, r, lam) {
-  return s ** n * (lam * lam / (lam * n + r) + lam + r + s) / 2;
+/** f = W/W_0 at s_a = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load. */
+function power_law_scaled_load(n, s_a, r, lam) {
+  return s_a ** n * (lam * lam / (lam * n + r) + lam + r + s_a) / 2;
 }
 
-/** df/ds at fixed lam; theorem F19-balance. */
-function power_law_scaled_load_slope(n, s, r, lam) {
-  return s ** (n - 1) * (n + 1) * (lam + r + s) / 2;
+/** df/ds_a at fixed lam; theorem F19-balance. */
+function power_law_scaled_load_slope(n, s_a, r, lam) {
+  return s_a ** (n - 1) * (n + 1) * (lam + r + s_a) / 2;
 }
 
 /** what has the sign of dmu/dV under a dead weight; theorem F19-slip. */
@@ -141,13 +141,13 @@ function power_law_friction_rise(n, l, q, Q) {
   return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (-Q * l * l * (2 * n - 1) + l + q + 1);
 }
 
-/** delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling. */
+/** delta/delta_0 of a wedge while lam < s_a; theorem wedge-weight-peeling. */
 function wedge_scaled_depth_peeling(kappa, lam) {
   const held = kappa - lam * lam / 2 + 1;
   return 2 * held / (kappa + Math.sqrt(4 * held + kappa * kappa));
 }
 
-/** delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled. */
+/** delta/delta_0 of a wedge from lam = s_a on; theorem wedge-weight-peeled. */
 function wedge_scaled_depth_peeled(kappa, lam) {
   return (2 * kappa + 2) / (kappa + lam + Math.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2));
 }
@@ -165,13 +165,13 @@ function onset_sum(T_z, g_c, S_c, h_c, e_c) {
 }
 
 /** S_z - T_z Omega of the larger; theorem F22-falling. */
-function onset_lag(T_z, g_c, S_c, h_c, S_z, s_c) {
-  return 2 * S_z * h_c / (S_c * T_z * g_c + h_c + s_c);
+function onset_lag(T_z, g_c, S_c, h_c, S_z, root_c) {
+  return 2 * S_z * h_c / (S_c * T_z * g_c + h_c + root_c);
 }
 
 /** S_z - T_z Omega of the smaller; theorem F22-flutter. */
-function onset_lag_of_lower(T_z, g_c, S_c, h_c, s_c) {
-  return (S_c * T_z * g_c + h_c + s_c) / (2 * T_z);
+function onset_lag_of_lower(T_z, g_c, S_c, h_c, root_c) {
+  return (S_c * T_z * g_c + h_c + root_c) / (2 * T_z);
 }
 
 /** the critical S_x at a squared frequency and its lag; theorem F22-falling. */
@@ -220,19 +220,19 @@ function ball_cubed_trailing_edges(l, T_b) {
   return (3 * T_b * (5 * l * l + 1) / 16 - l) / (l * l + 1);
 }
 
-/** f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem F20-balance. */
-function ball_scaled_load(s, lam, T_b) {
-  return s * s * s * (8 * lam / (3 * Math.PI) + s * (T_b / Math.PI + 1) / 2);
+/** f = W/W_0 at s_a = a/a_0, lam = V tau/a_0; theorem F20-balance. */
+function ball_scaled_load(s_a, lam, T_b) {
+  return s_a * s_a * s_a * (8 * lam / (3 * Math.PI) + s_a * (T_b / Math.PI + 1) / 2);
 }
 
 /** df/d ln s at fixed lam; theorem F20-balance. */
-function ball_scaled_load_slope(s, lam, theta_b) {
-  return 4 * s * s * (lam * s + Math.PI * s * s / 2 + theta_b * (lam * lam + s * s)) / Math.PI;
+function ball_scaled_load_slope(s_a, lam, theta_b) {
+  return 4 * s_a * s_a * (lam * s_a + Math.PI * s_a * s_a / 2 + theta_b * (lam * lam + s_a * s_a)) / Math.PI;
 }
 
 /** d2f/d(ln s)2 at fixed lam; theorem F20-balance. */
-function ball_scaled_load_curvature(s, lam, theta_b) {
-  return 8 * s * s * (2 * lam * s + Math.PI * s * s + theta_b * (lam * lam + 2 * s * s)) / Math.PI;
+function ball_scaled_load_curvature(s_a, lam, theta_b) {
+  return 8 * s_a * s_a * (2 * lam * s_a + Math.PI * s_a * s_a + theta_b * (lam * lam + 2 * s_a * s_a)) / Math.PI;
 }
 
 /** what has the sign of dmu/dV under a dead weight; theorem F20-peak. */
@@ -243,8 +243,8 @@ function ball_friction_rise(l, T_b) {
 }
 
 /** f_x of a peeling contact from the width b, the right edge and rho; theorem F11-peel. */
-function peeling_friction_force(b, r, rho) {
-  return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8;
+function peeling_friction_force(b, right, rho) {
+  return b * b * (b * (-3 * b + 8 * rho) + 4 * right * (b - 3 * rho)) / 8;
 }
 
 /** the moment P of an arm; theorem F17-arm. */
@@ -357,13 +357,13 @@ function peeling_normal_force(b, rho) {
 }
 
 /** df_z/dd after a start; theorem F11-start. */
-function force_per_depth(a, r, lam, d_s) {
-  return 3 * a / 4 + 3 * lam / 4 + 3 * r / 4 + 3 * d_s / (8 * a);
+function force_per_depth(a, right, lam, d_s) {
+  return 3 * a / 4 + 3 * lam / 4 + 3 * right / 4 + 3 * d_s / (8 * a);
 }
 
 /** df_z/dd' after a start; theorem F11-start. */
-function force_per_rate(a, r) {
-  return 3 * a / 4 + 3 * r / 4;
+function force_per_rate(a, right) {
+  return 3 * a / 4 + 3 * right / 4;
 }
 
 /** t_0 of an arm, for z > 4; theorem F17-arm. */

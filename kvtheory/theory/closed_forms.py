@@ -59,22 +59,22 @@ def dissipated_in_contact(q: Value) -> Value:
     return (4 * q * q - 4 * q + 4) / (q * q - q + 4)
 
 
-def scaled_load(s: Value, lam: Value) -> Value:
-    """Return f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem scaled-load."""
-    r = np.hypot(lam, s)
-    return s * s * (lam * lam / (lam + r) + r + s) / 2
+def scaled_load(s_a: Value, lam: Value) -> Value:
+    """Return f = W/W_0 at s_a = a/a_0, lam = V tau/a_0; theorem scaled-load."""
+    r = np.hypot(lam, s_a)
+    return s_a * s_a * (lam * lam / (lam + r) + r + s_a) / 2
 
 
-def scaled_load_slope(s: Value, lam: Value) -> Value:
-    """Return df/ds at fixed lam; theorem scaled-load."""
-    r = np.hypot(lam, s)
-    return 3 * s * (r + s) / 2
+def scaled_load_slope(s_a: Value, lam: Value) -> Value:
+    """Return df/ds_a at fixed lam; theorem scaled-load."""
+    r = np.hypot(lam, s_a)
+    return 3 * s_a * (r + s_a) / 2
 
 
-def scaled_load_curvature(s: Value, lam: Value) -> Value:
-    """Return d2f/ds2 at fixed lam; theorem scaled-load."""
-    r = np.hypot(lam, s)
-    return 3 * (r + s) * (r + s) / (2 * r)
+def scaled_load_curvature(s_a: Value, lam: Value) -> Value:
+    """Return d2f/ds_a2 at fixed lam; theorem scaled-load."""
+    r = np.hypot(lam, s_a)
+    return 3 * (r + s_a) * (r + s_a) / (2 * r)
 
 
 def circle_load(q: Value) -> Value:
@@ -140,14 +140,14 @@ def power_law_high(n: Value) -> Value:
     return n * n / (2 * n - 1)
 
 
-def power_law_scaled_load(n: Value, s: Value, r: Value, lam: Value) -> Value:
-    """Return f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load."""
-    return s ** n * (lam * lam / (lam * n + r) + lam + r + s) / 2
+def power_law_scaled_load(n: Value, s_a: Value, r: Value, lam: Value) -> Value:
+    """Return f = W/W_0 at s_a = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load."""
+    return s_a ** n * (lam * lam / (lam * n + r) + lam + r + s_a) / 2
 
 
-def power_law_scaled_load_slope(n: Value, s: Value, r: Value, lam: Value) -> Value:
-    """Return df/ds at fixed lam; theorem F19-balance."""
-    return s ** (n - 1) * (n + 1) * (lam + r + s) / 2
+def power_law_scaled_load_slope(n: Value, s_a: Value, r: Value, lam: Value) -> Value:
+    """Return df/ds_a at fixed lam; theorem F19-balance."""
+    return s_a ** (n - 1) * (n + 1) * (lam + r + s_a) / 2
 
 
 def power_law_friction_rise(n: Value, l: Value, q: Value, Q: Value) -> Value:
@@ -156,13 +156,13 @@ def power_law_friction_rise(n: Value, l: Value, q: Value, Q: Value) -> Value:
 
 
 def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
-    """Return delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling."""
+    """Return delta/delta_0 of a wedge while lam < s_a; theorem wedge-weight-peeling."""
     held = kappa - lam * lam / 2 + 1
     return 2 * held / (kappa + np.sqrt(4 * held + kappa * kappa))
 
 
 def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:
-    """Return delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled."""
+    """Return delta/delta_0 of a wedge from lam = s_a on; theorem wedge-weight-peeled."""
     return (2 * kappa + 2) / (kappa + lam + np.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2))
 
 
@@ -178,14 +178,14 @@ def onset_sum(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Val
     return -2 * T_z * e_c + m_c
 
 
-def onset_lag(T_z: Value, g_c: Value, S_c: Value, h_c: Value, S_z: Value, s_c: Value) -> Value:
+def onset_lag(T_z: Value, g_c: Value, S_c: Value, h_c: Value, S_z: Value, root_c: Value) -> Value:
     """Return S_z - T_z Omega of the larger; theorem F22-falling."""
-    return 2 * S_z * h_c / (S_c * T_z * g_c + h_c + s_c)
+    return 2 * S_z * h_c / (S_c * T_z * g_c + h_c + root_c)
 
 
-def onset_lag_of_lower(T_z: Value, g_c: Value, S_c: Value, h_c: Value, s_c: Value) -> Value:
+def onset_lag_of_lower(T_z: Value, g_c: Value, S_c: Value, h_c: Value, root_c: Value) -> Value:
     """Return S_z - T_z Omega of the smaller; theorem F22-flutter."""
-    return (S_c * T_z * g_c + h_c + s_c) / (2 * T_z)
+    return (S_c * T_z * g_c + h_c + root_c) / (2 * T_z)
 
 
 def onset_stiffness(T_x: Value, S_c: Value, Omega: Value, p_p: Value) -> Value:
@@ -234,19 +234,19 @@ def ball_cubed_trailing_edges(l: Value, T_b: Value) -> Value:
     return (3 * T_b * (5 * l * l + 1) / 16 - l) / (l * l + 1)
 
 
-def ball_scaled_load(s: Value, lam: Value, T_b: Value) -> Value:
-    """Return f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem F20-balance."""
-    return s * s * s * (8 * lam / (3 * np.pi) + s * (T_b / np.pi + 1) / 2)
+def ball_scaled_load(s_a: Value, lam: Value, T_b: Value) -> Value:
+    """Return f = W/W_0 at s_a = a/a_0, lam = V tau/a_0; theorem F20-balance."""
+    return s_a * s_a * s_a * (8 * lam / (3 * np.pi) + s_a * (T_b / np.pi + 1) / 2)
 
 
-def ball_scaled_load_slope(s: Value, lam: Value, theta_b: Value) -> Value:
+def ball_scaled_load_slope(s_a: Value, lam: Value, theta_b: Value) -> Value:
     """Return df/d ln s at fixed lam; theorem F20-balance."""
-    return 4 * s * s * (lam * s + np.pi * s * s / 2 + theta_b * (lam * lam + s * s)) / np.pi
+    return 4 * s_a * s_a * (lam * s_a + np.pi * s_a * s_a / 2 + theta_b * (lam * lam + s_a * s_a)) / np.pi
 
 
-def ball_scaled_load_curvature(s: Value, lam: Value, theta_b: Value) -> Value:
+def ball_scaled_load_curvature(s_a: Value, lam: Value, theta_b: Value) -> Value:
     """Return d2f/d(ln s)2 at fixed lam; theorem F20-balance."""
-    return 8 * s * s * (2 * lam * s + np.pi * s * s + theta_b * (lam * lam + 2 * s * s)) / np.pi
+    return 8 * s_a * s_a * (2 * lam * s_a + np.pi * s_a * s_a + theta_b * (lam * lam + 2 * s_a * s_a)) / np.pi
 
 
 def ball_friction_rise(l: Value, T_b: Value) -> Value:
@@ -256,9 +256,9 @@ def ball_friction_rise(l: Value, T_b: Value) -> Value:
     return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + np.pi) + 1)
 
 
-def peeling_friction_force(b: Value, r: Value, rho: Value) -> Value:
+def peeling_friction_force(b: Value, right: Value, rho: Value) -> Value:
     """Return f_x of a peeling contact from the width b, the right edge and rho; theorem F11-peel."""
-    return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8
+    return b * b * (b * (-3 * b + 8 * rho) + 4 * right * (b - 3 * rho)) / 8
 
 
 def arm_ahead(A_v: Value, t_v0: Value, x_v: Value) -> Value:
