@@ -7,7 +7,7 @@ from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
-from kvtheory.scene.capabilities import DRIVES, SUPPORTS, lacks_scripts
+from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
 from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SECTIONS, Scene
@@ -72,7 +72,9 @@ def controls(scene: Scene) -> dict[str, Any]:
     line = scene.indenter.per_width
     sections: dict[str, Any] = {}
     values: dict[str, str] = {}
-    for section, (chooser, models) in SECTIONS.items():
+    for section, (chooser, classes) in SECTIONS.items():
+        # A foundation of another kind has no sliders.
+        models = {k: cls for k, cls in classes.items() if section != "foundation" or k in LAWS}
         own = _given(scene, section)
         alternatives = {kind: _alternatives(section, kind, cls) for kind, cls in models.items()}
         choices = {}
