@@ -20,10 +20,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady.roots import root
 from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
+from kvtheory.theory.powers import root
 
 Value = Any
 """An array, or a float."""

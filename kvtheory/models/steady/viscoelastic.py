@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.roots import converge, cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.theory.laws import RELATIVE_ERROR, Fractional, Law, Moments, Prony
+from kvtheory.theory.powers import converge, cube_root
 
 Array = NDArray[np.float64]
 
