@@ -55,7 +55,7 @@ DIGITS = 6
 """Digits of the stiffnesses of these arms: all of them would not fit into a field."""
 UNITS = SHOWN_UNITS | {
     "N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3), "K": ("K", 1.0), "1/s": ("Hz", 1.0),
-    "J/mol": ("kJ/mol", 1e-3),
+    "J/mol": ("kJ/mol", 1e-3), "N*s/m^3": ("N*s/mm^3", 1e-9),
 }  # fmt: skip
 
 
@@ -128,8 +128,8 @@ def _given(scene: Scene, section: str) -> dict[str, tuple[float, Quantity]]:
         specs = quantities(part)
         found["velocity"] = part.final_velocity, specs["velocity"]
         found |= {} if part.rigid else {"damping": (part.damping, specs["damping"])}
-    if section == "foundation":
-        found.pop("damping", None)  # of arms; 0, as the scripts take no scene with another one
+    if section == "foundation" and not part.damping:
+        found.pop("damping", None)
     return found
 
 

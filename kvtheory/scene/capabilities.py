@@ -7,7 +7,7 @@ these; messages, tests and a page of the documentation are made from the table `
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kvtheory.scene.foundations import ARMS, DAMPED, LAWS, SPRINGPOT
+from kvtheory.scene.foundations import ARMS, DAMPED, LAWS
 from kvtheory.scene.indenters import SHAPES as CLASSES
 from kvtheory.scene.indenters import Profile, Revolved
 from kvtheory.scene.model import SUPPORTS as KINDS
@@ -111,9 +111,7 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
-lacks_scripts = Needs(
-    Scenes(QUADRATIC, (*ONE_OF_BOTH, SPRINGPOT)), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
-)
+lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
 
 
 @dataclass(frozen=True)
