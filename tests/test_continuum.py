@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from kvtheory.models.continuum.radau_iia import STAGES, radau
-from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.run import STAGES, Spring, StepControl, radau
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.results.errors import TransientError

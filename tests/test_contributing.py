@@ -1,6 +1,6 @@
 """What CONTRIBUTING says of adding a part, followed to the letter in a copy of the package.
 
-A shape, a support or a waveform is a class in its file and an entry of the table below it.
+A shape, a law, a support or a waveform is a class in its file and an entry of the table below it.
 """
 
 import json
@@ -37,6 +37,22 @@ class Catenary(Shape):
         return x / self.length / np.tanh(x / self.length)
 ''',
         "Convex = ", "PowerLaw, Wedge, Sphere)", "PowerLaw, Wedge, Sphere, Catenary)",
+    ),
+    "foundations.py": (
+        '''@dataclass(frozen=True, eq=False)
+class StandardLinearSolid(_Relaxed):
+    """G = K [1 + (ratio - 1) e^(-t/tau)]."""
+
+    kind: ClassVar[str] = "standard-linear-solid"
+    relaxation_time: Value = quantity("s", "tau", default=None, needed=True)
+    ratio: Value = quantity("1", "G(0)/K", default=None, needed=True, minimum=1.0)
+
+    @property
+    def arms(self):
+        return (Arm((self.ratio - 1.0) * self.stiffness, +self.relaxation_time),)
+''',
+        "AnyFoundation = ", "(Foundation, GeneralizedMaxwell, FractionalKelvinVoigt)",
+        "(Foundation, GeneralizedMaxwell, FractionalKelvinVoigt, StandardLinearSolid)",
     ),
     "model.py": (
         '''@dataclass(frozen=True, eq=False)
@@ -78,7 +94,7 @@ class Decay(Waveform):
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """Commands of a copy of the package with all three; they return standard output and error."""
+    """Commands of a copy of the package with all four; they return standard output and error."""
     folder = tmp_path_factory.mktemp("copy")
     package = Path(kv.__file__).parent
     shutil.copytree(package, folder / "kvtheory", ignore=shutil.ignore_patterns("__pycache__"))
@@ -89,7 +105,7 @@ def run(tmp_path_factory):
         file.write_text(source.replace(f"\n{place}", f"\n{text}\n\n{place}").replace(before, after))
 
     def run(*words):
-        command = [sys.executable, "-m", "kvtheory", *words]
+        command = [sys.executable, *(() if words[0] == "-c" else ("-m", "kvtheory")), *words]
         found = subprocess.run(
             command, cwd=folder, env=os.environ | {"PYTHONPATH": str(folder)}, text=True,
             capture_output=True, check=False,
@@ -147,3 +163,48 @@ def test_a_waveform_is_a_class_and_a_row(run):
     assert not message
     force = json.loads(text)["friction_force"]
     assert abs(force[1]) < 0.05 * abs(force[0])
+
+
+LAWS_ALIKE = """
+from dataclasses import replace
+import numpy as np
+import kvtheory as kv
+from kvtheory.scene.foundations import FOUNDATIONS
+
+room = {"temperature": 300.0, "reference_temperature": 293.0, "wlf": (17.44, 51.6)}
+layer = {"modulus": 5e6, "thickness": 2e-3, "poisson_ratio": 0.45, **room}
+solid = FOUNDATIONS["standard-linear-solid"]
+alike = (
+    ({"stiffness": 1e10}, [(3e10, 0.01)], kv.Parabola(0.01)),
+    (layer, [("15 MPa", 0.01)], kv.Circle(0.01)),
+)
+for given, arms, shape in alike:
+    one = kv.Scene(shape, solid(**given, ratio=4.0, relaxation_time=0.01), run=kv.Run(2e-3))
+    two = replace(one, foundation=kv.GeneralizedMaxwell(**given, arms=arms))
+    asked = {
+        "friction_force": lambda scene: kv.steady(scene),
+        "maxima": lambda scene: kv.asymptotes(scene),
+        "depth": lambda scene: kv.elements(scene, at=[1e-3], per_length=5e3),
+    }
+    if given is not layer:
+        asked["critical_stiffness"] = lambda scene: kv.stability(
+            scene.replace({"drive.velocity": 0.2}), quantity="critical_stiffness")
+        asked["normal_force"] = lambda scene: kv.transient(scene, at=[1e-3])
+    for name, ask in asked.items():
+        a, b = (np.asarray(getattr(ask(each), name)) for each in (one, two))
+        assert np.array_equal(a, b) and np.isfinite(a).all(), (name, a, b)
+swept = kv.sweep(one, over={"foundation.ratio": [2.0, 4.0]}, quantities=["friction_force"])
+assert swept["friction_force"][1] == kv.steady(two).friction_force
+"""
+"""In the copy: a solid of its own answers as the Prony series with its arms, also as a layer."""
+
+
+def test_a_law_is_a_class_and_a_row(run):
+    assert run("-c", LAWS_ALIKE) == ("", "")
+    kind = ("--set", "foundation.kind=standard-linear-solid", "--set", "foundation.ratio=4")
+    time = ("--set", "foundation.relaxation_time=10 ms")
+    refused = run("steady", "--method", "asymptote", *kind, *time)[1]
+    assert 'foundation.kind = "kelvin-voigt" only, not for "standard-linear-solid"' in refused
+    assert "foundation.relaxation_time: missing" in run("steady", *kind)[1]
+    assert "no sliders for foundation.kind" in run("explore", "-o", "x.html", *kind, *time)[1]
+    assert "standard-linear-solid" in run("scene")[0]

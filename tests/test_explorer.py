@@ -76,10 +76,17 @@ def random_scenes():
     foundations = {
         "kelvin-voigt": kv.Foundation,
         "arms": lambda K, tau: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]]),
+        "both": lambda K, tau: kv.GeneralizedMaxwell(
+            K, arms=[[3 * K, tau], [K / 2, 50 * tau]], damping=K * tau * between(1e-3, 10.0)
+        ),
         "springpot": lambda K, tau: kv.FractionalKelvinVoigt(K, tau, random.uniform(0.05, 1.0)),
     }
     pairs = [(shape, "kelvin-voigt") for shape in list(shapes)[:5]]
-    pairs += [(shape, law) for shape in ("parabola", "paraboloid") for law in ("arms", "springpot")]
+    pairs += [
+        (shape, law)
+        for shape in ("parabola", "paraboloid")
+        for law in ("arms", "both", "springpot")
+    ]
     for shape, law in pairs:
         for k in range(EACH):
             R, W = between(1e-3, 0.1), between(10.0, 1e5)
@@ -107,6 +114,7 @@ def in_javascript(scene):
     }  # fmt: skip
     if foundation.arms:
         found["arms"] = [[arm.stiffness, arm.relaxation_time] for arm in foundation.arms]
+        found["damping"] = foundation.damping
     if foundation.kind == "fractional-kelvin-voigt":
         found["order"] = foundation.order
     if not scene.drive.rigid:
@@ -128,7 +136,7 @@ def ask(browser, function, scene):
 def test_random_scenes_agree_with_python(browser):
     scenes = list(random_scenes())
     found = ask(browser, f"s => (t => {list(STEADY_UNITS)}.map(n => t[n]))(slide(s))", scenes)
-    assert len(found) == 9 * EACH
+    assert len(found) == 11 * EACH
     for scene, row in zip(scenes, found, strict=True):
         try:
             state = kv.steady(scene)
@@ -183,6 +191,16 @@ def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
         assert top["V"] == pytest.approx(report.peak_velocity, rel=1e-5)
 
 
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_limits_beside_a_damper_are_those_of_python(browser, support):
+    both = kv.GeneralizedMaxwell(1e10, arms=[[3e10, 1e-4], [2e10, 3.0]], damping=2e9)
+    scene = replace(kv.Scene.table1(support), foundation=both, drive=kv.Drive(0.3))
+    report = kv.asymptotes(scene)
+    found = ask(browser, "s => (k => [k.low(0.3), k.high(0.3), k.critical])(limits(s))", scene)
+    right = [report.lines[0].value, report.lines[2].value, report.critical_velocity]
+    assert found == pytest.approx(right, rel=1e-12)
+
+
 def test_limits_and_every_maximum_of_a_prony_series_are_those_of_python(browser):
     scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[[3e10, 1e-4], [2e10, 3.0]]))
     report = kv.asymptotes(scene)
@@ -216,9 +234,12 @@ def on_springs(count, ball, rubber):
         }  # fmt: skip
         velocity = 0.0 if k % 40 == 7 and not rubber else power(-3.0, 1.5)
         arms = [[power(9.0, 11.0), power(-3.0, 0.0)] for _ in range(1 + k % 3)]
+        damper = {"damping": 1e9} if k % 4 == 3 else {}
         yield kv.Scene(
             kv.Sphere(0.01, radius_across=0.01 * (1 + k % 4)) if ball else kv.Parabola(0.01),
-            kv.GeneralizedMaxwell(1e10, arms=arms) if rubber else kv.Foundation(1e10, 0.1),
+            kv.GeneralizedMaxwell(1e10, arms=arms, **damper)
+            if rubber
+            else kv.Foundation(1e10, 0.1),
             supports[k % 3],
             kv.Drive(velocity, **({} if k % 10 == 9 and not rubber else spring)),
         )
@@ -418,8 +439,11 @@ def test_every_scene_fits_a_phone_and_its_copies_are_what_is_shown(session, page
 
 @pytest.mark.parametrize(
     "foundation",
-    [kv.Foundation(1e10, 0.1), *(kv.FractionalKelvinVoigt(1e10, 0.1, n) for n in (0.3, 0.7, 1.0))],
-)
+    [
+        kv.Foundation(1e10, 0.1), *(kv.FractionalKelvinVoigt(1e10, 0.1, n) for n in (0.3, 0.7, 1.0)),
+        kv.GeneralizedMaxwell(1e10, arms=[(1e10, 0.01)], damping=1e9),
+    ],
+)  # fmt: skip
 def test_the_free_surface_bears_no_load(browser, foundation):
     """W = K int u dx over all elements: a damper or springpot that is left alone ends where it began."""
     function = (
@@ -714,6 +738,8 @@ def scenes_of_all_kinds():
         if law is kv.GeneralizedMaxwell:
             first = next(iter(base.values()))
             own["arms"] = [[3.0 * first, 1e-3], [0.5 * first, 0.2]][: 1 + turn // 3 % 2]
+            if "stiffness" in base and turn // 3 % 2:
+                own["damping"] = 1e-3 * first
         slow = law is kv.GeneralizedMaxwell and not indenter.per_width  # on a spring, a second each
         drives = RIGID if slow else DRIVES
         yield kv.Scene(
@@ -789,7 +815,6 @@ def test_the_page_opens_at_scenes_of_every_kind_and_keeps_all_they_say(browser, 
         for section, (_, classes) in SECTIONS.items()
     }
     declared["foundation"]["wlf"] = 0
-    del declared["foundation"]["damping"]  # beside arms, which the scripts do not know
     assert seen == keys_of(declared)
     assert len(notes) == 4
     assert len(scenes) >= 40

@@ -375,8 +375,12 @@ def test_a_motion_is_held_against_elements():
     assert found[1].explanations[0].name == "damper missing"
 
 
-def test_the_explorer_refuses_a_damper_beside_arms_unless_it_is_zero():
-    told = r"only, not for arms beside foundation\.damping"
-    with pytest.raises(ValueError, match=told):
-        explorer_page(scene())
-    assert "foundation.damping" not in explorer_page(scene(foundation=replace(MIXED, damping=0.0)))
+def test_the_explorer_has_a_slider_of_a_damper_beside_arms_unless_it_is_zero():
+    assert '"foundation.damping": "' in explorer_page(scene())
+    plain = explorer_page(scene(foundation=replace(MIXED, damping=0.0)))
+    assert '"foundation.damping": "' not in plain
+
+
+def test_closed_forms_of_kelvin_voigt_refuse_a_damper_beside_arms():
+    with pytest.raises(ValueError, match=r"only, not for arms beside foundation\.damping"):
+        kv.steady(scene(), method="asymptote")

@@ -7,7 +7,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
-from kvtheory.models.steady.roots import cube_root, root
+from kvtheory.theory.powers import cube_root, root
 from tests import SUPPORTS, reference, steady
 
 EXPONENTS = (1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 1.5, 2.0, 2.7, 3.0, 4.0, 6.0, 11.5, 20.0, 24.0)

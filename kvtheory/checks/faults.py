@@ -65,17 +65,18 @@ USUAL = {"s": ("ms", 1e3), "m": ("mm", 1e3), "m/s": ("mm/s", 1e3), "N/m^3": ("GN
 
 def parameters_of(scene: Scene) -> Iterator[Parameter]:
     """Yield the parameters of a scene, those of each arm among them."""
-    values, arms = scene.values(), range(len(scene.foundation.arms))
+    values = scene.values()
     shared = scene.drive.mass is None
     for each in PARAMETERS:
         known = all(values.get(key) or key == VELOCITY for key in each.powers)
         if known and (shared or each.powers.get("drive.mass") != 0.0):  # else it is M or inertia
             yield each
     for symbol, name in (("K", "stiffness"), ("tau", "relaxation_time")):
-        keys = [f"foundation.arms[{i}].{name}" for i in arms]
+        arms = (key for key in values if key.startswith("foundation.arms["))
+        keys = [key for key in arms if key.endswith(f".{name}")]
         for i, key in enumerate(keys, start=1):
             yield Parameter(f"{symbol}_{i}", {key: 1.0}, f" (arm {i})")
-        if len(arms) > 1:
+        if len(keys) > 1:
             words = " (that of the first arm, the others alike)"
             yield Parameter(f"all {symbol}_i", dict.fromkeys(keys, 1.0), words)
 

@@ -72,7 +72,7 @@ function formula_here(scene, state) {
   for (const kind of ["low", "high"]) {
     const value = known[kind] && speed > 0 ? known[kind](speed) : NaN, error = value / exact - 1;
     if (Math.abs(error) <= WITHIN) {
-      const own = `${family}-${kind}`;
+      const own = `${kind === "high" && known.damper ? "parabola" : family}-${kind}`;  // of the damper alone
       return { key: own in MODEL.formulas ? own : `${own}-${scene.support}`, value, error };
     }
   }
@@ -80,9 +80,9 @@ function formula_here(scene, state) {
 }
 
 /** The numbers that a formula can hold, with their units. */
-function quantities_of(scene, state) {
+function quantities_of(scene, state, key) {
   const { rest } = state, [, L, n] = scene.shape, K = scene.K, speed = Math.abs(scene.V);
-  const C = scene.arms ? damping(scene) : K * scene.tau, fixed = scene.depth !== undefined;
+  const C = !scene.arms ? K * scene.tau : key.startsWith("parabola") ? scene.damping : damping(scene), fixed = scene.depth !== undefined;
   const lift = fixed ? 0 : rest.load + scene.spring * rest.depth;
   const high = fixed ? rest.depth : lift / (C * speed);
   const m = (x) => `${short(x * 1e3)} mm`, [unit, factor] = force_units(scene), whole = scene.indenter === "sphere";
@@ -123,7 +123,7 @@ function show_formula(scene, state) {
     place.innerHTML = '<p class="note">At rest there is no friction.</p>';
     return;
   }
-  const found = formula_here(scene, state), row = MODEL.formulas[found.key], numbers = quantities_of(scene, state);
+  const found = formula_here(scene, state), row = MODEL.formulas[found.key], numbers = quantities_of(scene, state, found.key);
   const filled = row.numbers.replace(/#(\w+)#/g, (_, name) => numbers[name]);
   const relation = found.error === 0 ? "=" : "\u2248", side = Math.sign(state.friction_coefficient) < 0 ? "\u2212" : "";
   const told = found.error === 0

@@ -19,7 +19,8 @@ function relaxed_arms(scene, state, u, away) {
   let before = 0, now = u;
   return away.map((x) => {
     const h = x - before;
-    let held = 0, stiff = scene.K;
+    const damped = Math.abs(scene.V) * scene.damping / h;
+    let held = -damped * now, stiff = scene.K + damped;
     for (const arm of arms) {
       const rest = 1 / (1 + h / arm.length);
       held += (arm.stress - arm.stiffness * now) * rest;

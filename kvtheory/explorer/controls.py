@@ -7,7 +7,7 @@ from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
-from kvtheory.scene.capabilities import DRIVES, SUPPORTS, lacks_scripts
+from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
 from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SECTIONS, Scene
@@ -55,7 +55,7 @@ DIGITS = 6
 """Digits of the stiffnesses of these arms: all of them would not fit into a field."""
 UNITS = SHOWN_UNITS | {
     "N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3), "K": ("K", 1.0), "1/s": ("Hz", 1.0),
-    "J/mol": ("kJ/mol", 1e-3),
+    "J/mol": ("kJ/mol", 1e-3), "N*s/m^3": ("N*s/mm^3", 1e-9),
 }  # fmt: skip
 
 
@@ -72,7 +72,9 @@ def controls(scene: Scene) -> dict[str, Any]:
     line = scene.indenter.per_width
     sections: dict[str, Any] = {}
     values: dict[str, str] = {}
-    for section, (chooser, models) in SECTIONS.items():
+    for section, (chooser, classes) in SECTIONS.items():
+        # A foundation of another kind has no sliders.
+        models = {k: cls for k, cls in classes.items() if section != "foundation" or k in LAWS}
         own = _given(scene, section)
         alternatives = {kind: _alternatives(section, kind, cls) for kind, cls in models.items()}
         choices = {}
@@ -126,8 +128,8 @@ def _given(scene: Scene, section: str) -> dict[str, tuple[float, Quantity]]:
         specs = quantities(part)
         found["velocity"] = part.final_velocity, specs["velocity"]
         found |= {} if part.rigid else {"damping": (part.damping, specs["damping"])}
-    if section == "foundation":
-        found.pop("damping", None)  # of arms; 0, as the scripts take no scene with another one
+    if section == "foundation" and not part.damping:
+        found.pop("damping", None)
     return found
 
 

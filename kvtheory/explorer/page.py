@@ -8,7 +8,7 @@ from pathlib import Path
 
 from kvtheory.explorer.controls import controls
 from kvtheory.export import check_path, replace_file
-from kvtheory.scene.capabilities import lacks_one_scene, lacks_scripts, require
+from kvtheory.scene.capabilities import LAWS, lacks_one_scene, lacks_scripts, require
 from kvtheory.scene.model import Scene
 
 SCRIPTS = (
@@ -37,6 +37,8 @@ def explorer_page(scene: Scene) -> str:
 
     require(lacks_one_scene, scene, "the explorer")
     require(lacks_scripts, scene, "the explorer")
+    if (kind := scene.foundation.kind) not in LAWS:
+        raise ValueError(f'the explorer has no sliders for foundation.kind = "{kind}"')
     data = {"version": __version__, "formulas": formulas(), **controls(scene)}
     parts = {
         "style": _text("explorer.css"),

@@ -62,7 +62,9 @@ function spring_at(scene, strips, omega) {
   let A = [0, 0], B = [0, 0], C = [0, 0], D = [0, 0];
   for (const { c, width, eta } of strips) {
     const sigma = [0, omega * c / V];
-    let own_A = [scene.K, 0], own_B = [0, 0], own_C = [scene.K * eta, 0], own_D = [0, 0];
+    const damped = V * scene.damping / c, turned = damped * sigma[1];
+    let own_A = [scene.K + damped, turned], own_B = [0, -eta * turned];
+    let own_C = [scene.K * eta + damped * (0.5 + eta), eta * turned], own_D = [0, -(1 / 12 + eta * eta) * turned];
     for (const [K, tau] of scene.arms) {
       const z = c / (V * tau), [one, two, three] = phis([z, sigma[1]]), [second, third, fourth] = phi_differences(z, sigma);
       const whole = add(one, times(sigma, two));
@@ -88,6 +90,7 @@ function rubber_crossings(scene, state, { per_decade = 24, count = 24 } = {}) {
   const strips = strips_in_contact(scene, state, count), passing = Math.abs(scene.V) / state.length;
   const times_of = scene.arms.map(([, tau]) => 1 / tau), stiff = scene.arms.reduce((sum, [K]) => sum + K, scene.K);
   const sum = strips.reduce((total, { c, width }) => total + c * width, 0), scales = [passing, ...times_of];
+  if (scene.damping > 0) scales.push(scene.K / scene.damping, stiff / scene.damping);
   if (scene.depth === undefined) scales.push(...[scene.K, stiff].map((K) => Math.sqrt((scene.spring + sum * K) / scene.mass)));
   const low = Math.log(Math.min(...scales)) - 8, high = Math.log(Math.max(...scales)) + 5;
   const cells = Math.ceil(per_decade * (high - low) / Math.LN10), found = [];

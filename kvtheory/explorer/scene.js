@@ -164,6 +164,7 @@ function scene_of(state) {
   if (has_arms(state)) {
     const [size, time] = arm_sliders(state);
     scene.arms = state.arms.map(([k, t]) => [stiffness(si(k, size)), si(t, time) * a_T]);
+    scene.damping = (v["foundation.damping"] ?? 0) * a_T;
   }
   if (support === "fixed") scene.depth = v["support.depth"];
   else {

@@ -106,14 +106,14 @@ function rgamma1(x) {
   return product / (Math.sqrt(2 * Math.PI / y) * Math.exp(y * (Math.log(y) - 1) + tail));
 }
 
-/** A Prony series: spring and arms, of which those relax at once that the contact is far longer than. */
+/** A Prony series: spring, damper and arms, of which those relax at once that the contact is far longer than. */
 function prony(scene) {
-  const speed = Math.abs(scene.V), K = scene.K;
+  const speed = Math.abs(scene.V), K = scene.K, damper = speed * scene.damping;
   const arms = speed > 0 ? scene.arms.map(([stiffness, time]) => [stiffness, speed * time]) : [];
   const number = (c, length) => Math.min(c / length, 1e150);
   return {
     moments(c) {
-      const M = { P: 0.5 * K, Q: 0.5 * K, D: K / 12, E: 0, end: K, end_slope: 0 };
+      const M = { P: 0.5 * K + damper / c, Q: 0.5 * K, D: K / 12, E: damper / (12 * c), end: K, end_slope: 0 };
       for (const [stiffness, length] of arms) {
         const z = number(c, length), own = arm_moments(z);
         M.P += stiffness * own.P;
@@ -126,7 +126,7 @@ function prony(scene) {
       return M;
     },
     dissipated(c, eta, work) {
-      let lost = 0;
+      let lost = damper / c * (1 / 12 + eta * eta);
       for (const [stiffness, length] of arms) {
         const z = number(c, length), m = arm_moments(z);
         lost += stiffness * arm_lost(m.A, 0.5 * (m.P - m.Q), m.E, m.P, eta, z);
@@ -248,7 +248,7 @@ function greatest(f, end) {
 
 /** C = int (G - K) dt of a Prony series. */
 function damping(scene) {
-  return scene.arms.reduce((sum, [stiffness, time]) => sum + stiffness * time, 0);
+  return scene.arms.reduce((sum, [stiffness, time]) => sum + stiffness * time, scene.damping);
 }
 
 /** C/K: the retardation time, or what takes its place. */
@@ -286,6 +286,11 @@ function line_limits(scene) {
     };
   }
   if (!scene.arms) return {};
+  if (scene.damping > 0) {  // it is all that resists at high velocity
+    const lift = fixed ? 0 : rest.load + scene.spring * rest.depth, low = damping(scene) / (L * K);
+    const high = (V) => Math.sqrt((8 / 9) * (fixed ? rest.depth : lift / (scene.damping * V)) / L);
+    return { low: (V) => low * V, high, critical: (high(1) / low) ** (fixed ? 1 : 2 / 3), damper: true };
+  }
   const C = damping(scene), glassy = scene.arms.reduce((sum, [stiffness]) => sum + stiffness, K);
   const slope_0 = scene.arms.reduce((sum, [stiffness, time]) => sum + stiffness / time, 0);
   let s = 1;

@@ -39,7 +39,7 @@ import numpy as np
 from scipy.special import gammainc
 
 from kvtheory.fitting.spectrum import Array, Moduli, Series, fewer, refined
-from kvtheory.scene.foundations import Arm
+from kvtheory.scene.foundations import Arm, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 
 PER_DECADE = 16
@@ -164,7 +164,7 @@ def reduced(
             break
         pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
         arms = tuple(Arm(*pair) for pair in pairs)
-        own = type(foundation)(+foundation.stiffness, arms=arms, damping=+foundation.damping)
+        own = GeneralizedMaxwell(+foundation.stiffness, arms=arms, damping=+foundation.damping)
         other = replace(scene, foundation=own)
         mu = solve(other.at(V)).friction_coefficient
         off = float(np.max(np.abs(mu / moving.friction_coefficient - 1.0)))

@@ -7,7 +7,7 @@ these; messages, tests and a page of the documentation are made from the table `
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kvtheory.scene.foundations import DAMPED
+from kvtheory.scene.foundations import ARMS, DAMPED, LAWS
 from kvtheory.scene.indenters import SHAPES as CLASSES
 from kvtheory.scene.indenters import Profile, Revolved
 from kvtheory.scene.model import SUPPORTS as KINDS
@@ -16,8 +16,6 @@ from kvtheory.scene.quantities import quantities
 
 SHAPES = {cls.shape: cls.words for cls in (*CLASSES.values(), Profile, Revolved)}
 """The shapes of the table, in words."""
-LAWS = "kelvin-voigt", "generalized-maxwell", DAMPED, "fractional-kelvin-voigt"
-"""The laws of the table: the kinds of foundation, and arms beside a damper."""
 SUPPORTS = tuple(KINDS)
 MOVING = tuple(name for name, cls in KINDS.items() if "depth" not in quantities(cls))
 DRIVES = "rigid", "spring"
@@ -40,8 +38,8 @@ class Scenes:
     drives: tuple[str, ...] = DRIVES
     why: str = ""
 
-    def lacking(self, shape: str, law: str, support: str, drive: str) -> list[str]:
-        """Return the conditions that a scene does not meet, in words."""
+    def lacking(self, shape: str, law: str, support: str, drive: str, kind: str = "") -> list[str]:
+        """Return the conditions that a scene does not meet, in words; `kind` is that of its foundation."""
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
@@ -53,14 +51,12 @@ class Scenes:
             if name not in valid:
                 named = _listed([f'"{each}"' for each in valid if each != DAMPED], "or")
                 why = f": {self.why}" if self.why and key == "support.kind" else ""
-                own = f'"{name}"' if name != DAMPED else "arms beside foundation.damping"
+                own = f'"{kind if name == law else name}"'
+                own = "arms beside foundation.damping" if name == DAMPED else own
                 found.append(f"holds for {key} = {named} only, not for {own}{why}")
         if drive not in self.drives:
             found.append("holds for a rigid drive only, not with drive.stiffness")
         return found
-
-
-Kind = tuple[str, str, str, str]
 
 
 class Needs:
@@ -75,11 +71,11 @@ class Needs:
 
     def __init__(self, *sets: Scenes) -> None:
         self.sets = sets
-        self.messages: dict[Kind, str] = {}
+        self.messages: dict[tuple[str, ...], str] = {}
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
-        kind = scene.kind
+        kind = *scene.kind, scene.foundation.kind
         if kind not in self.messages:
             shape = kind[0]
             # What is named, shapes or laws, is as much as holds.
@@ -115,9 +111,7 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
-lacks_scripts = Needs(
-    Scenes(QUADRATIC, (*ONE_OF_BOTH, LAWS[-1])), Scenes((*CLOSED, "circle"), KELVIN_VOIGT)
-)
+lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
 
 
 @dataclass(frozen=True)
@@ -210,7 +204,7 @@ def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
         return
     instead = ""
     if lacks in IN_MOTION and lacks_arms(scene):
-        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that approximates it'
+        prony = f'a Prony series (foundation.kind = "{ARMS}") that approximates it'
         instead = f"; `steady` holds for it, and `elements` follows {prony}"
     elif lacks in IN_MOTION:
         instead = "; `elements`, or `solve` with `at`, follows any shape and any Prony series"

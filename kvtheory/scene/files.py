@@ -149,7 +149,8 @@ def template(support: str = "dead-weight") -> str:
         )
         lines += [f"# or, {message}:", '# load = "9.80665 N/mm"']
     text = files("kvtheory.scene").joinpath("template.toml").read_text(encoding="utf-8")
-    return text.replace("# SUPPORT", "\n".join(lines)).replace("# SHAPES", ", ".join(SHAPES))
+    text = text.replace("# SHAPES", ", ".join(SHAPES)).replace("# LAWS", ", ".join(FOUNDATIONS))
+    return text.replace("# SUPPORT", "\n".join(lines))
 
 
 def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
@@ -168,7 +169,7 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
             "`scene` has an indenter made of Python functions, which a file cannot hold"
         )
     foundation, drive = scene.foundation, scene.drive
-    if foundation.arms:
+    if isinstance(foundation, GeneralizedMaxwell):
         first, unit = ("stiffness", "N/m^3") if foundation.modulus is None else ("modulus", "N/m^2")
         tables["foundation"]["arms"] = [
             [_text(getattr(arm, first), unit), _text(as_given(arm.relaxation_time), "s")]

@@ -1,16 +1,16 @@
 """Foundations: rows of independent viscoelastic elements, each defined by its relaxation function G(t).
 
-An element compressed by u exerts the pressure p(t) = int G(t - t') du/dt' dt'. Every
-foundation has its `kind`; the relaxed `stiffness` K; in addition to it the `damping` C of a damper and the
-`arms` of a Prony series; and the `slow_damping` int (G - K) dt, which governs slow sliding, with
-`retardation_time` int (G - K) dt/K.
+An element compressed by u exerts the pressure p(t) = int G(t - t') du/dt' dt'. Every foundation has its
+`kind`, the relaxed `stiffness` K, and beside this spring the `damping` C of a damper, `arms`, or a
+`springpot` of an `order`. From these follow its `law`, which decides what is known of it; the `slow_damping`
+int (G - K) dt, which governs slow sliding; and the `retardation_time` int (G - K) dt/K.
 """
 
 import copy
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
@@ -61,8 +61,10 @@ MEASURED_RANGES = (
     ("lowest_temperature", "highest_temperature"),
 )
 MEASURED = sum(MEASURED_RANGES, ())
-DAMPED = "generalized-maxwell with damping"
-"""The law of arms beside a damper, in the table of capabilities."""
+DAMPER, ARMS, SPRINGPOT = "kelvin-voigt", "generalized-maxwell", "fractional-kelvin-voigt"
+DAMPED = f"{ARMS} with damping"
+LAWS = DAMPER, ARMS, DAMPED, SPRINGPOT
+"""The laws of the table of capabilities: what is beside the spring, a damper, arms, both, or a springpot."""
 NO_DAMPER = (
     "a layer has arms alone, as its damping would not follow its thickness; expected foundation.stiffness "
     "instead of modulus, thickness and poisson_ratio, or an arm with a short relaxation time"
@@ -207,8 +209,11 @@ class _Relaxed(Part):
         default=None, beside=("lowest_temperature",),
     )  # fmt: skip
     wlf: WLF | None = None
+    kind: ClassVar[str]
     arms: ClassVar[Any] = ()
     damping: ClassVar[Any] = 0.0
+    springpot: ClassVar[bool] = False
+    order = 1.0  # not annotated, which would decide its place among the fields of a springpot
 
     def __post_init__(self) -> None:
         problems = Problems()
@@ -264,8 +269,25 @@ class _Relaxed(Part):
                 raise mistake(f"foundation.{most}", high, f"expected above foundation.{least}")
 
     def _read_arms(self, problems: Problems) -> Sequence["Arm"]:
-        """Return the arms of a Prony series, converted; other foundations have none."""
+        """Return the arms that are given as pairs, converted; none where they follow from quantities."""
         return ()
+
+    @property
+    def law(self) -> str:
+        """Its law in the table of capabilities: by what is beside the spring, whatever the kind."""
+        if self.springpot or not self.arms:
+            return SPRINGPOT if self.springpot else DAMPER
+        return DAMPED if np.any(self.damping) else ARMS
+
+    @property
+    def slow_damping(self) -> Value:
+        """C + sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
+        return sum((arm.stiffness * arm.relaxation_time for arm in self.arms), +self.damping)
+
+    @property
+    def retardation_time(self) -> Value:
+        """(C + sum K_i tau_i)/K, in s."""
+        return self.slow_damping / self.stiffness
 
     @property
     def shift_factor(self) -> Value:
@@ -303,11 +325,13 @@ class _Relaxed(Part):
 
     def plain(self, factor: float = 1.0) -> Any:
         """Return the foundation at its temperature, without layer and law, `factor` times as stiff."""
-        names = {"retardation_time", "order"} & set(quantities(self))
-        own: dict[str, Any] = {name: +getattr(self, name) for name in names}
-        if self.arms:
+        own: dict[str, Any] = {
+            name: (factor if spec.unit.startswith("N") else 1.0) * +getattr(self, name)
+            for name, spec in quantities(self).items()
+            if name not in quantities(_Relaxed)
+        }
+        if any(field.name == "arms" for field in fields(self)):
             own["arms"] = [(factor * arm.stiffness, +arm.relaxation_time) for arm in self.arms]
-            own["damping"] = factor * self.damping
         return type(self)(factor * self.stiffness, **own)
 
     def mapped(self, function: Any) -> Any:
@@ -341,17 +365,15 @@ class Foundation(_Relaxed):
     5.211e-08 5.211e-09
     """
 
-    kind: ClassVar[str] = "kelvin-voigt"
-    retardation_time: Value = quantity(
+    kind: ClassVar[str] = DAMPER
+    retardation_time: Value = quantity(  # type: ignore[misc]
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
 
     @property
-    def damping(self) -> Value:
+    def damping(self) -> Value:  # type: ignore[override]
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
-
-    slow_damping = damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,7 +417,7 @@ class GeneralizedMaxwell(_Relaxed):
     (0.01, 0.0, 300000000.0, 0.03)
     """
 
-    kind: ClassVar[str] = "generalized-maxwell"
+    kind: ClassVar[str] = ARMS
     arms: tuple[Arm, ...] = ()  # type: ignore[misc]
     damping: Value = quantity(  # type: ignore[misc]
         "N*s/m^3", "C, damping per unit area of a damper beside the arms; 0 if not given",
@@ -407,16 +429,6 @@ class GeneralizedMaxwell(_Relaxed):
             object.__setattr__(self, "arms", _arms_of(self.arms, layer=self.modulus is not None))
             return self.arms
         return ()
-
-    @property
-    def slow_damping(self) -> Value:
-        """C + sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
-        return sum((arm.stiffness * arm.relaxation_time for arm in self.arms), +self.damping)
-
-    @property
-    def retardation_time(self) -> Value:
-        """(C + sum K_i tau_i)/K, in s."""
-        return self.slow_damping / self.stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -431,11 +443,12 @@ class FractionalKelvinVoigt(_Relaxed):
     inf
     """
 
-    kind: ClassVar[str] = "fractional-kelvin-voigt"
-    retardation_time: Value = quantity(
+    kind: ClassVar[str] = SPRINGPOT
+    springpot: ClassVar[bool] = True
+    retardation_time: Value = quantity(  # type: ignore[misc]
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
-    order: Value = quantity(
+    order: Value = quantity(  # type: ignore[misc]
         "1", "alpha, order of the springpot", default=None, needed=True,
         minimum=LOWEST_ORDER, exclusive=False, maximum=1.0,
     )  # fmt: skip

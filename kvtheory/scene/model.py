@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
-from kvtheory.scene.foundations import DAMPED, FOUNDATIONS, AnyFoundation, Arm, Foundation
+from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Profile, Revolved
 from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
@@ -220,9 +220,8 @@ class Scene(Part):
         >>> Scene().kind
         ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
         """
-        foundation, drive = self.foundation, "rigid" if self.drive.rigid else "spring"
-        law = DAMPED if foundation.arms and np.any(foundation.damping) else foundation.kind
-        return self.indenter.shape, law, self.support.kind, drive
+        drive = "rigid" if self.drive.rigid else "spring"
+        return self.indenter.shape, self.foundation.law, self.support.kind, drive
 
     @property
     def held(self) -> bool:

@@ -5,15 +5,14 @@ r"""One step of the equations of motion by a Radau IIA method.
 the second one if a spring holds the indenter along x (fact F22): the base then slides under it with
 lambda = lambda_0 - x', by Y = Y_0 - x. The stages are collocation points, so that the step is one polynomial
 of v over the whole step. F has a known Jacobian, and eps d'' keeps the form in which eps -> 0 leaves F = 0 at
-every stage: the method is stiffly accurate, see `radau_iia`.
+every stage: the method is stiffly accurate, see `run.radau`.
 """
 
 import math
 from typing import Any
 
 from kvtheory.models.continuum.contact import Instant, edge, forces, pressure
-from kvtheory.models.continuum.edge_states import FREE
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import FREE, Run
 from kvtheory.scene.base_motion import evaluate
 
 NEWTON_STEPS, NEWTON_SHARE, NEWTON_STALL = 8, 1e-3, 0.5

@@ -23,8 +23,7 @@ right one; `run` describes the records.
 import math
 from typing import Any
 
-from kvtheory.models.continuum.edge_states import PEELING, SIDES
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import PEELING, SIDES, Run
 from kvtheory.scene.base_motion import evaluate
 
 SWEEP_ERROR, FARTHEST_GUESS = 1e-15, 0.75

@@ -5,8 +5,7 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import instant, motion
-from kvtheory.models.continuum.edge_states import FREE
-from kvtheory.models.continuum.run import Run, step_at
+from kvtheory.models.continuum.run import FREE, Run, step_at
 from kvtheory.records import record
 from kvtheory.scene.base_motion import END, START, evaluate
 

@@ -5,8 +5,7 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import instant
-from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import FREE, SIDES, TOUCHING, Run
 
 SUMMIT_RTOL = 1e-9
 """Relative tolerance of sigma; the margin is stationary there, so that its error is of second order."""

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
-from kvtheory.models.continuum.edge_states import STATE_NAMES
 from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
-from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.run import STATE_NAMES, Spring, StepControl
 from kvtheory.models.continuum.solver import STEP_LIMIT, Trajectory, solve
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient

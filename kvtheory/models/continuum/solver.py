@@ -30,10 +30,8 @@ from kvtheory.models.continuum import (
     surface,
 )
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.compiled import NOTHING
-from kvtheory.models.continuum.edge_states import STATE_NAMES, TOUCHING
-from kvtheory.models.continuum.following import Solver, follow
-from kvtheory.models.continuum.run import Run, Spring, StepControl
+from kvtheory.models.continuum.compiled import NOTHING, Solver, finished
+from kvtheory.models.continuum.run import STATE_NAMES, TOUCHING, Run, Spring, StepControl
 from kvtheory.records import blanks, readable, set_fields, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
@@ -313,7 +311,7 @@ def solve(
         as_arrays=r_.as_arrays, with_more_room=r_.with_more_room, walk=_walk,
         time=lambda run: float(value(run.now[0], "s")), refused=REASONS, failure=TransientError,
     )  # fmt: skip
-    return Trajectory(follow(followed, end, max_steps, fast, progress))
+    return Trajectory(finished(followed, end, max_steps, fast, progress))
 
 
 def _walk(run: Run, attempts: int) -> int:

@@ -6,13 +6,16 @@ from typing import Any
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import memory_chains as m_
 from kvtheory.models.continuum.contact import motion
-from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES, TOUCHING
 from kvtheory.models.continuum.run import (
     DONE,
+    FREE,
     FULL,
     INCONSISTENT,
     PAUSED,
+    PEELING,
+    SIDES,
     STUCK,
+    TOUCHING,
     Run,
     has_room,
     rest,

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import instant
-from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES
-from kvtheory.models.continuum.run import NODE, PLACE, step_at
+from kvtheory.models.continuum.run import FREE, NODE, PEELING, PLACE, SIDES, step_at
 from kvtheory.records import new, structured
 from kvtheory.scene import base_motion as drive_
 

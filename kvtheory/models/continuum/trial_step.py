@@ -6,9 +6,8 @@ from typing import Any
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.collocation import balances, collocate, defect_error, imbalance
 from kvtheory.models.continuum.contact import Instant, motion
-from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
 from kvtheory.models.continuum.memory_chains import summit
-from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.run import FREE, SIDES, TOUCHING, Run
 from kvtheory.scene import base_motion as b_
 
 EVENT_RESOLUTION = 1e-13

@@ -14,10 +14,8 @@ import numpy as np
 
 from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.elements import kernels
+from kvtheory.models.elements import kernels as k_
 from kvtheory.models.elements.kernels import (
-    COUNTS,
-    INDENTER,
-    REPORT,
     Constants,
     Course,
     Edges,
@@ -74,7 +72,7 @@ class ElementRow:
         self.constants, self.path, self.compiled = constants, path, False
         self.deepest, depth = kept_depth * constants.depth, constants.depth
         self.faded, tableau = np.ones(constants.law.rates.size), scheme.table
-        (now,), (counts,) = blanks(1, INDENTER), blanks(1, COUNTS)
+        (now,), (counts,) = blanks(1, k_.INDENTER), blanks(1, k_.COUNTS)
         now.mean_force = constants.weight
         self.stored = Row(
             constants=constants, tableau=tableau, fitted=scheme.fitted, deepest=self.deepest, now=now,
@@ -119,9 +117,9 @@ class ElementRow:
             return
         now, counts = self.stored.now, self.stored.counts
         stored = self.stored._replace(
-            now=structured([now], INDENTER)[0], counts=structured([counts], COUNTS)[0]
+            now=structured([now], k_.INDENTER)[0], counts=structured([counts], k_.COUNTS)[0]
         )
-        if KERNEL.prepared(stored, course, np.zeros(0, REPORT), 0, 0, 0):
+        if KERNEL.prepared(stored, course, np.zeros(0, k_.REPORT), 0, 0, 0):
             self.stored, self.compiled = stored, True
 
     @np.errstate(all="ignore")  # the kernels check the results
@@ -162,7 +160,7 @@ class ElementRow:
 
     def reports(self, count: int) -> Any:
         """Return so many blank reports."""
-        return np.zeros(count, REPORT) if self.compiled else blanks(count, REPORT)
+        return np.zeros(count, k_.REPORT) if self.compiled else blanks(count, k_.REPORT)
 
     def _undisturbed(self, first: int, width: int, strips: int) -> dict[str, Any]:
         """Return what a row has for each element and each strip, all undisturbed."""

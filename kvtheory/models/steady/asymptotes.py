@@ -20,11 +20,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady.roots import root
-from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
+from kvtheory.theory.powers import root
 
 Value = Any
 """An array, or a float."""
@@ -63,9 +62,7 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     _, _, n = _shape(scene)
     static = cf.power_law_static_load(n)
     low = Limit(static, 0.0, cf.power_law_low(n), 1.0, slow=True)
-    if isinstance(foundation, Foundation):
-        return low, Limit(1.0, 1.0, cf.power_law_high(n), 0.0, slow=False)
-    if isinstance(foundation, FractionalKelvinVoigt):
+    if foundation.springpot:
         from scipy.special import rgamma  # slow to import
 
         A = foundation.order
@@ -73,6 +70,8 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
         stiff = 2.0 * (2.0 - A) ** (2.0 - A) * rgamma(4.0 - A)
         fast = Limit(stiff, A, 2.0 * A * (3.0 - A) / (4.0 - A), 0.0, slow=False)
         return low._replace(friction=share, slope=A), fast
+    if not foundation.arms:
+        return low, Limit(1.0, 1.0, cf.power_law_high(n), 0.0, slow=False)
     glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
     falls = sum(arm.stiffness / arm.relaxation_time for arm in foundation.arms)  # -G'(0)
     friction = 0.8 * falls / glassy * foundation.retardation_time

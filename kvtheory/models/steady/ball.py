@@ -26,11 +26,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.steady.roots import converge
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
 from kvtheory.theory import closed_forms as cf
+from kvtheory.theory.powers import converge
 
 Array = NDArray[np.float64]
 

@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import viscoelastic
-from kvtheory.models.steady.roots import converge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
 from kvtheory.theory.laws import Law
+from kvtheory.theory.powers import converge
 
 Array = NDArray[np.float64]
 

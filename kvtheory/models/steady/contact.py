@@ -27,18 +27,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.steady.double_exponential import (
-    OF_LINE,
-    ROUNDING,
-    SMALLEST,
-    Quantities,
-    Value,
-    integral,
-    largest,
-    least,
-    pick,
-    some,
-)
+from kvtheory.models.steady import double_exponential as d_
+from kvtheory.models.steady.double_exponential import Quantities, Value
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Convex
 
@@ -72,7 +62,7 @@ class Contact:
         self.rolls = rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
         self.x, x_moves = x, _ = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
         self.guess, self.x_moves = (a, x), rolls * x_moves
-        below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
+        below, error = d_.integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
         # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
         self.u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
         length = a + rolls * x
@@ -80,7 +70,7 @@ class Contact:
         self.load_error = error * below / self.load  # relative, at this very depth
         self.load_slope, self.load_curvature = length + l_r, a_moves + self.x_moves
         # Relative error of the depth equivalent to rounding: of x_LE, and of u.
-        self.noise = ROUNDING * (1.0 + a / (a_moves * depth))
+        self.noise = d_.ROUNDING * (1.0 + a / (a_moves * depth))
 
     def friction(self) -> tuple[Value, Value, Value]:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
@@ -90,7 +80,9 @@ class Contact:
     def _drag(self) -> tuple[Value, Value, Value]:
         """Return int h'^2 dx with its relative error, and u_TE/l_r."""
         shape, rolls, a, x = self.shape, self.rolls, self.half_length, self.x
-        squared = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks)
+        squared = d_.integral(
+            lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
+        )
         left = rolls * shape.slope(x) + (1.0 - rolls) * self.depth / (self.l_r + rolls)
         return *squared, left
 
@@ -113,7 +105,7 @@ class Contact:
         peak = _peak(shape, l_r, depth, a)
         edge = depth * a_moves / a
         # The trailing edge is exactly 0 at a corner; at a rounded tip, 0 means too close to be resolved.
-        lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
+        lost = d_.pick((rolls * x < d_.SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
         values = a, -a, rolls * x, load, l_r * total, peak, drag / total
         own = {"trailing_edge": lost, "load": self.load_error, "friction_force": drag_error}
         powers = (
@@ -122,16 +114,20 @@ class Contact:
             depth * x_moves / x,
             depth * self.load_slope / load,
             depth * (left + at_a) / total,
-            depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
+            depth / peak * -d_.least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
             depth * (by_a + abs(by_x)) / total,
         )
-        return dict(zip(OF_LINE, values, strict=True)), own, dict(zip(OF_LINE, powers, strict=True))
+        return (
+            dict(zip(d_.OF_LINE, values, strict=True)),
+            own,
+            dict(zip(d_.OF_LINE, powers, strict=True)),
+        )
 
 
 class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
-    in_columns, floor = True, ROUNDING
+    in_columns, floor = True, d_.ROUNDING
     """Whether columns of depths are solved together; relative rounding error of every quantity."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
@@ -175,7 +171,7 @@ class ConvexLine:
 
     def start(self, depth: Value) -> Value:
         """Return where the search for the half length of a contact at a depth begins."""
-        if not largest(depth - self.deepest) < 0.0:
+        if not d_.largest(depth - self.deepest) < 0.0:
             raise QuadratureError("the leading edge lies beyond the indenter's reach")
         return _spaced(self.shape, depth, depth, lambda x: 1.0)
 
@@ -189,16 +185,16 @@ def _spaced(
 ) -> Value:
     """Return the first of spaced points x where h times a width is the load, or the last."""
     most = NEAR_REACH * shape.reach
-    x = least(scale / strides[0], most)
+    x = d_.least(scale / strides[0], most)
     for stride in strides:
-        wider = least(x * stride, most)
-        x = pick(shape.height(wider) * width(wider) < load, wider, x)
-    return least(x * strides[-1], most)
+        wider = d_.least(x * stride, most)
+        x = d_.pick(shape.height(wider) * width(wider) < load, wider, x)
+    return d_.least(x * strides[-1], most)
 
 
 def _within(shape: Convex, a: Value, factor: Value) -> Value:
     """Return a half length times a factor, at most halfway to the reach."""
-    return least(a * factor, 0.5 * (a + shape.reach))
+    return d_.least(a * factor, 0.5 * (a + shape.reach))
 
 
 def _leading(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
@@ -207,10 +203,10 @@ def _leading(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
     for _ in range(MOST_STEPS):
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
-        moves = pick(active, 1.0 / slope, moves)
-        a = pick(active, _within(shape, a, factor), a)
+        moves = d_.pick(active, 1.0 / slope, moves)
+        a = d_.pick(active, _within(shape, a, factor), a)
         active = active & (abs(depth / height - 1.0) >= LINEAR)
-        if not some(active):
+        if not d_.some(active):
             return a, moves
     raise QuadratureError("the leading edge lies beyond the indenter's reach")
 
@@ -223,11 +219,11 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
         total = shape.height(x) + l_r * slope
         rise = slope * (x + l_r * shape.bend(x))
         factor = (depth / total) ** (total / rise)
-        moves = pick(active, x / rise, moves)
+        moves = d_.pick(active, x / rise, moves)
         # Where the slope hardly changes a step may overshoot the tip; the next ones approach from there.
-        x = pick(active, least(-least(-x * factor, -VERTEX * a), a), x)
+        x = d_.pick(active, d_.least(-d_.least(-x * factor, -VERTEX * a), a), x)
         active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
-        if not some(active):
+        if not d_.some(active):
             return x, moves
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
@@ -238,15 +234,15 @@ def _peak(shape: Convex, l_r: Value, depth: Value, a: Value) -> Value:
     Every iterate is a pressure of this contact, so that the highest of them is never too high.
     """
     peak, last = l_r * shape.slope(a), (a, 0.0 * l_r)
-    y, active = least(l_r, a) + FLOOR * a, l_r >= 0.0
+    y, active = d_.least(l_r, a) + FLOOR * a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
-        peak = -least(-peak, -(depth - shape.height(y) + l_r * slope))
+        peak = -d_.least(-peak, -(depth - shape.height(y) + l_r * slope))
         to = l_r * shape.bend(y) + FLOOR * a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        active = active & (abs(least(to, a) / y - 1.0) >= PEAK_RTOL)
-        if not some(active):
+        active = active & (abs(d_.least(to, a) / y - 1.0) >= PEAK_RTOL)
+        if not d_.some(active):
             break
-        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), a), y)
+        y = d_.pick(active, d_.least(abs((to - gain * y) / (1.0 - gain + TINY)), a), y)
     return peak

@@ -34,7 +34,6 @@ from kvtheory.models.steady.double_exponential import (
     share_lost,
 )
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.indenters import Convex
 from kvtheory.scene.model import Scene
 
@@ -197,7 +196,7 @@ def memory_of(scene: Scene) -> Memory:
     foundation, speed = scene.foundation, abs(scene.drive.final_velocity)
     if speed == 0.0:
         return None
-    if isinstance(foundation, FractionalKelvinVoigt):
+    if foundation.springpot:
         return Springpot(speed * foundation.retardation_time, foundation.order)
     pairs = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
     arms = np.reshape(pairs, (-1, 2))

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.roots import cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
+from kvtheory.theory.powers import cube_root
 
 HALLEY_STEPS = 2
 """The initial guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""

@@ -161,7 +161,7 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
         glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
         beside = np.where(foundation.damping > 0.0, foundation.damping / glassy, np.inf)
         fast = np.minimum(fast, beside)
-    order = getattr(foundation, "order", 1.0)
+    order = foundation.order
     kappa = 0.0 if base.held else base.support.spring * (rest.depth / rest.load)
     beyond = np.minimum((decades + np.log10(1.0 + kappa)) / order, MOST_DECADES)
     start = np.log10(rest.half_length / slow) - np.minimum(decades / order, MOST_DECADES)

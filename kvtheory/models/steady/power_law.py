@@ -23,10 +23,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.roots import root
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
+from kvtheory.theory.powers import root
 
 Array = NDArray[np.float64]
 

@@ -32,7 +32,7 @@ from kvtheory.results import (
     units_for,
 )
 from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_limits
-from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
+from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -136,7 +136,7 @@ def lines(scene: Scene) -> list[Line]:
     shape, support = scene.indenter.shape, scene.support.kind
     line = scene.indenter.per_width
     low, high = (partial(_limit, MU, regime) for regime in ("low", "high"))
-    if isinstance(scene.foundation, FractionalKelvinVoigt):
+    if scene.foundation.springpot:
         slow, fast = ON_SPRINGPOT if line else ON_SPRINGPOT_BALL
         return [Line("L1", MU, "low", None, slow, low), Line("L2", MU, "high", None, fast, high)]
     kind = shape if shape in FIXED else "power-law"
@@ -223,8 +223,8 @@ def report(
             certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
         )  # fmt: skip
     shown = lines(scene)
-    springpot = isinstance(scene.foundation, FractionalKelvinVoigt)
-    monotonic = not scene.foundation.arms and (scene.indenter.per_width or not springpot)
+    foundation = scene.foundation
+    monotonic = not foundation.arms and (scene.indenter.per_width or not foundation.springpot)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         critical = np.broadcast_to(asymptotes.critical_velocity(scene), scene.shape)
         truth = solve_exact(scene)
@@ -289,11 +289,8 @@ def _ranges(
 
     A range ends where the error first passes the tolerance, from the limit on, if it does.
     """
-    decades, order = (
-        ON_ARMS if scene.foundation.arms else DECADES,
-        getattr(scene.foundation, "order", 1.0),
-    )
-    far = np.broadcast_to(np.minimum(decades / order, MOST_DECADES), critical.shape)
+    decades = (ON_ARMS if scene.foundation.arms else DECADES) / scene.foundation.order
+    far = np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
     grid = far[..., np.newaxis] * np.linspace(-1.0, 1.0, 2 if monotonic else POINTS)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
     wide = wide.at(critical[..., np.newaxis] * 10.0**grid)

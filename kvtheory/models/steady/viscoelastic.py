@@ -19,11 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.roots import converge, cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
 from kvtheory.theory.laws import RELATIVE_ERROR, Fractional, Law, Moments, Prony
+from kvtheory.theory.powers import converge, cube_root
 
 Array = NDArray[np.float64]
 
@@ -49,7 +48,7 @@ def law(scene: Scene) -> Law:
 
     foundation, V = scene.foundation, np.abs(full(scene.drive.final_velocity))
     K = full(foundation.stiffness)
-    if isinstance(foundation, FractionalKelvinVoigt):
+    if foundation.springpot:
         return Fractional(K, foundation.retardation_time, foundation.order).over(V)
     damping = full(foundation.damping) if np.any(foundation.damping) else None
     arms = [(full(arm.stiffness), full(arm.relaxation_time)) for arm in foundation.arms]

@@ -10,7 +10,7 @@ has
     A_i' = d' + lambda B_i - A_i/T_i,   B_i' = 2 lambda - B_i/T_i,
 
 A_i and B_i starting at zero; those in contact at rest lack the term in brackets. Where A_i and B_i were
-restarted at s_0 (see `restarts`), elements that entered before also have the stress carried over from before,
+restarted at s_0 (see `segments`), elements that entered before also have the stress carried over from before,
 e^-(s - s_0)/T_i k_i (A_i - xi B_i)(s_0). The moments F_i and M_i of s_i over the contact, from which both
 forces follow (F33), obey, with I_n = int xi^n dxi, summed over both edges,
 
@@ -36,8 +36,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.edge_states import PEELING, SIDES, TOUCHING
 from kvtheory.models.continuum.prony.records import NEVER, Run
+from kvtheory.models.continuum.run import PEELING, SIDES, TOUCHING
 from kvtheory.scene.base_motion import DISPLACEMENT, START, evaluate
 
 ITERATIONS, EDGE_ERROR, STALLED = 40, 4e-15, 1e-11

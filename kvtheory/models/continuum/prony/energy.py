@@ -30,20 +30,10 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum.edge_states import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.energy import MOVING, Ledger, entries
-from kvtheory.models.continuum.prony.records import (
-    ARM,
-    ARM_STATE,
-    MODE,
-    NEVER,
-    PIECE,
-    POLYNOMIAL,
-    SEGMENT,
-    named,
-    together,
-)
+from kvtheory.models.continuum.prony import records as r_
 from kvtheory.models.continuum.prony.step import forces, moments
+from kvtheory.models.continuum.run import FREE, PEELING, TOUCHING
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as drive_
 
@@ -72,13 +62,13 @@ class Ground:
         run, self.motion = motion.run, motion
         count = motion.counts.steps
         self.steps = motion.steps
-        self.polynomials = named(together(run.polynomials, POLYNOMIAL)[:count])
-        self.memory = named(together(run.memory, ARM_STATE)[:count])
-        self.segments = structured(run.segments[: motion.counts.segments], SEGMENT)
-        self.pieces, self.arms = np.asarray(run.pieces), named(together(run.arms, ARM))
+        self.polynomials = r_.named(r_.together(run.polynomials, r_.POLYNOMIAL)[:count])
+        self.memory = r_.named(r_.together(run.memory, r_.ARM_STATE)[:count])
+        self.segments = structured(run.segments[: motion.counts.segments], r_.SEGMENT)
+        self.pieces, self.arms = np.asarray(run.pieces), r_.named(r_.together(run.arms, r_.ARM))
         self.modes, self.paused = (
-            named(together(run.modes, MODE)),
-            named(together(run.clock, PIECE)).paused,
+            r_.named(r_.together(run.modes, r_.MODE)),
+            r_.named(r_.together(run.clock, r_.PIECE)).paused,
         )
         self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
@@ -104,17 +94,17 @@ class Ground:
     def _parts(self, index: int) -> list[tuple[int, int, bool]]:
         """Return the segments that a step finds, the edge that cuts each, and whether it is in contact."""
         step, segments, found = self.steps[index], self.segments, []
-        peeled = [s["segment"] if s["state"] == PEELING else NEVER for s in step["sides"]]
+        peeled = [s["segment"] if s["state"] == PEELING else r_.NEVER for s in step["sides"]]
         for number in self.chain[step["first"] : step["first"] + step["count"]].tolist():
             cuts = [k for k in range(2) if peeled[k] == number]
-            found.append((number, 2 if len(cuts) == 2 else (cuts or [NEVER])[0], True))
+            found.append((number, 2 if len(cuts) == 2 else (cuts or [r_.NEVER])[0], True))
         for k, side in enumerate(step["sides"]):
             number = int(side["own"] if side["state"] == PEELING else side["segment"])
-            edge = NEVER if side["state"] in (PEELING, FREE) else k
-            while number != NEVER:
-                if segments[number]["step"] != NEVER:
+            edge = r_.NEVER if side["state"] in (PEELING, FREE) else k
+            while number != r_.NEVER:
+                if segments[number]["step"] != r_.NEVER:
                     found.append((number, edge, False))
-                number, edge = int(segments[number]["next"]), NEVER
+                number, edge = int(segments[number]["next"]), r_.NEVER
         return found
 
     def place(self, edge: Any, sigma: Array) -> tuple[Array, Array, Any, Array]:
@@ -167,7 +157,7 @@ class Ground:
             return found
         owner, number, cut, inside = (np.array(column) for column in zip(*rows, strict=True))
         segment = self.segments[number]
-        rest = segment["step"] == NEVER
+        rest = segment["step"] == r_.NEVER
         low, high = segment["a"].copy(), np.minimum(segment["b"], s[owner])
         for side in range(2):
             here = np.nonzero(~rest & ((cut == side) | (cut == 2)))[0]
@@ -329,8 +319,8 @@ class Ground:
         index, found = self.step_at(s), np.zeros_like(s)
         for k in range(2):
             side = self.steps["sides"][index, k]
-            number = np.where(side["state"] == TOUCHING, side["segment"], NEVER)
-            at = np.nonzero((number != NEVER) & (self.segments["step"][number] != NEVER))[0]
+            number = np.where(side["state"] == TOUCHING, side["segment"], r_.NEVER)
+            at = np.nonzero((number != r_.NEVER) & (self.segments["step"][number] != r_.NEVER))[0]
             if not at.size:
                 continue
             segment = self.segments[number[at]]

@@ -3,24 +3,13 @@
 import math
 from typing import Any, NamedTuple
 
-from kvtheory.models.continuum.edge_states import FREE, PEELING
 from kvtheory.models.continuum.evaluation import forward
-from kvtheory.models.continuum.prony.contact import (
-    Motion,
-    accumulated,
-    free,
-    integral,
-    motion,
-    over,
-    past,
-    pressed,
-    total,
-    value,
-)
+from kvtheory.models.continuum.prony import contact as c_
+from kvtheory.models.continuum.prony.contact import Motion
 from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.models.continuum.prony.step import forces
 from kvtheory.models.continuum.prony.walk import walk
-from kvtheory.models.continuum.run import step_at
+from kvtheory.models.continuum.run import FREE, PEELING, step_at
 from kvtheory.scene.base_motion import evaluate
 
 
@@ -48,19 +37,19 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
         s = times[i]
         index = step_at(run, s)
         step, memory = run.steps[index], run.memory
-        at, c = motion(run, index, s), run.given.damper
+        at, c = c_.motion(run, index, s), run.given.damper
         theta = at.theta
         first = second = 0.0
-        for k in over(run.given.arms):
-            first += total(past(memory.force, index, k, theta))
-            second += total(past(memory.moment, index, k, theta))
+        for k in c_.over(run.given.arms):
+            first += c_.total(c_.past(memory.force, index, k, theta))
+            second += c_.total(c_.past(memory.moment, index, k, theta))
         edges, along = run.polynomials.edges[index], run.polynomials.offset_rate[index]
-        l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
+        l, r = c_.value(edges[:, 0], theta), c_.value(edges[:, 1], theta)
         found.depth[i], found.depth_rate[i] = at.d, at.v
         found.sliding_velocity[i], found.way[i] = at.number, at.Y
         found.velocity[i] = evaluate(run.pieces[step.piece], s)[1]
-        found.offset[i] = step.along + step.lasts * integral(along, theta)
-        found.offset_rate[i] = value(along, theta)
+        found.offset[i] = step.along + step.lasts * c_.integral(along, theta)
+        found.offset_rate[i] = c_.value(along, theta)
         damped = c * at.v, 2.0 * c * at.number
         f_z, f_x = forces(l, r, at.d, damped, first, second)
         found.normal_force[i], found.friction_force[i] = f_z, f_x
@@ -75,7 +64,7 @@ def states(run: Run, times: Any, found: Any, peaks: bool) -> None:
             found.edge_states[i, side] = step.sides[side].state
         found.peak_pressure[i] = 0.0
         if peaks:
-            accumulated(run, index, theta)
+            c_.accumulated(run, index, theta)
             found.peak_pressure[i] = peak(run, index, Contact(at, l, r))
 
 
@@ -87,7 +76,7 @@ def pressure_of(run: Run, at: Contact, number: int, place: float) -> float:
     segment = run.segments[number]
     at_rest = segment.step == NEVER
     index = NEVER if at_rest else step_at(run, place)
-    p, xi = pressed(run, at.motion, place + at.motion.Y, segment.edge, index, place)
+    p, xi = c_.pressed(run, at.motion, place + at.motion.Y, segment.edge, index, place)
     slack = 1e-12 * (1.0 + abs(at.motion.Y))
     return p if at.l - slack <= xi <= at.r + slack else -math.inf
 
@@ -205,8 +194,8 @@ def instant_of(run: Run, number: int, s: float, X: float) -> float:
 
 def _place(run: Run, edge: int, s: float) -> float:
     index = step_at(run, s)
-    at = motion(run, index, s)
-    return value(run.polynomials.edges[index, :, edge], at.theta) - at.Y
+    at = c_.motion(run, index, s)
+    return c_.value(run.polynomials.edges[index, :, edge], at.theta) - at.Y
 
 
 def pressure(run: Run, at: Contact, xi: float) -> float:
@@ -216,7 +205,7 @@ def pressure(run: Run, at: Contact, xi: float) -> float:
     step = run.steps[index]
     if not at.l <= xi <= at.r:
         return 0.0
-    accumulated(run, index, (s - step.start) / step.span)
+    c_.accumulated(run, index, (s - step.start) / step.span)
     largest = 0.0
     for i in range(step.first, step.first + step.count):
         segment = run.segments[run.chain[i]]
@@ -245,7 +234,7 @@ def compression(run: Run, at: Contact, xi: float) -> float:
             segment = run.segments[number]
             sigma = math.nan if segment.step == NEVER else instant_of(run, number, s, X)
             if not math.isnan(sigma):
-                gap, _ = free(run, at.motion, segment.edge, step_at(run, sigma), sigma)
+                gap, _ = c_.free(run, at.motion, segment.edge, step_at(run, sigma), sigma)
                 return gap + d - xi * xi
             number = segment.next
     return 0.0
@@ -267,7 +256,7 @@ def perform(task: int, run: Run, attempts: int, times: Any, found: Any, profile:
         states(one, times, found, task == STATES)
     else:
         l, r = found.edges[0, 0], found.edges[0, 1]
-        at = Contact(motion(one, step_at(one, times[0]), times[0]), l, r)
+        at = Contact(c_.motion(one, step_at(one, times[0]), times[0]), l, r)
         for i in range(1, len(times)):
             if task == PRESSURE:
                 profile[i] = pressure(one, at, times[i])

@@ -12,24 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.edge_states import FREE, SIDES, TOUCHING
-from kvtheory.models.continuum.prony.contact import (
-    GOLDEN,
-    Motion,
-    at_far_end,
-    derivative,
-    edge_at,
-    free,
-    motion,
-    over,
-    present,
-    step_of,
-    untouched,
-    value,
-)
+from kvtheory.models.continuum.prony import contact as c_
+from kvtheory.models.continuum.prony.contact import Motion
 from kvtheory.models.continuum.prony.records import NEVER, Run
 from kvtheory.models.continuum.prony.segments import aim, begin, copy, cut, end, here, lay, turn
 from kvtheory.models.continuum.prony.step import prepare, solve
+from kvtheory.models.continuum.run import FREE, SIDES, TOUCHING
 
 CLOSED = 0.03
 """Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens at a
@@ -70,7 +58,7 @@ def time_left(run: Run) -> float:
     if now.steps == 0:
         return math.inf
     edges = run.polynomials.edges[now.steps - 1]
-    rate = derivative(edges[:, 1], 1.0) - derivative(edges[:, 0], 1.0)
+    rate = c_.derivative(edges[:, 1], 1.0) - c_.derivative(edges[:, 0], 1.0)
     if not rate < 0.0 or not now.smooth:
         return math.inf
     width = now.sides[1].xi - now.sides[0].xi
@@ -94,11 +82,11 @@ def close(run: Run, span: float) -> bool:
     stages, j = run.arm_stages, run.given.stages - 1
     if not _without_forces(run, 0.5 * (l + r)):
         return False
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         mean = 0.5 * (run.state.stress_at_edge[i, 0] + run.state.stress_at_edge[i, 1])
         stages.stress_at_edge[i, j, 0] = stages.stress_at_edge[i, j, 1] = mean
         stages.force[i, j] = stages.moment[i, j] = 0.0 * mean
-    Y = motion(run, now.steps, now.s + span).Y
+    Y = c_.motion(run, now.steps, now.s + span).Y
     end_with(run, l, r, X + Y, X + Y)
     return True
 
@@ -111,7 +99,7 @@ def fly(run: Run) -> None:
         side.segment, side.own, side.near = end(run, k), NEVER, here(run, k)
         side.state, now.kinked[k] = FREE, 1
     now.count, now.smooth = 0, False
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         run.state.force[i] = run.state.moment[i] = 0.0
         for k in range(2):
             run.state.stress_at_edge[i, k] = 0.0
@@ -124,7 +112,7 @@ def _without_forces(run: Run, xi: float) -> bool:
         now.sides[k].state = FREE
         for j in range(n):
             run.stages.edges[j, k] = xi
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         for j in range(n):
             run.arm_stages.force[i, j] = run.arm_stages.moment[i, j] = 0.0
             for k in range(2):
@@ -199,8 +187,8 @@ def _gap_above(run: Run, number: int, at: Motion, enough: float) -> tuple[float,
     found, best, index, x = math.inf, part.a, part.step, part.a
     before, low, high = part.a, part.a, part.b
     while True:
-        index = step_of(run, part.edge, index, x)
-        gap, _ = free(run, at, part.edge, index, x)
+        index = c_.step_of(run, part.edge, index, x)
+        gap, _ = c_.free(run, at, part.edge, index, x)
         if gap < found:
             found, best, low, high = gap, x, before, math.inf
         high = min(high, x) if x > best else high
@@ -217,8 +205,8 @@ def _refined(
     part, (low, best, high) = run.segments[number], between
     for _ in range(REFINED):
         wide = high - best > best - low
-        x = best + GOLDEN * (high - best if wide else low - best)
-        gap, _ = free(run, at, part.edge, step_of(run, part.edge, part.step, x), x)
+        x = best + c_.GOLDEN * (high - best if wide else low - best)
+        gap, _ = c_.free(run, at, part.edge, c_.step_of(run, part.edge, part.step, x), x)
         if gap < found:
             low, high = (best, high) if wide else (low, best)
             found, best = gap, x
@@ -234,7 +222,7 @@ def touches_at(run: Run, theta: float, number: int, x: float) -> float:
     step, low, high = run.steps[run.now.steps], 0.0, theta
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        at = motion(run, run.now.steps, step.start + middle * step.span)
+        at = c_.motion(run, run.now.steps, step.start + middle * step.span)
         if _gap_at(run, number, x, at) > 0.0:
             low = middle
         else:
@@ -245,27 +233,27 @@ def touches_at(run: Run, theta: float, number: int, x: float) -> float:
 def _gap_at(run: Run, number: int, x: float, at: Motion) -> float:
     """Return the gap above an element, and write its state."""
     if number == NEVER or run.segments[number].step == NEVER:
-        untouched(run)
+        c_.untouched(run)
         return float((x + at.Y) * (x + at.Y) - at.d)
     part = run.segments[number]
-    return free(run, at, part.edge, step_of(run, part.edge, part.step, x), x)[0]
+    return c_.free(run, at, part.edge, c_.step_of(run, part.edge, part.step, x), x)[0]
 
 
 def land(run: Run, side: int, number: int, x: float) -> None:
     """Begin a contact of no width above an element; both edges touch, and move over the free ground."""
     now = run.now
-    Y = present(run).Y
-    _gap_at(run, number, x, present(run))
+    Y = c_.present(run).Y
+    _gap_at(run, number, x, c_.present(run))
     X = x
     if number != NEVER and run.segments[number].step != NEVER:
         part = run.segments[number]
-        index = step_of(run, part.edge, part.step, x)
-        then = motion(run, index, x)
-        X = value(run.polynomials.edges[index, :, part.edge], then.theta) - then.Y
+        index = c_.step_of(run, part.edge, part.step, x)
+        then = c_.motion(run, index, x)
+        X = c_.value(run.polynomials.edges[index, :, part.edge], then.theta) - then.Y
     for k in range(2):
         now.sides[k].xi, now.sides[k].sigma = X + Y, x
         now.sides[k].compression, now.sides[k].rise = now.compression, now.rise
-        for i in over(run.given.arms):
+        for i in c_.over(run.given.arms):
             run.state.stress_at_edge[i, k] = run.element.stress[i]
     inward, part_of = now.sides[1 - side].segment, now.sides[side].segment
     outer = now.sides[side].near
@@ -311,21 +299,21 @@ def open_contact(run: Run, span: float) -> bool:
     if not _without_forces(run, xi):
         return False
     stages, arm_stages, j = run.stages, run.arm_stages, n - 1
-    at = motion(run, now.steps, now.s + span)
+    at = c_.motion(run, now.steps, now.s + span)
     for k in range(2):
         side = now.sides[k]
         side.state = TOUCHING
-        while at_far_end(run, k, at, xi) < 0.0:  # it opens over more than one segment
+        while c_.at_far_end(run, k, at, xi) < 0.0:  # it opens over more than one segment
             aim(run, k, int(run.segments[side.segment].next))
-        place, index, sigma = edge_at(run, k, at, xi, side.index, side.sigma)
+        place, index, sigma = c_.edge_at(run, k, at, xi, side.index, side.sigma)
         if not abs(place) < math.inf:
             return False
         stages.edges[j, k], stages.entry_step[j, k], stages.entry_time[j, k] = place, index, sigma
         stages.compression[j, k], stages.rise[j, k] = now.compression, now.rise
-        for i in over(run.given.arms):
+        for i in c_.over(run.given.arms):
             arm_stages.stress_at_edge[i, j, k] = run.element.stress[i]
     l, r = stages.edges[j, 0], stages.edges[j, 1]
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         first, second = arm_stages.stress_at_edge[i, j, 0], arm_stages.stress_at_edge[i, j, 1]
         arm_stages.force[i, j] = 0.5 * (r - l) * (first + second)
         arm_stages.moment[i, j] = 0.5 * (r - l) * (l * first + r * second)

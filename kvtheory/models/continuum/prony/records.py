@@ -6,9 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.edge_states import SIDES, TOUCHING
-from kvtheory.models.continuum.radau_iia import radau, stages_for
-from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.run import SIDES, TOUCHING, Spring, StepControl, radau, stages_for
 from kvtheory.records import blanks, new, record, structured
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion

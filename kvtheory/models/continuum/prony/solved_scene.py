@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum.edge_states import FREE
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
     FLOOR,
@@ -22,7 +21,7 @@ from kvtheory.models.continuum.error_estimate import (
 )
 from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
-from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.run import FREE, StepControl
 from kvtheory.models.continuum.solved_scene import (
     SERIES,
     STEPS_A_PIECE,

@@ -12,18 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.continuum.edge_states import FREE, PEELING
-from kvtheory.models.continuum.prony.contact import (
-    Motion,
-    base,
-    edge_at,
-    over,
-    present,
-    time_at,
-    total,
-    value,
-)
+from kvtheory.models.continuum.prony import contact as c_
+from kvtheory.models.continuum.prony.contact import Motion
 from kvtheory.models.continuum.prony.records import Run
+from kvtheory.models.continuum.run import FREE, PEELING
 
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
@@ -56,7 +48,7 @@ def prepare(run: Run, span: float) -> None:
     """Begin a step of length `span` from the present state, and make the filters of the arms."""
     now, n, step = run.now, run.given.stages, run.steps[run.now.steps]
     step.start, step.span, step.depth, step.along, step.piece = now.s, span, now.d, now.x, now.piece
-    step.time = time_at(run, now.piece, now.s)
+    step.time = c_.time_at(run, now.piece, now.s)
     step.lasts = 0.0 if run.clock.paused[now.piece] else span
     step.first, step.count, step.restart = now.first, now.count, now.restart
     for k in range(2):
@@ -67,13 +59,13 @@ def prepare(run: Run, span: float) -> None:
     for j in range(n):
         after = stages.node[j] * span
         stages.s[j] = now.s + after
-        stages.time[j] = time_at(run, now.piece, now.s + after)
+        stages.time[j] = c_.time_at(run, now.piece, now.s + after)
         for k in range(2):
             side = now.sides[k]
             stages.entry_step[j, k] = side.index
             stages.entry_time[j, k] = side.sigma + side.pace * after
             stages.edges[j, k] = side.xi
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         filter_of(run, i, step.lasts)
 
 
@@ -240,7 +232,7 @@ def guess_rate(run: Run, first: int, powers: Any, begin: float) -> None:
         if now.smooth:
             last = run.steps[now.steps - 1]
             theta = (float(run.stages.s[j]) - last.start) / last.span
-            change[first + j] = value(powers, theta) - begin
+            change[first + j] = c_.value(powers, theta) - begin
 
 
 def evaluate_stages(run: Run, free: int) -> bool:
@@ -278,14 +270,14 @@ def place(run: Run, free: int) -> bool:
                 x += span * run.method.A[j, k] * change[free + k]
         stages.depth_rate[j] = now.v + (change[j] if free else 0.0)
         stages.offset_rate[j] = now.w + (change[free + j] if given.sprung else 0.0)
-        Y, number, _ = base(run, now.piece, stages.s[j])
+        Y, number, _ = c_.base(run, now.piece, stages.s[j])
         stages.depth[j], stages.offset[j] = d, x
         stages.way[j], stages.sliding_velocity[j] = Y - x, number - stages.offset_rate[j]
         if not (d > 0.0 or flies) or not abs(d) < math.inf:
             return False
     interpolate_rates(run)
     memory, index = run.memory, now.steps
-    for i in over(given.arms):
+    for i in c_.over(given.arms):
         depth, slide = state.accumulated_depth[i], state.accumulated_slide[i]
         for j in range(n):
             arm.source[i, j] = span * 2.0 * stages.sliding_velocity[j]
@@ -316,7 +308,7 @@ def interpolate_edge(run: Run, k: int) -> float:
 def find_edge(run: Run, k: int) -> bool:
     """Find an edge at the stages, what is there, and its velocity through the material."""
     n, stages, arm, element = run.given.stages, run.stages, run.arm_stages, run.element
-    side, index, everything = run.now.sides[k], run.now.steps, over(run.given.arms)
+    side, index, everything = run.now.sides[k], run.now.steps, c_.over(run.given.arms)
     for j in range(n):
         for i in everything:
             element.accumulated_depth[i] = arm.accumulated_depth[i, j]
@@ -325,7 +317,7 @@ def find_edge(run: Run, k: int) -> bool:
             stages.s[j], stages.time[j], stages.depth[j], stages.depth_rate[j], stages.way[j],
             stages.sliding_velocity[j], stages.node[j],
         )  # fmt: skip
-        xi, step, sigma = edge_at(
+        xi, step, sigma = c_.edge_at(
             run, k, at, stages.edges[j, k], int(stages.entry_step[j, k]), stages.entry_time[j, k]
         )
         if not abs(xi) < math.inf:
@@ -357,10 +349,10 @@ def collect(run: Run) -> None:
     """Evaluate the moments at the stages: first F_i, of which M_i has a share."""
     arm, state = run.arm_stages, run.state
     collect_sources(run, False)
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         relax(run, i, arm.force, state.force[i])
     collect_sources(run, True)
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         relax(run, i, arm.moment, state.moment[i])
 
 
@@ -379,7 +371,7 @@ def collect_sources(run: Run, of_moments: bool) -> None:
         change = v * I_0 - 2.0 * number * I_1
         if of_moments:
             first, second, change = l * first, r * second, v * I_1 - 2.0 * number * I_2
-        for i in over(run.given.arms):
+        for i in c_.over(run.given.arms):
             at_edges = first * arm.stress_at_edge[i, j, 0] + second * arm.stress_at_edge[i, j, 1]
             arm.source[i, j] = run.arms.stiffness[i] * (span * change) + at_edges
             if of_moments:
@@ -397,9 +389,9 @@ def balance(run: Run, free: int) -> None:
     span, stages, arm, c = run.steps[run.now.steps].lasts, run.stages, run.arm_stages, given.damper
     for j in range(n):
         first = second = 0.0
-        for i in over(given.arms):
-            first += total(arm.force[i, j])
-            second += total(arm.moment[i, j])
+        for i in c_.over(given.arms):
+            first += c_.total(arm.force[i, j])
+            second += c_.total(arm.moment[i, j])
         d, x = float(stages.depth[j]), float(stages.offset[j])
         damped = c * stages.depth_rate[j], 2.0 * c * stages.sliding_velocity[j]
         f_z, f_x = forces(stages.edges[j, 0], stages.edges[j, 1], d, damped, first, second)
@@ -428,8 +420,8 @@ def linearize(run: Run, free: int, size: int) -> None:
         for k in range(n):
             share = given.damper if j == k else 0.0
             J_0, J_1, J_2, _ = moments(edges[k, 0], edges[k, 1])
-            for i in over(given.arms):
-                share += span * total(run.arms.stiffness[i] * run.filters[i, j, k])
+            for i in c_.over(given.arms):
+                share += span * c_.total(run.arms.stiffness[i] * run.filters[i, j, k])
             of_v, across, of_w = share * J_0, share * J_1, share * J_2
             step = span * run.method.A[j, k]
             if free:
@@ -456,21 +448,23 @@ def size_of(run: Run) -> float:
     for k in range(2):
         largest = max(largest, interpolate_edge(run, k))
         moving = max(moving, abs(now.sides[k].xi))
-    at = present(run)
+    at = c_.present(run)
     edge_pressure = given.damper * (abs(at.v) + 2.0 * abs(at.number) * moving)
     largest *= min(1.0, max(width, edge_pressure, given.rtol / (EDGE_SHARE * max(width, TINY))))
     remembered = first = second = 0.0
-    for i in over(given.arms):
+    for i in c_.over(given.arms):
         depth, slide = arm.accumulated_depth, arm.accumulated_slide
         compressed = interpolate_arm(
             run, i, memory.accumulated_depth[index], depth, state.accumulated_depth[i]
         ) + moving * interpolate_arm(
             run, i, memory.accumulated_slide[index], slide, state.accumulated_slide[i]
         )
-        remembered += total(run.arms.stiffness[i] * compressed)
-        farthest += total(abs(depth[i, given.stages - 1]))
-        first += total(interpolate_arm(run, i, memory.force[index], arm.force, state.force[i]))
-        second += total(interpolate_arm(run, i, memory.moment[index], arm.moment, state.moment[i]))
+        remembered += c_.total(run.arms.stiffness[i] * compressed)
+        farthest += c_.total(abs(depth[i, given.stages - 1]))
+        first += c_.total(interpolate_arm(run, i, memory.force[index], arm.force, state.force[i]))
+        second += c_.total(
+            interpolate_arm(run, i, memory.moment[index], arm.moment, state.moment[i])
+        )
     narrow = min(1.0, width)  # what they remember of a narrow contact matters less
     error = max(rates, largest, remembered, narrow * first, narrow * second) / given.rtol
     return max(error, math.pow(farthest / given.farthest, 0.5 * given.stages))  # as it is a square

@@ -1,5 +1,6 @@
 """A solved transient on a Prony series; its kernels are interpreted, or compiled by numba where it pays."""
 
+import math
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -11,22 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.compilation import ALIKE, Kernel
-from kvtheory.models.continuum import compiled
+from kvtheory.models.continuum import compiled, maxima
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.edge_states import FREE, TOUCHING
+from kvtheory.models.continuum.compiled import Solver, finished
 from kvtheory.models.continuum.energy import Ledger
-from kvtheory.models.continuum.evaluation import STATE
-from kvtheory.models.continuum.following import Solver, follow
+from kvtheory.models.continuum.evaluation import MEASURED, STATE
 from kvtheory.models.continuum.maxima import EXTREME
 from kvtheory.models.continuum.prony import (
     contact,
     energy,
     evaluation,
-    extremes,
     hops,
     records,
-    restarts,
     segments,
     step,
     walk,
@@ -40,7 +38,7 @@ from kvtheory.models.continuum.prony.records import (
     named,
     with_more_room,
 )
-from kvtheory.models.continuum.run import Spring, StepControl
+from kvtheory.models.continuum.run import FREE, TOUCHING, Spring, StepControl
 from kvtheory.models.continuum.solver import ScaledEvent
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as b_
@@ -63,12 +61,17 @@ REFUSED = {
 }
 """Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
 
+Array = NDArray[np.float64]
+
+GRID, ZOOMS, BESIDE = 65, 2, 2
+"""Points around the largest sample, how often they are laid, and the samples that they cover on each side:
+two, as a step ends where the next starts. The time is known to 1/256 of the distance of samples."""
 
 BLANK = np.zeros(1), np.zeros(1, STATE), np.zeros(1)
 """Times, states and profile of tasks that need none."""
 KERNEL = Kernel(
     evaluation.perform,
-    (b_, r_, e_, records, contact, step, segments, restarts, hops, walk, evaluation),
+    (b_, r_, e_, records, contact, step, segments, hops, walk, evaluation),
     SECONDS,
     compiled.INLINED,
 )
@@ -167,8 +170,13 @@ class Trajectory:
 
     @cached_property
     def samples(self) -> tuple[Array, NDArray[Any], int]:
-        """Dense times, the states there without peak pressures, and their number, see `extremes`."""
-        times = extremes.sampled(self)
+        """Times that divide each step, the last just before its end; states without peaks; their number."""
+        starts = self.steps["time"][self.steps["lasts"] > 0.0]
+        ends = np.append(starts[1:] * maxima.JUST_BEFORE, self.end)
+        parts = np.linspace(0.0, 1.0, maxima.SAMPLES + 1)
+        times = np.minimum(
+            starts[:, None] + (ends - starts)[:, None] * parts, ends[:, None]
+        ).reshape(-1)
         return times, self.states(times, peaks=False), times.size
 
     @cached_property
@@ -177,12 +185,46 @@ class Trajectory:
         return self.samples[0], self.states(self.samples[0]), self.samples[2]
 
     def largest(self, *wanted: tuple[str, int]) -> NDArray[Any]:
-        """Return the extreme of each quantity in a sense as structured array, see `maxima.EXTREME`."""
-        return np.array([extremes.largest(self, *each) for each in wanted], EXTREME)
+        """Return the extreme of each quantity in a sense as structured array, see `maxima.EXTREME`.
+
+        As on Kelvin-Voigt, see `continuum.maxima`, but by denser and denser samples.
+        """
+        return np.array([self._largest(*each) for each in wanted], EXTREME)
+
+    def _largest(self, name: str, sense: int) -> tuple[int, int, float, float]:
+        peaks = name == "peak_pressure"
+        times, found, _ = self.samples_with_peaks if peaks else self.samples
+        for _ in range(ZOOMS + 1):
+            values = found[name]
+            measured = np.abs(values) if sense == maxima.MAGNITUDE else sense * values
+            k = int(
+                np.argmax(np.nan_to_num(measured, nan=-math.inf))
+            )  # in flight there are no edges
+            best = float(times[k]), float(values[k])
+            low, high = times[max(k - BESIDE, 0)], times[min(k + BESIDE, times.size - 1)]
+            times = np.unique(np.append(np.linspace(low, high, GRID), best[0]))
+            found = self.states(times, peaks=peaks)
+        value = abs(best[1]) if sense == maxima.MAGNITUDE else best[1]
+        return MEASURED.index(name), sense, best[0], value
 
     def settled(self, force: float, share: float) -> float:
-        """Return the time from which the friction force is settled, see `extremes`."""
-        return extremes.settled(self, force, share)
+        """Return the time from which friction stays within a share of `force`; NaN if it does not settle."""
+        times, found, _ = self.samples
+
+        def outside(states: Any) -> Any:
+            return np.abs(states["friction_force"] - force) > share * abs(force)
+
+        late = np.flatnonzero(outside(found))
+        if force == 0.0 or outside(found)[-1]:
+            return math.nan
+        if not late.size:
+            return 0.0
+        low, high = times[late[-1]], times[late[-1] + 1]
+        for _ in range(maxima.BISECTIONS):
+            middle = 0.5 * (low + high)
+            late_still = outside(self.states([middle], peaks=False))[0]
+            low, high = (middle, high) if late_still else (low, middle)
+        return float(high)
 
     def _profile(self, task: int, xi: Array, s: float) -> Array:
         now, profile = self.states([s], peaks=False), np.zeros(1 + xi.size)
@@ -247,7 +289,7 @@ def solve(
         prepared=prepared, as_arrays=as_arrays, with_more_room=with_more_room, walk=_walk,
         time=time_of, refused=REFUSED, failure=ValueError,
     )  # fmt: skip
-    return Trajectory(follow(solver, end, max_steps, fast, progress))
+    return Trajectory(finished(solver, end, max_steps, fast, progress))
 
 
 def _walk(run: Run, attempts: int) -> int:

@@ -3,44 +3,30 @@
 import math
 from typing import NamedTuple
 
-from kvtheory.models.continuum.edge_states import FREE, PEELING, SIDES, TOUCHING
-from kvtheory.models.continuum.prony.contact import (
-    Motion,
-    accumulated,
-    at_far_end,
-    at_present,
-    derivative,
-    edge_at,
-    free,
-    integral,
-    motion,
-    over,
-    past,
-    past_stress,
-    present,
-    pressed,
-    step_of,
-    value,
-)
-from kvtheory.models.continuum.prony.hops import (
-    close,
-    closed,
-    closes,
-    distance,
-    end_with,
-    flies,
-    fly,
-    land,
-    least_gap,
-    open_contact,
-    time_left,
-    touches_at,
-)
+from kvtheory.models.continuum.prony import contact as c_
+from kvtheory.models.continuum.prony import hops as h_
+from kvtheory.models.continuum.prony.contact import Motion, pressed
 from kvtheory.models.continuum.prony.records import NEVER, SMOOTH, Run
-from kvtheory.models.continuum.prony.restarts import in_contact, restart_accumulators
-from kvtheory.models.continuum.prony.segments import cross, left_behind, split, turn
+from kvtheory.models.continuum.prony.segments import (
+    cross,
+    in_contact,
+    left_behind,
+    restart_accumulators,
+    split,
+    turn,
+)
 from kvtheory.models.continuum.prony.step import prepare, size_of, solve
-from kvtheory.models.continuum.run import DONE, FULL, INCONSISTENT, PAUSED, STUCK
+from kvtheory.models.continuum.run import (
+    DONE,
+    FREE,
+    FULL,
+    INCONSISTENT,
+    PAUSED,
+    PEELING,
+    SIDES,
+    STUCK,
+    TOUCHING,
+)
 from kvtheory.scene import base_motion as b_
 
 SAFETY, SHRINK, FAILED, TINY = 0.9, 0.2, 0.4, 1e-12
@@ -116,7 +102,7 @@ def walk(run: Run, attempts: int) -> int:
 def _has_room(run: Run) -> bool:
     """Whether one more step is certain to fit, with its events."""
     now = run.now
-    copied = now.segments if flies(run) else 0
+    copied = now.segments if h_.flies(run) else 0
     fits = now.steps + 2 < len(run.steps) and now.segments + copied + 8 < len(run.segments)
     return fits and now.chain + COPIES * (3 * now.count + 8) < len(run.chain)
 
@@ -145,7 +131,7 @@ def _next_piece(run: Run) -> None:
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = _first(run) if paused else min(now.span, _first(run))
-        if not flies(run):
+        if not h_.flies(run):
             for k in range(2):
                 split(run, k)
             _jump(run)
@@ -153,7 +139,7 @@ def _next_piece(run: Run) -> None:
 
 def _jump(run: Run) -> None:
     """Let edges turn where a jump of the drive changes the rate of the pressure."""
-    now, damped, at = run.now, run.given.damper > 0.0, present(run)
+    now, damped, at = run.now, run.given.damper > 0.0, c_.present(run)
     _, _, slope = b_.evaluate(run.pieces[now.piece], now.s)
     for k in range(2):
         side = now.sides[k]
@@ -186,17 +172,17 @@ def monitors(run: Run, theta: float, exact: bool) -> Monitors:
     or the gap, at this end has none: with `exact` it is the event function.
     """
     now, index = run.now, run.now.steps
-    at = motion(run, index, now.s + theta * run.steps[index].span)
-    if flies(run):
-        gap = least_gap(run, at).size + closed(run) * closed(run)
+    at = c_.motion(run, index, now.s + theta * run.steps[index].span)
+    if h_.flies(run):
+        gap = h_.least_gap(run, at).size + h_.closed(run) * h_.closed(run)
         return Monitors(gap, NOTHING.state, NOTHING.ground)
     edges = run.polynomials.edges[index]
-    l, r = value(edges[:, 0], theta), value(edges[:, 1], theta)
+    l, r = c_.value(edges[:, 0], theta), c_.value(edges[:, 1], theta)
     l_ground, r_ground = _ahead(run, 0, l, at.Y), _ahead(run, 1, r, at.Y)
     if exact:
-        accumulated(run, index, theta)
+        c_.accumulated(run, index, theta)
         middle = 0.5 * (l + r)
-        l_ground, r_ground = at_far_end(run, 0, at, middle), at_far_end(run, 1, at, middle)
+        l_ground, r_ground = c_.at_far_end(run, 0, at, middle), c_.at_far_end(run, 1, at, middle)
     l_state, r_state = _keeps(run, 0, at), _keeps(run, 1, at)
     return Monitors(r - l, (l_state, r_state), (l_ground, r_ground))
 
@@ -211,11 +197,11 @@ def _keeps(run: Run, k: int, at: Motion) -> float:
     now, n, index = run.now, run.given.stages, run.now.steps
     powers, theta = run.polynomials.edges[index, :, k], at.theta
     if now.sides[k].state == PEELING:
-        outward = SIDES[k] * (derivative(powers, theta) - run.steps[index].lasts * at.number)
+        outward = SIDES[k] * (c_.derivative(powers, theta) - run.steps[index].lasts * at.number)
         error = n * (n + 1) * run.given.last_power * abs(powers[n])
         return error + _allowed(run) - outward
-    rise = value(run.polynomials.rise[index, :, k], theta)
-    rises, terms = _pressing(value(powers, theta), at.v, at.number, rise)
+    rise = c_.value(run.polynomials.rise[index, :, k], theta)
+    rises, terms = _pressing(c_.value(powers, theta), at.v, at.number, rise)
     return rises / terms + _allowed(run)
 
 
@@ -245,7 +231,7 @@ def _event(run: Run) -> tuple[float, Monitors]:
         violated = monitors(run, high, False)
         if _smallest(violated) < 0.0:
             precise = monitors(run, high, True)
-            exact = _smallest(precise) < 0.0 and not flies(run)
+            exact = _smallest(precise) < 0.0 and not h_.flies(run)
             if exact:
                 low, violated = 0.0, precise
             for _ in range(BISECTIONS):
@@ -262,10 +248,10 @@ def _event(run: Run) -> tuple[float, Monitors]:
 
 def _next_step(run: Run, until: float) -> int:
     """Try one step, in contact or in flight, or close the contact."""
-    if flies(run):
+    if h_.flies(run):
         return _fly(run, until)
-    left, shortest = time_left(run), SHORTEST * run.given.end
-    if closes(run, left, shortest):
+    left, shortest = h_.time_left(run), SHORTEST * run.given.end
+    if h_.closes(run, left, shortest):
         return _close(run, min(max(left, 4.0 * shortest), until - run.now.s), until)
     return _advance(run, until, APPROACH * left)
 
@@ -294,9 +280,9 @@ def _advance(run: Run, until: float, longest: float) -> int:
         return DONE
     longer = max(_longer(run, span, size), SHARP * shortest)
     now.span = max(now.span, longer) if limited and theta <= 1.0 else longer
-    if size > 1.0 and not flies(run):  # no polynomial follows what is that abrupt
+    if size > 1.0 and not h_.flies(run):  # no polynomial follows what is that abrupt
         l, r, edges = now.sides[0].xi, now.sides[1].xi, run.stages.edges
-        end_with(run, l, r, edges[run.given.stages - 1, 0], edges[run.given.stages - 1, 1])
+        h_.end_with(run, l, r, edges[run.given.stages - 1, 0], edges[run.given.stages - 1, 1])
     _commit(run, span, until, min(theta, 1.0))
     return _after(run, theta, violated)
 
@@ -344,11 +330,11 @@ def _longer(run: Run, span: float, size: float) -> float:
 
 def _close(run: Run, span: float, until: float) -> int:
     """Take the step in which the contact closes, and begin a flight."""
-    if not close(run, span):
+    if not h_.close(run, span):
         return STUCK
     _commit(run, span, until, 1.0)
     run.now.steps, run.now.toggles = run.now.steps + 1, 0
-    fly(run)
+    h_.fly(run)
     run.now.span = _first(run)
     return DONE
 
@@ -357,7 +343,7 @@ def _fly(run: Run, until: float) -> int:
     """Try one step in flight; accept it up to the landing."""
     now, shortest = run.now, SHORTEST * run.given.end
     _, drive, slope = b_.evaluate(run.pieces[now.piece], now.s)
-    relief = max(RELIEF, 0.5 * distance(run))
+    relief = max(RELIEF, 0.5 * h_.distance(run))
     slides = relief / (abs(drive - now.w) + math.sqrt(relief * abs(slope)) + TINY)
     span = _length(run, until, max(slides, -0.5 * now.d / (abs(now.v) + 1e-3)))
     if not span > shortest:
@@ -368,9 +354,9 @@ def _fly(run: Run, until: float) -> int:
     theta, _ = _event(run)
     side, number, x, touches = 0, NEVER, 0.0, theta
     if theta <= 1.0:
-        at = motion(run, now.steps, now.s + theta * span)
-        _, side, number, x = least_gap(run, at)
-        touches = touches_at(run, theta, number, x)
+        at = c_.motion(run, now.steps, now.s + theta * span)
+        _, side, number, x = h_.least_gap(run, at)
+        touches = h_.touches_at(run, theta, number, x)
     now.span = _longer(run, span, size)
     if touches * span > shortest:
         _commit(run, span, until, min(touches, 1.0))
@@ -378,8 +364,8 @@ def _fly(run: Run, until: float) -> int:
     if theta > 1.0:
         return DONE
     now.span = max((theta - touches) * span, 4.0 * shortest)
-    land(run, side, number, x)
-    if not open_contact(run, now.span):
+    h_.land(run, side, number, x)
+    if not h_.open_contact(run, now.span):
         return STUCK
     _commit(run, now.span, until, 1.0)
     now.steps += 1
@@ -412,8 +398,8 @@ def _one_interval(run: Run) -> bool:
     """
     now, l, r = run.now, run.now.sides[0].xi, run.now.sides[1].xi
     least = -DEEPEST * max(run.given.rtol, LEAST) * (1.0 + run.given.glass)
-    at, Y = present(run), present(run).Y
-    at_present(run)
+    at, Y = c_.present(run), c_.present(run).Y
+    c_.at_present(run)
     apart = 1 + now.count // INSIDE
     for i in range(now.first + now.steps % apart, now.first + now.count, apart):
         segment = run.segments[run.chain[i]]
@@ -425,7 +411,7 @@ def _one_interval(run: Run) -> bool:
                 p, xi = pressed(run, at, x, segment.edge, NEVER, 0.0)
             else:
                 x = low + share * (high - low)
-                index = step_of(run, segment.edge, segment.step, x)
+                index = c_.step_of(run, segment.edge, segment.step, x)
                 p, xi = pressed(run, at, 0.0, segment.edge, index, x)
             if l < xi < r and p < least:
                 return False
@@ -436,8 +422,8 @@ def _one_interval(run: Run) -> bool:
             segment = run.segments[number]
             for half in range(3 if segment.step != NEVER else 0):
                 x = segment.a + 0.5 * half * (min(segment.b, now.s) - segment.a)
-                index = step_of(run, segment.edge, segment.step, x)
-                gap, xi = free(run, at, segment.edge, index, x)
+                index = c_.step_of(run, segment.edge, segment.step, x)
+                gap, xi = c_.free(run, at, segment.edge, index, x)
                 if SIDES[k] * (xi - side.xi) > 0.0 and gap < least:
                     return False
             number, count = segment.next, count + 1
@@ -453,30 +439,30 @@ def _commit(run: Run, span: float, until: float, theta: float) -> None:
     if whole:
         now.d, now.x = float(stages.depth[last]), float(stages.offset[last])
     else:
-        now.d += run.steps[index].lasts * integral(rate, theta)
-        now.x += run.steps[index].lasts * integral(along, theta)
-    now.v = stages.depth_rate[last] if whole else value(rate, theta)
-    now.w = stages.offset_rate[last] if whole else value(along, theta)
+        now.d += run.steps[index].lasts * c_.integral(rate, theta)
+        now.x += run.steps[index].lasts * c_.integral(along, theta)
+    now.v = stages.depth_rate[last] if whole else c_.value(rate, theta)
+    now.w = stages.offset_rate[last] if whole else c_.value(along, theta)
     _commit_arms(run, theta)
-    at = motion(run, index, end)
+    at = c_.motion(run, index, end)
     for k in range(2):
         side, before = now.sides[k], now.sides[k].sigma
         step, sigma = int(stages.entry_step[last, k]), float(stages.entry_time[last, k])
         edge = polynomials.edges[index, :, k]
-        side.xi = stages.edges[last, k] if whole else value(edge, theta)
+        side.xi = stages.edges[last, k] if whole else c_.value(edge, theta)
         side.compression, side.rise = stages.compression[last, k], stages.rise[last, k]
         if not whole:
-            side.compression = value(polynomials.compression[index, :, k], theta)
-            side.rise = value(polynomials.rise[index, :, k], theta)
+            side.compression = c_.value(polynomials.compression[index, :, k], theta)
+            side.rise = c_.value(polynomials.rise[index, :, k], theta)
         if not whole and side.segment != NEVER and side.state != FREE:
-            at_present(run)
+            c_.at_present(run)
             guess = before + theta * (sigma - before)
-            xi, step, sigma = edge_at(run, k, at, side.xi, step, guess)
+            xi, step, sigma = c_.edge_at(run, k, at, side.xi, step, guess)
             if abs(xi) < math.inf:
                 side.xi = xi
                 if side.state == TOUCHING:
                     side.compression, side.rise = now.compression, now.rise
-                for i in over(run.given.arms):
+                for i in c_.over(run.given.arms):
                     run.state.stress_at_edge[i, k] = run.element.stress[i]
         side.index, side.sigma = step, sigma
         if side.segment != NEVER:
@@ -489,18 +475,18 @@ def _commit_arms(run: Run, theta: float) -> None:
     """Let the state of the arms be that at the share `theta` of the step."""
     state, memory, stages, index = run.state, run.memory, run.arm_stages, run.now.steps
     last = run.given.stages - 1
-    for i in over(run.given.arms):
+    for i in c_.over(run.given.arms):
         if theta == 1.0:
             state.accumulated_depth[i] = stages.accumulated_depth[i, last]
             state.accumulated_slide[i] = stages.accumulated_slide[i, last]
             state.force[i], state.moment[i] = stages.force[i, last], stages.moment[i, last]
         else:
-            state.accumulated_depth[i] = past(memory.accumulated_depth, index, i, theta)
-            state.accumulated_slide[i] = past(memory.accumulated_slide, index, i, theta)
-            state.force[i] = past(memory.force, index, i, theta)
-            state.moment[i] = past(memory.moment, index, i, theta)
+            state.accumulated_depth[i] = c_.past(memory.accumulated_depth, index, i, theta)
+            state.accumulated_slide[i] = c_.past(memory.accumulated_slide, index, i, theta)
+            state.force[i] = c_.past(memory.force, index, i, theta)
+            state.moment[i] = c_.past(memory.moment, index, i, theta)
         for k in range(2):
             at_end = stages.stress_at_edge[i, last, k]
             state.stress_at_edge[i, k] = (
-                at_end if theta == 1.0 else past_stress(run, index, i, k, theta)
+                at_end if theta == 1.0 else c_.past_stress(run, index, i, k, theta)
             )
