@@ -2,7 +2,8 @@
 
 import csv
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,17 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
         raise OSError(f'"{path}" is a directory; expected the name of a file')
 
 
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Name the file in an error of the system."""
+    try:
+        yield
+    except OSError as error:
+        cause = error.__cause__ or error  # of a writer that replaces its file itself
+        reason = getattr(cause, "strerror", None) or cause
+        raise OSError(f'"{path}" cannot be written: {reason}') from error
+
+
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
     """Write to a temporary file beside `path` and rename it; raise `OSError` that names it if that fails."""
     replace_files({path: write})
@@ -75,16 +87,13 @@ def replace_files(writers: Mapping[Path, Callable[[Path], Any]]) -> None:
     """Write several files as `replace_file` does: all of them or, if one cannot be written, none."""
     call = uuid4().hex[:12]  # threads of a process may write the same file
     parts = {path: path.with_name(f".{path.stem}.{call}.part{path.suffix}") for path in writers}
-    path = Path()
     try:
         for path, write in writers.items():
-            write(parts[path])
+            with named(path):
+                write(parts[path])
         for path, part in parts.items():
-            os.replace(part, path)
-    except OSError as error:
-        cause = error.__cause__ or error  # of a writer that replaces its file itself
-        reason = getattr(cause, "strerror", None) or cause
-        raise OSError(f'"{path}" cannot be written: {reason}') from error
+            with named(path):
+                os.replace(part, path)
     finally:
         for part in parts.values():
             part.unlink(missing_ok=True)

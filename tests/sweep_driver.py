@@ -10,15 +10,14 @@ import os
 import random
 import resource
 import signal
-import sqlite3
 import sys
 import time
-from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 
 import kvtheory as kv
+from kvtheory.sweeps.store import records
 
 POINTS, BLOCK, SLOW_POINTS = 3000, 20, 60
 OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
@@ -41,12 +40,12 @@ def run_slowly(output, **more):
 
 def kept(output):
     """Points in the work file, or None where there is none."""
-    if not Path(f"{output}.part").exists():
+    work = Path(f"{output}.part")
+    if not work.exists():
         return None
-    with closing(sqlite3.connect(f"{output}.part")) as base:
-        tables = base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-        asked = "SELECT coalesce(sum(stop - start), 0) FROM blocks" if tables else "SELECT 0"
-        return base.execute(asked).fetchone()[0]
+    with work.open("rb") as file:
+        blocks = [json.loads(content.partition(b"\n")[0]) for _, content in records(file)][1:]
+    return sum(stop - start for start, stop, *_ in blocks)
 
 
 def assert_same(a, b):

@@ -64,29 +64,30 @@ def compute(given: Task) -> Block:
     reasons = steady.reasons | motion.reasons
     failed = sorted(reasons)
     errors = {name: motion.errors[name] for name in plan.needed(steady=False) if plan.transient}
-    for name, unit, base, measure in plan.columns:
-        if measure == "steady":
+    for column in plan.columns:
+        name, base = column.name, column.base
+        if column.measure == "steady":
             table[name] = steady.values[base]
             errors[name] = max(errors.get(name, 0.0), steady.errors.get(base, 0.0))
         else:
             table[name] = motion.values[name]
-        table[name][failed] = np.nan if unit else ""
+        table[name][failed] = column.missing
     errors.pop(STABLE, None)
-    failures = []
-    for index in failed:
-        error = reasons[index]
-        reason = "; ".join(str(error).splitlines()) or type(error).__name__
-        if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
-            reason = f"the scene leaves the range of double precision: {reason}"
-        failures.append((given.start + index, reason))
+    failures = [(given.start + index, _reason(reasons[index])) for index in failed]
     statements = sorted(steady.statements | motion.statements)
     return Block(given.start, given.start + given.points, table, failures, statements, errors)
 
 
+def _reason(error: Exception) -> str:
+    reason = "; ".join(str(error).splitlines()) or type(error).__name__
+    beyond_range = isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError)
+    return "the scene leaves the range of double precision: " * beyond_range + reason
+
+
 def _steady(given: Task) -> Measured:
     """Solve steady sliding; a part that fails is bisected until the failing scene is isolated."""
-    plan, names, found = given.plan, given.plan.needed(steady=True), Measured()
-    parts: list[list[Array]] = []
+    plan, names = given.plan, given.plan.needed(steady=True)
+    found = Measured({name: np.full(given.points, np.nan) for name in names})
     waiting = [(0, given.points)]
     while waiting:
         a, b = waiting.pop()
@@ -101,9 +102,9 @@ def _steady(given: Task) -> Measured:
                 waiting += [((a + b) // 2, b), (a, (a + b) // 2)]
             else:
                 found.reasons[a] = error
-                parts.append([np.array([np.nan])] * len(names))
             continue
-        parts.append([np.broadcast_to(getattr(state, name), b - a) for name in names])
+        for name, values in found.values.items():
+            values[a:b] = getattr(state, name)
         found.statements.add(state.certificate.statement)
         length = state.trailing_edge - state.leading_edge
         if extrapolates(scene.foundation, scene.drive.final_velocity, length):
@@ -112,8 +113,6 @@ def _steady(given: Task) -> Measured:
             found.statements.add(REMARKS[1])
         for name, wrong in state.certificate.relative_error.items():
             found.errors[name] = max(found.errors.get(name, 0.0), float(np.max(wrong)))
-    for name, arrays in zip(names, zip(*parts, strict=True), strict=True):
-        found.values[name] = np.concatenate(arrays, dtype=float)
     return found
 
 

@@ -9,7 +9,6 @@ from concurrent import futures
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext, suppress
-from dataclasses import replace
 from glob import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,7 +21,7 @@ from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import files
 from kvtheory.sweeps.blocks import Block, Task, compile_ahead, compute, task
 from kvtheory.sweeps.plan import Plan
-from kvtheory.sweeps.store import WorkFile
+from kvtheory.sweeps.store import opened
 
 WORK = ".part"
 """Suffix of a work file, after the name of the result."""
@@ -46,37 +45,29 @@ HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
 
 def in_memory(plan: Plan, **how: Any) -> Sweep:
     """Run a sweep and return its arrays."""
-    table, done = plan.blank(plan.points), list[Block]()
-
-    def keep(block: Block) -> None:
-        files.fill(table, block)
-        done.append(replace(block, table={}))
-
-    run(plan, [], keep, **how)
-    return files.from_memory(plan, table, sorted(done, key=lambda block: block.start))
+    done = list[Block]()
+    run(plan, [], done.append, **how)
+    return files.from_memory(plan, sorted(done, key=lambda block: block.start))
 
 
 def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
     """Run a sweep into a file, or resume it; after an interrupt the file holds what was done."""
     files.check(path)
-    work, written = path.with_name(path.name + WORK), False
-    if not overwrite and files.finished(path, plan):
-        if work.exists():  # of a run that was killed just before it removed this
-            WorkFile(work, plan).close(remove=True)
+    work, computed = path.with_name(path.name + WORK), 0
+    finished = not overwrite and files.finished(path, plan)
+    if finished and not work.exists():
         return files.from_file(path, plan)
-    store = WorkFile(work, plan, anew=overwrite)
-    try:
-        for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
-            unfinished.unlink()  # of a run that was killed while it wrote the result
-        try:
-            computed = run(plan, list(store.blocks(tables=False)), store.keep, **how)
-        except KeyboardInterrupt:
-            files.write(plan, store.blocks, path)
-            raise
-        files.write(plan, store.blocks, path)
-        written = True
-    finally:
-        store.close(remove=written)
+    with opened(work, plan, anew=overwrite) as kept:
+        if not finished:  # else it was killed just before it removed this
+            for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
+                unfinished.unlink()  # of a run that was killed while it wrote the result
+            try:
+                computed = run(plan, kept.done, kept.keep, **how)
+            except KeyboardInterrupt:
+                files.write(plan, kept.done, kept, path)
+                raise
+            files.write(plan, kept.done, kept, path)
+    work.unlink()
     return files.from_file(path, plan, computed)
 
 

@@ -4,9 +4,8 @@ CSV (RFC 4180) has a row for each point, or each point and time, below lines of 
 a dimension for each axis, and the checksums of its library.
 """
 
-import csv
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from importlib.metadata import version
@@ -24,8 +23,6 @@ from kvtheory.results.sweep import Failure, Sweep
 from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, Table, is_csv
 
-Blocks = Callable[..., Iterable[Block]]
-"""Returns the blocks in the order of their points, with `tables=False` without their tables."""
 FAILURES_LISTED = 100
 """Failures that a result lists when it stays in a file; the file itself has them all."""
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
@@ -44,9 +41,10 @@ def check(path: Path) -> None:
         raise ValueError('NetCDF needs netCDF4: pip install ".[data]" in the checkout')
 
 
-def write(plan: Plan, blocks: Blocks, path: Path) -> None:
-    """Write the blocks to a temporary file, and rename it to `path`."""
-    replace_file(path, partial(_write_csv if is_csv(path) else _write_netcdf, plan, blocks))
+def write(plan: Plan, done: Sequence[Block], blocks: Iterable[Block], path: Path) -> None:
+    """Write blocks to a temporary file, and rename it; the tables of those in `done` are not needed."""
+    write_as = _write_csv if is_csv(path) else _write_netcdf
+    replace_file(path, partial(write_as, plan, _summary(plan, done), blocks))
 
 
 def finished(path: Path, plan: Plan) -> bool:
@@ -78,17 +76,9 @@ def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     return _sweep(plan, _header(path)[1], partial(_values, path, plan), computed, path)
 
 
-def fill(table: Table, block: Block) -> None:
-    """Copy the values of a block into the table of all points."""
-    for name, array in table.items():
-        array[block.start : block.stop] = block.table[name]
-
-
-def from_memory(plan: Plan, table: Table, blocks: Iterable[Block]) -> Sweep:
-    """Return the table of all points as arrays over the axes; the blocks may be without theirs."""
-    grid, summary = tuple(axis.size for axis in plan.axes), _summary(plan, blocks)
-    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
-    return _sweep(plan, summary, values.copy, summary["done"])
+def from_memory(plan: Plan, blocks: Sequence[Block]) -> Sweep:
+    """Return the blocks as arrays over the axes."""
+    return _sweep(plan, _summary(plan, blocks), _whole(plan, blocks).copy, plan.points)
 
 
 def save_sweep(result: Sweep, path: Path) -> None:
@@ -99,8 +89,17 @@ def save_sweep(result: Sweep, path: Path) -> None:
     table = {name: v.reshape(-1, *v.shape[axes:]) for name, v in result.values.items()}
     failures = [(failure.index, failure.reason) for failure in result.failures]
     errors = dict(result.certificate.relative_error)
-    block = Block(0, plan.points, table, failures, [result.certificate.statement], errors)
-    write(plan, lambda **_: [block], path)
+    whole = [Block(0, plan.points, table, failures, [result.certificate.statement], errors)]
+    write(plan, whole, whole, path)
+
+
+def _whole(plan: Plan, blocks: Iterable[Block]) -> Table:
+    """Return the columns over the axes; what was not computed is missing."""
+    table, grid = plan.blank(plan.points), [axis.size for axis in plan.axes]
+    for block in blocks:
+        for name, array in table.items():
+            array[block.start : block.stop] = block.table[name]
+    return {name: array.reshape(*grid, *array.shape[1:]) for name, array in table.items()}
 
 
 def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
@@ -117,20 +116,16 @@ def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None
     )  # fmt: skip
 
 
-def _summary(plan: Plan, blocks: Iterable[Block]) -> dict[str, Any]:
+def _summary(plan: Plan, blocks: Sequence[Block]) -> dict[str, Any]:
     """Return how much was computed, which scenes failed and why, and the largest errors."""
-    done, failures, statements = 0, list[tuple[int, str]](), set[str]()
-    errors: dict[str, float] = {}
-    for block in blocks:
-        done += block.stop - block.start
-        failures += block.failures
-        statements.update(block.statements)
-        for name, error in block.errors.items():
-            errors[name] = max(errors.get(name, 0.0), error)
+    done, errors = sum(block.stop - block.start for block in blocks), dict[str, float]()
+    failures = [failure for block in blocks for failure in block.failures]
+    for name, error in (item for block in blocks for item in block.errors.items()):
+        errors[name] = max(errors.get(name, 0.0), error)
     return {
         "points": plan.points, "done": done, "rows": done * (len(plan.times or ()) if plan.series else 1),
-        "failed": len(failures), "failures": failures,
-        "certificate": "; ".join(sorted(statements)), "relative_error": errors,
+        "failed": len(failures), "failures": failures, "relative_error": errors,
+        "certificate": "; ".join(sorted({each for block in blocks for each in block.statements})),
     }  # fmt: skip
 
 
@@ -140,14 +135,17 @@ def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
     return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
 
 
+def _comments(path: Path) -> list[str]:
+    """Return the lines above the table of a CSV."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(takewhile(lambda line: line.startswith("#"), file))
+
+
 def _header(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the record of the sweep in a file, as JSON, and its summary."""
     if is_csv(path):
-        with path.open(encoding="utf-8", newline="") as file:
-            comments = takewhile(lambda line: line.startswith("#"), file)
-            found: Any = {
-                k: v for k, _, v in (line[1:].strip().partition(": ") for line in comments)
-            }
+        pairs = (line[1:].strip().partition(": ") for line in _comments(path))
+        found: Any = {key: text for key, _, text in pairs}
     else:
         with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
             found = data.attrs
@@ -156,30 +154,31 @@ def _header(path: Path) -> tuple[str, dict[str, Any]]:
 
 def _values(path: Path, plan: Plan) -> dict[str, Any]:
     """Return the arrays of a file."""
-    kinds = {column.name: float if column.unit else object for column in plan.columns}
     if not is_csv(path):
         try:
             with import_module("xarray").open_dataset(path, engine="netcdf4") as data:
                 return {
-                    name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
+                    c.name: data[c.name].values.astype(c.kind, copy=False) for c in plan.columns
                 }
         except (RuntimeError, ValueError, KeyError) as error:  # of a checksum that is wrong, say
             raise OSError(f'"{path}" is damaged: {error}; {WAYS_OUT}') from None
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = csv.reader(line for line in file if not line.startswith("#"))
-        table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
-    found, grid = {}, tuple(axis.size for axis in plan.axes)
-    for name, unit, _, measure in plan.columns:
-        cells = table[_head(name, unit)]
-        read = [float(cell or "nan") for cell in cells] if unit else cells
-        array = np.array(read, dtype=kinds[name]).reshape(*grid, -1)
-        found[name] = array if measure == "series" else array[..., 0]
-    return found
+    places = dict(enumerate(plan.columns, len(plan.units) - len(plan.columns) + plan.series))
+    rows = np.loadtxt(
+        path, [(column.name, column.kind) for column in plan.columns], delimiter=",", quotechar='"',
+        skiprows=len(_comments(path)) + 1, usecols=[*places], ndmin=1, encoding="utf-8",
+        converters={i: _number if column.unit else str for i, column in places.items()},
+    ).reshape(*(axis.size for axis in plan.axes), -1)  # fmt: skip
+    series = {column.name: column.measure == "series" for column in plan.columns}
+    return {name: np.array(rows[name] if series[name] else rows[name][..., 0]) for name in series}
 
 
-def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
+def _number(cell: str) -> float:
+    return float(cell or "nan")
+
+
+def _write_csv(plan: Plan, summary: Any, blocks: Iterable[Block], path: Path) -> None:
     """Write header and rows; those of points that were not computed are left out."""
-    summary, record = _summary(plan, blocks(tables=False)), plan.record
+    record = plan.record
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
     done = f"{summary['done']} of {plan.points} points; the command resumes it"
     lines = [
@@ -195,10 +194,10 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
         lines.append(f"# failed: point {index}, {json.dumps(reason, ensure_ascii=False)}")
     heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
     heads += ["time [s]"] * plan.series
-    heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts
+    heads += [_head(column.name, column.unit) for column in plan.columns]
     with path.open("wb") as file:
         file.write(END.join([*lines, ",".join(heads), ""]).encode())
-        for block in blocks():
+        for block in blocks:
             file.writelines(_rows(plan, block))
 
 
@@ -229,13 +228,9 @@ def _rows(plan: Plan, block: Block) -> Iterator[bytes]:
         yield END.encode().join([*lines, b""])
 
 
-def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
+def _write_netcdf(plan: Plan, summary: Any, blocks: Iterable[Block], path: Path) -> None:
     """Write all points; those that were not computed are missing values."""
-    table = plan.blank(plan.points)
-    for block in blocks():
-        fill(table, block)
-    kept = list(blocks(tables=False))
-    data, summary = from_memory(plan, table, kept).to_xarray(), _summary(plan, kept)
+    data = _sweep(plan, summary, _whole(plan, blocks).copy, 0).to_xarray()
     data = data.assign_attrs(title=TITLE, **_described(plan, summary))
     indices, reasons = [*zip(*summary["failures"], strict=True)] or [(), ()]
     data["failure_index"] = "failure", np.array(indices, dtype=np.int64)

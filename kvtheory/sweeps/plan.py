@@ -74,6 +74,16 @@ class Column(NamedTuple):
     base: str
     measure: str
 
+    @property
+    def missing(self) -> Any:
+        """What stands for a missing value: NaN, or no text."""
+        return math.nan if self.unit else ""
+
+    @property
+    def kind(self) -> type:
+        """The type of its values: numbers, or texts."""
+        return float if self.unit else object
+
 
 def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
@@ -90,7 +100,8 @@ def columns_of(
     known = {row.name: row for row in rows if row.base != "time"}
     if names is None:
         names = [name for name in (TRANSIENT_UNITS if series else STEADY_UNITS) if name != "time"]
-    names = list(dict.fromkeys([names] if isinstance(names, str) else names))
+    names = [names] if isinstance(names, str) else names
+    names = sorted(dict.fromkeys(names), key=EVENTS.__eq__)  # the text last
     if not names:
         raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
     if unknown := [name for name in names if name not in known]:
@@ -217,12 +228,8 @@ class Plan:
         }
 
     def blank(self, points: int) -> Table:
-        """Return a table of missing values, NaN or no text."""
-        return {
-            column.name: np.full(self.shape(column, points), np.nan)
-            if column.unit else np.full(points, "", object)
-            for column in self.columns
-        }  # fmt: skip
+        """Return a table of missing values."""
+        return {c.name: np.full(self.shape(c, points), c.missing, c.kind) for c in self.columns}
 
     def shape(self, column: Column, points: int) -> tuple[int, ...]:
         """Return the shape of a column of a table."""
@@ -254,7 +261,7 @@ class Plan:
             "rtol": self.rtol if self.transient else None,
         }
 
-    def differences(self, found: str) -> list[str]:
+    def differences(self, found: str | bytes) -> list[str]:
         """Return the parts in which the record of a file, as JSON, differs from that of this sweep."""
         try:
             theirs = json.loads(found)
