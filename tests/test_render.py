@@ -27,6 +27,7 @@ from kvtheory.derivations.render import (
     write,
 )
 from kvtheory.derivations.render.edition import symbols_of
+from kvtheory.derivations.render.inline import inline
 from kvtheory.derivations.render.text import Given, Line, blocks, by_section, sentence
 
 from tests.browser import Browser
@@ -118,6 +119,26 @@ def told(block) -> str:
     )
 
 
+@pytest.mark.parametrize(
+    ("displayed", "told"),
+    [
+        (r"\frac{a + b}{c d} - \frac{1}{2}", "(a + b)/(c d) - 1/2"),
+        (r"\frac{K}{3 R} \left(1 + \frac{l}{a}\right)", "K (1 + l/a)/(3 R)"),
+        (r"\frac{a}{b} \frac{1}{c}", "a/(b c)"),
+        (r"\frac{W}{l_{\mathrm{r}}}", r"W/l_{\mathrm{r}}"),
+        (r"\alpha \sqrt{\frac{\delta}{R}}", r"\alpha \sqrt{\delta/R}"),
+        (r"\left(\frac{a}{b}\right)^{\frac{2}{3}}", "(a/b)^{2/3}"),
+        (r"\frac{\mathrm{d} a}{\mathrm{d} t}", r"\mathrm{d} a/\mathrm{d} t"),
+        (r"\frac{\mathrm{d}}{\mathrm{d} q} \frac{a}{b}",)
+        * 2,  # what takes in what follows keeps its line
+        (r"\frac{1}{R} \int f",) * 2,
+        (r"\ln \frac{a}{b}",) * 2,
+    ],
+)
+def test_fractions_in_a_line_of_text_have_a_slash(displayed, told):
+    assert inline(displayed) == told
+
+
 def test_what_is_given_is_told_in_sentences():
     steps = (
         Step("h", "=", r"\frac{x^{2}}{2 R}", "", "definition", "eq3"),
@@ -131,7 +152,7 @@ def test_what_is_given_is_told_in_sentences():
     )
     found = list(blocks(Derivation("m", None, "S", "T", "", "m = F", "proved", steps)))
     assert told(found[0]) == (
-        r"With $h = \frac{x^{2}}{2 R}$ (3), $W = \frac{K}{2}$, $F = 2 K$ (load) and "
+        r"With $h = x^{2}/(2 R)$ (3), $W = K/2$, $F = 2 K$ (load) and "
         "$x = a$ (the edge),"
     )
     assert [told(found[2]), told(found[4])] == ["With $q = 1$,", "With $n = 1$."]
@@ -148,8 +169,8 @@ def test_what_is_given_is_told_in_sentences():
         (" + ".join("abcdefghijklmnopqrstuvwxyzABCDEFG"), False),
         (r"\int_{a}^{b} p\, dx", False),
         (r"\begin{cases} 1 & q \\ 2 & l \end{cases}", False),
-        (r"\frac{1 + \frac{l}{4}}{w}", False),
-        (r"\frac{x_{\mathrm{TE}}}{1 + \frac{l}{4}}", False),
+        (r"\frac{1 + \frac{l}{4}}{w}", True),  # with slashes
+        (r"\begin{pmatrix} \frac{1}{2} \end{pmatrix}", False),
     ],
 )
 def test_only_what_fits_a_line_of_text_is_told_in_a_sentence(right, in_a_sentence):

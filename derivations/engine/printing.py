@@ -14,7 +14,7 @@ dots and primes are derivatives.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import gcd
 from typing import Any, NamedTuple
 
@@ -24,7 +24,7 @@ from sympy.printing.latex import LatexPrinter
 
 from .nomenclature import CONSTANTS, SYMBOLS, TEX
 
-_TALL = sp.Integral, sp.Sum, sp.Product, sp.Subs, sp.Piecewise, sp.Limit
+_TALL = sp.Integral, sp.Sum, sp.Product, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
 _CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
 _MOST_PRIMES = 3
@@ -63,9 +63,14 @@ def _content(terms: Sequence[sp.Expr]) -> sp.Rational:
     return sp.Integer(sign)
 
 
-def _primitive(expr: sp.Expr) -> tuple[sp.Rational, sp.Expr]:
-    """Return the common factor of a sum and the rest."""
+def _primitive(expr: sp.Expr, *, cleared: bool = False) -> tuple[sp.Rational, sp.Expr]:
+    """Return the common factor of a sum and the rest; `cleared`, the rest has no fractions of numbers."""
     content = _content(expr.args)
+    if cleared and content.q == 1:
+        numbers = [(term / content).as_coeff_Mul()[0] for term in expr.args]
+        if all(number.is_Rational for number in numbers):
+            low = sp.ilcm(1, *(number.q for number in numbers))
+            content *= sp.Rational(gcd(*(int(number * low) for number in numbers)), low)
     if content == 1:
         return content, expr
     return content, sp.Add(*(term / content for term in expr.args))
@@ -78,7 +83,7 @@ def _is_negative(term: sp.Expr) -> bool:
 def _rank(factor: sp.Expr) -> tuple[Any, ...]:
     """Return the place of a factor in a product."""
     base = factor.as_base_exp()[0] if factor.is_Pow else factor
-    if factor.is_number or str(base).startswith("\\"):
+    if base.is_number or str(base).startswith("\\"):
         return 0, not isinstance(factor, sp.NumberSymbol), str(factor)
     if isinstance(base, sp.Symbol | sp.Indexed):
         letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
@@ -99,6 +104,16 @@ def _rank(factor: sp.Expr) -> tuple[Any, ...]:
 
 class Printer(LatexPrinter):
     """SymPy's own, in the order of a hand."""
+
+    _small = ""
+    """Where what is printed is small: in a "fraction", or in a "script". There a line is a slash."""
+
+    def _within(self, place: str, expr: Any, show: Callable[[Any], Any]) -> str:
+        before, self._small = self._small, place
+        try:
+            return str(show(expr))
+        finally:
+            self._small = before
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:  # noqa: N802
         content, rest = _primitive(expr)
@@ -168,11 +183,13 @@ class Printer(LatexPrinter):
         text = (
             f"{exponent.p}/{exponent.q}"
             if exponent.is_Rational and exponent.q > 1
-            else self._print(exponent)
+            else self._within("script", exponent, self._print)
         )
         return f"{shown if closed else self._bracket(shown)}^{{{text}}}"
 
     def _bracket(self, shown: str) -> str:
+        if self._small == "script":
+            return f"({shown})"
         return rf"\left({shown}\right)"
 
     def _product(self, number: sp.Rational, factors: Iterable[sp.Expr]) -> str:
@@ -193,13 +210,18 @@ class Printer(LatexPrinter):
                 lower.append(root._replace(above=root.below, below=()))
         sign = "- " if number < 0 else ""
         top, bottom = abs(number.p), number.q
+        small = self._small and (lower or bottom > 1)
+        if small and (self._small == "script" or not any(map(_is_sum, (*upper, *lower)))):
+            return sign + self._slashed(top, upper, bottom, lower, beside)
         if lower or bottom > 1:
             open_above = not any(map(_is_sum, lower))
             sums = not lower and (top, len(upper)) != (1, 1)  # 3/4 (a + b), but (a + b)/2
+            ratio = any(isinstance(each, sp.Derivative) for each in lower)  # of two slopes
+            place = "" if open_above and not ratio else "fraction"
             tall = [
                 each
                 for each in upper
-                if (self._is_tall(each) and open_above) or (sums and _is_sum(each))
+                if self._within(place, each, self._is_tall) == "True" or (sums and _is_sum(each))
             ]
             upper = [each for each in upper if each not in tall]
             ranked = sorted(tall, key=self._place)
@@ -212,10 +234,27 @@ class Printer(LatexPrinter):
             and not (lower or bottom > 1)
         ):
             return sign + self._factor(upper[0], alone=False)
-        line = self._line(top, upper)
         if lower or bottom > 1:
-            line = rf"\frac{{{line or '1'}}}{{{self._line(bottom, lower)}}}"
+            above, below = (
+                self._within("fraction", each, lambda part: self._line(*part))
+                for each in ((top, upper), (bottom, lower))
+            )
+            line = rf"\frac{{{above or '1'}}}{{{below}}}"
+        else:
+            line = self._line(top, upper)
         return sign + (" ".join(part for part in (line, *beside) if part) or "1")
+
+    def _slashed(
+        self, top: int, upper: list[Any], bottom: int, lower: list[Any], beside: list[str]
+    ) -> str:
+        """Print a fraction on one line, with what stands beside it above."""
+        above = " ".join(part for part in (self._line(top, upper), *beside) if part)
+        alone = len(upper) == 1 and top == 1 and not beside and _is_sum(upper[0])
+        below = self._line(bottom, lower)
+        single = len(lower) + (bottom > 1) == 1 and not (
+            lower and getattr(lower[0], "is_Add", False)
+        )
+        return f"{self._bracket(above) if alone else above or 1}/{below if single else self._bracket(below)}"
 
     def _line(self, number: int, factors: list[Any]) -> str:
         """Print a number and factors side by side."""
@@ -250,14 +289,16 @@ class Printer(LatexPrinter):
             return self._root(factor)
         shown = self._sum(factor) if factor.is_Add else str(self._print(factor))
         loose = factor.is_Add or isinstance(factor, sp.Piecewise | sp.Mul | sp.Rel)
+        loose = loose or (factor.is_Derivative and shown.startswith(r"\mathrm"))
         return self._bracket(shown) if loose and not alone else shown
 
     def _is_tall(self, factor: sp.Expr | _Root) -> bool:
         if isinstance(factor, _Root):
             return False
         base = factor.as_base_exp()[0]
-        if isinstance(factor, sp.Derivative):
-            return r"\frac" in str(self._print(factor))
+        if isinstance(factor, sp.Derivative | sp.Subs):
+            shown = str(self._print(factor))
+            return r"\frac" in shown or r"\right|" in shown
         return isinstance(factor, _TALL) or (
             base.is_Add and any(mark in self._sum(base) for mark in (r"\frac", r"\int"))
         )
@@ -267,11 +308,12 @@ class Printer(LatexPrinter):
     ) -> tuple[sp.Rational, list[sp.Expr], list[sp.Expr], list[_Root]]:
         """Return the number, what stands above and below the line, and the roots."""
         above, below = [], []
+        line = any(each.is_Pow and each.exp.is_Rational and each.exp < 0 for each in factors)
         rooted: dict[tuple[int, int], list[tuple[sp.Expr, sp.Rational]]] = {}
         for factor in factors:
             base, exponent = factor.args if factor.is_Pow else (factor, sp.S.One)
             if base.is_Add and exponent.is_Integer:
-                content, base = _primitive(base)
+                content, base = _primitive(base, cleared=line)
                 number *= content**exponent
             if exponent.is_Rational and not exponent.is_Integer and base.is_nonnegative:
                 key = (exponent.q, 0) if abs(exponent) < 1 else (exponent.q, abs(exponent.p))
@@ -324,15 +366,35 @@ class Printer(LatexPrinter):
         shown = inner if lone and "^" not in inner else self._bracket(inner)
         return f"{shown}^{{{root.power}/{root.order}}}"
 
+    def _print_Rational(self, expr: sp.Rational) -> str:  # noqa: N802
+        return (
+            f"{expr.p}/{expr.q}"
+            if self._small and expr.q > 1
+            else str(super()._print_Rational(expr))
+        )
+
     def _print_UnevaluatedExpr(self, expr: sp.UnevaluatedExpr) -> str:  # noqa: N802
         return str(self._print(expr.args[0]))
 
     def _print_Integral(self, expr: sp.Integral) -> str:  # noqa: N802
-        return str(super()._print_Integral(expr)).replace(r"\int\limits", r"\int")
+        signs = "".join(
+            rf"\int_{{{low}}}^{{{high}}} "
+            for low, high in (
+                [self._within("script", end, self._print) for end in limit[1:]]
+                for limit in expr.limits[::-1]
+            )
+        )
+        inner = str(self._print(expr.function))
+        loose = expr.function.is_Add or inner.startswith("-")
+        places = "".join(rf"\, d{self._print(limit[0])}" for limit in expr.limits)
+        return f"{signs}{self._bracket(inner) if loose else inner}{places}"
 
     def _print_exp(self, expr: sp.exp, exp: Any = None) -> str:
         inner = self._print(expr.args[0])
-        shown = rf"\exp\left({inner}\right)" if r"\frac" in inner else f"e^{{{inner}}}"
+        if self._small or r"\frac" not in inner:
+            shown = f"e^{{{self._within('script', expr.args[0], self._print)}}}"
+        else:
+            shown = rf"\exp\left({inner}\right)"
         return shown if exp is None else rf"{self._bracket(shown)}^{{{exp}}}"
 
     _print_ExpBase = _print_exp  # noqa: N815
@@ -381,11 +443,15 @@ class Printer(LatexPrinter):
             ((variable, order),) = expr.variable_count
             power = "" if order == 1 else f"^{{{order}}}"
             below = rf"\mathrm{{d}} {self._print(variable)}{power}"
+            if self._small:
+                return rf"\mathrm{{d}}{power} {self._print(call)}/{below}"
             return rf"\frac{{\mathrm{{d}}{power} {self._print(call)}}}{{{below}}}"
         return str(super()._print_Derivative(expr))
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
         inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
+        if isinstance(inner, AppliedUndef) and inner.args == node.variables:
+            return self._called(inner.func(*node.point))
         if isinstance(inner, sp.Derivative) and _has_primes(inner.expr):
             call, letters = inner.expr, set(inner.variables)
             if letters == {call.args[-1]} == set(place) and len(inner.variables) <= _MOST_PRIMES:
@@ -400,7 +466,10 @@ class Printer(LatexPrinter):
         inner = str(self._print(node.expr))
         loose = any(part.is_Add for part in sp.Mul.make_args(node.expr)) or inner.startswith("- ")
         pairs = zip(node.variables, node.point, strict=True)
-        places = ", ".join(f"{self._print(letter)} = {self._print(at)}" for letter, at in pairs)
+        places = ", ".join(
+            f"{self._print(letter)} = {self._within('script', at, self._print)}"
+            for letter, at in pairs
+        )
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from ..engine.record import Calculation, Derivation, Step
+from .inline import inline
 
 _REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)")
 """How text names a derivation; the name of the group and the digits make its label."""
@@ -29,12 +30,11 @@ _TOKEN = re.compile(
 _GLYPH = re.compile(
     r"\\(?:left|right|frac|sqrt|mathrm|text|[,;:! ])(?![A-Za-z])|(?P<seen>\\[A-Za-z]+|[^\s{}_^\\])"
 )
-_FEW_GLYPHS, _MOST_GLYPHS = 16, 50
+_LETTER_GLYPHS, _FEW_GLYPHS, _MOST_GLYPHS = 5, 16, 50
 """A formula of few glyphs is repeated rather than cited; one of more would fill a line of text."""
 
-_GROUPS = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"
-_TALL = re.compile(rf"\\(?:int|sum|begin)(?![a-z])|\\frac\{{{_GROUPS}(?:\}}\{{{_GROUPS})?\\frac")
-"""An integral, a sum, cases or a fraction in a fraction: too tall for a line of text."""
+_TALL = re.compile(r"\\(?:int|sum|begin)(?![a-z])")
+"""An integral, a sum or cases: too tall for a line of text."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def pieces(text: str, labels: Collection[str]) -> Iterator[Piece]:
     if len(parts) % 2 == 0:
         raise ValueError(f"a dollar sign without its partner in the text {text!r}")
     for index, part in enumerate(parts):
-        yield from [Piece("math", part)] if index % 2 else _words(part, labels)
+        yield from [Piece("math", inline(part))] if index % 2 else _words(part, labels)
 
 
 def _words(text: str, labels: Collection[str]) -> Iterator[Piece]:
@@ -157,14 +157,14 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
     last = len(given.steps) - 1
     for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
         yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
-        if not step.relation:
+        if not step.left:
             yield citation(source, labels)
             continue
-        yield Piece("math", conclusion(step))
+        yield Piece("math", inline(conclusion(step) if step.relation else step.left))
         if step.domain:
-            yield from (Piece("words", " for "), Piece("math", step.domain))
+            yield from (Piece("words", " for "), Piece("math", inline(step.domain)))
         following = given.steps[index + 1] if index < last else step
-        if index < last and following.relation and remarks[index + 1] == (source, reason):
+        if index < last and following.left and remarks[index + 1] == (source, reason):
             continue
         if source:
             yield from (Piece("words", " "), citation(source, labels))
@@ -184,7 +184,11 @@ def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
     if step.note:
         yield from (Piece("words", ", " if step.reason else ""), *pieces(step.note, labels))
     elif step.domain:
-        yield from (Piece("words", " (for "), Piece("math", step.domain), Piece("words", ")"))
+        yield from (
+            Piece("words", " (for "),
+            Piece("math", inline(step.domain)),
+            Piece("words", ")"),
+        )
 
 
 def further(derivation: Derivation) -> list[str]:
@@ -200,14 +204,20 @@ def citation(label: str, labels: Collection[str]) -> Piece:
 
 
 def _short(line: Line, before: Mapping[str, Derivation]) -> Line:
-    """Leave out the formula of a long result that was printed before: its number says as much."""
+    """Leave out what is long and was printed before: its number or its letter says as much."""
     step = line.step
     source = before.get(step.source)
     if source is None or step.claim is None or _glyphs(conclusion(step)) <= _FEW_GLYPHS:
         return line
-    results = [each.claim for each in source.steps if each.latex == source.latex and each.claim]
-    known = any((each.lhs, each.rhs) == (step.claim.lhs, step.claim.rhs) for each in results)
-    return replace(line, step=replace(step, left="", relation="", right="")) if known else line
+    sides = step.claim.lhs, step.claim.rhs
+    printed = [
+        each for each in source.steps if each.claim and (each.claim.lhs, each.claim.rhs) == sides
+    ]
+    if any(each.latex == source.latex for each in printed):
+        return replace(line, step=replace(step, left="", relation="", right=""))
+    if any(not each.source for each in printed) and _glyphs(step.left) <= _LETTER_GLYPHS:
+        return replace(line, step=replace(step, relation="", right=""))
+    return line
 
 
 def _glyphs(latex: str) -> int:
@@ -221,7 +231,7 @@ def _is_given(line: Line) -> bool:
         return not line.tag and bool(step.source)
     if line.tag or not (step.source or step.status == "definition"):
         return False
-    latex = conclusion(step)
+    latex = inline(conclusion(step))
     return not _TALL.search(latex) and _glyphs(latex) <= _MOST_GLYPHS
 
 
