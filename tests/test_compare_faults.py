@@ -11,6 +11,7 @@ import kvtheory as kv
 from figures.engines import RUNS, hunt_crossley
 from kvtheory.api._compare import METHODS
 from kvtheory.checks import comparing
+from kvtheory.checks.checklist import judge
 from kvtheory.checks.comparing import _ranked
 from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.faults import time_units
@@ -19,7 +20,7 @@ from kvtheory.checks.theory import Theory
 from kvtheory.checks.trial_elements import Rule, steady, steady_changes
 from kvtheory.fitting.series import read
 from tests import SCENES as MANY
-from tests import engine
+from tests import confusion, engine
 from tests.confusion import (
     FORCES,
     LEVELS,
@@ -575,6 +576,40 @@ def test_contact_lost_while_rising_holds_a_light_indenter_where_it_is():
     light = kv.Scene(support=kv.DeadWeight(mass=100.0), drive=kv.Drive(0.05), run=kv.Run(0.02))
     data = series(light, {}, rule="dropped", time_step=2e-5)
     first_of(kv.compare(light, data), "contact lost while rising")
+
+
+def test_contact_lost_in_the_stages_of_a_long_step_lets_the_indenter_sink():
+    """It rises in some stages and sinks in others: how fast it sinks depends on the step."""
+    given = kv.Scene(
+        kv.Parabola(0.0063), kv.Foundation(1.26e10, 0.0366), kv.DeadWeight(388.0), kv.Drive(0.0147),
+        kv.Run(0.4),
+    )  # fmt: skip
+    data = series(given, {}, rule="dropped", time_step=2e-4, per_length=3e5)
+    few = {name: data[name][::10] for name in MEASURED}
+    first = first_of(kv.compare(given, few), "contact lost while rising")
+    assert "Runge-Kutta" in first.text
+    assert first.explained > 0.8
+
+
+@pytest.mark.parametrize(
+    ("given", "factor"),
+    [
+        (kv.Scene(kv.Parabola(0.0143), kv.Foundation(1.73e10, 0.111), kv.DeadWeight(1660.0),
+                  kv.Drive(0.0769, stiffness=1.6e7, damping=48.8e3), kv.Run(0.109)), 0.95),
+        (kv.Scene(kv.Parabola(0.0051), kv.Foundation(1.09e10, 0.341), kv.DeadWeight(222.0),
+                  kv.Drive(0.00077, stiffness=6.64e6, damping=11.5e3), kv.Run(4.57)), 1.3),
+    ],
+    ids=["oscillates", "creeps"],
+)  # fmt: skip
+def test_a_smooth_difference_shows_below_the_noise_of_each_row(given, factor):
+    """In means of neighbours noise averages out; and a sound step resolves the swing on the spring."""
+    wrong = confusion.columns(scaled_scene(given, {"drive.stiffness": 1.0}, factor))
+    rng, names = np.random.default_rng(44), (*MEASURED[1:], "spring_force")
+    noisy = {n: wrong[n] * (1.0 + 0.01 * rng.standard_normal(wrong[n].size)) for n in names}
+    data = read({"time": wrong["time"], **noisy})
+    checks = judge(make_case(Theory(given, METHODS), data, None, 1.0, COARSEST))
+    seen = {check.name.split(",")[0] for check in checks if check.ok is False}
+    assert seen == {"spring force"}
 
 
 def test_the_work_of_a_diagnosis_is_counted_not_timed(monkeypatch):

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.noise import SEVERAL, extreme, noise, rounded, time_rounding
+from kvtheory.checks.noise import SEVERAL, extreme, means, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.schemes import SCHEME_ROWS
@@ -32,8 +32,11 @@ STANDARD = 200e3
 FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
 """Elements per m assumed if none are given: the paper's 200 /mm, within these numbers of elements per static
 half length, of which Table 1 has the larger one."""
+MARGIN = 1.4
+"""Margin on the spacing assumed, and with it on the paper's step, or read from an even sawtooth."""
 UNKNOWN_STEP = 0.25
-"""Longest time step assumed if none is given, in fast time constants; the sampling interval if longer."""
+"""Longest time step assumed if none is given, in fast time constants, the sampling interval if longer; and in
+periods over 2 pi of the mass on its spring."""
 MOST_STEPS, FEWEST_STEPS = 1000.0, 20.0
 """Steps of a run assumed for a base at rest; and the fewest assumed for any run."""
 STEPS_SMEARED = 2.0
@@ -81,13 +84,16 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
     half, scheme = theory.static.half_length, SCHEME_ROWS.get(series.scheme or "")
     spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
     speed, span = theory.motion.highest_speed, float(series.time[-1] - series.time[0])
-    step = 2.0 * spacing / speed if speed else span / MOST_STEPS
+    wider = spacing if given else MARGIN * spacing
+    step = 2.0 * wider / speed if speed else span / MOST_STEPS
     if series.time_step is not None:
         return Resolution(spacing, float(series.time_step), bool(given), True)
     paper = scheme is not None and scheme.papers_step and bool(given)
     if not paper and theory.rates is not None:
         sampled = float(np.median(np.diff(series.time)))
         step = min(step, max(UNKNOWN_STEP * abs(theory.rates.fast), sampled))
+        if not theory.scene.drive.rigid:
+            step = min(step, UNKNOWN_STEP * theory.swing)
     return Resolution(spacing, min(step, span / FEWEST_STEPS), bool(given), paper)
 
 
@@ -99,6 +105,11 @@ class Band(NamedTuple):
     systematic: Array
     noise: Array
     rounding: Array
+
+    def averaged(self, rows: int) -> "Band":
+        """Return the band of means of so many rows, in which noise averages out."""
+        found = Band(*(means(part, rows) for part in self))
+        return found._replace(noise=found.noise / math.sqrt(rows))
 
     def excess(self, values: Array) -> Array:
         """Return how far values lie outside the range of theory."""
@@ -332,8 +343,8 @@ def _systematic(
     carried = 1.5 * depth * 2.0 * R / (a * a) * np.abs(curves["friction_force"])
     slope = K * (a + np.abs(l_r)) / R
     given = np.full_like(force, INPUT * theory.scales["velocity"])
-    pressed = WHOLE_EDGE * force * a / R + carried
-    friction = pressed + lagging * a / R
+    friction = (WHOLE_EDGE * force + lagging) * a / R + carried
+    follows = np.full_like(force, INPUT * theory.scales["spring_force"])  # and `_spring_response`
     return {
         "velocity": given,
         "sliding_velocity": given,
@@ -341,7 +352,7 @@ def _systematic(
         "depth_rate": depth_rate + INPUT * theory.scales["depth_rate"],
         "normal_force": WHOLE_EDGE * force + lagging,
         "friction_force": friction,
-        "spring_force": friction if theory.scene.drive.rigid else pressed,  # a mass evens out a lag
+        "spring_force": friction if theory.scene.drive.rigid else follows,
         "leading_edge": edge,
         "trailing_edge": edge + np.nan_to_num(R * both / slant),
         "peak_pressure": slope * (edge + dx) + K * both,
@@ -389,8 +400,7 @@ def _spring_response(
     Motion along x decays slowly, or grows to a cycle whose phase shifts more and more (F22): theory of a
     disturbed scene covers that. Besides, the friction b a/R acts on the spring at once.
     """
-    inertia, stiffness = theory.scene.drive_mass, float(theory.scene.drive.stiffness or 0.0)
-    swing = math.sqrt(inertia / stiffness)  # period over 2 pi, in s
+    swing = theory.swing
     first = np.searchsorted(time, time - QUARTER * swing, side="left")
     after = np.searchsorted(time, time + QUARTER * swing, side="right")
     ends = np.stack([first, after], axis=1).reshape(-1)
@@ -404,7 +414,7 @@ def _spring_response(
     kick = OVERSHOOT * force * theory.static.half_length / theory.radius
     turned = np.clip(time / swing, 0.0, 1.0)  # a mass needs time to move
     moved["spring_force"] += kick * turned**2
-    moved["sliding_velocity"] += kick * turned * swing / inertia
+    moved["sliding_velocity"] += kick * turned * swing / theory.scene.drive_mass
     return moved
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks.comparison_case import COARSE, SMALLEST, Case, NotMade, rms
-from kvtheory.checks.noise import SURE, extreme
+from kvtheory.checks.noise import SURE, extreme, means
 from kvtheory.checks.theory import Array, Curves
 from kvtheory.results.comparison import Check
 from kvtheory.scene.model import Support
@@ -27,6 +27,8 @@ SAMPLING = "sampling"
 SHORTEST_WINDOW, LONGEST_WINDOWS, OVERLAP = 16, 6, 2
 """Fewest samples in a window of the impulse balance, to resolve phi''; number of lengths, from the whole
 series down by halves; and number of windows of each length that cover a sample."""
+AVERAGED, FEWEST_MEANS = (1, 4, 16), 12
+"""Rows in a mean, and fewest means that are compared together."""
 SETTLED = 7.0
 """Slow time constants from the last change of the drive to steady sliding: e^-7 is below a thousandth."""
 LAST_PART, FEWEST_LATE = 0.75, 3
@@ -163,18 +165,28 @@ def balance(case: Case) -> Measured:
     return lacks / static.load, limit / static.load, note
 
 
+def lengths(case: Case) -> list[int]:
+    """Return how many rows are averaged: in means a smooth difference shows below the noise of each row."""
+    return [n for n in AVERAGED if n == 1 or n * FEWEST_MEANS <= case.time.size]
+
+
 def largest(case: Case, name: str) -> Measured:
-    """Compare the value of a curve that is worst relative to its allowance."""
-    excess, limit, time = case.excess(name), case.limit(name), case.time * 1e3
-    ratio = excess / limit
-    k, wrong = int(np.argmax(ratio)), np.flatnonzero(ratio > 1.0)
-    first = f", first disagreement at {time[wrong[0]]:.4g} ms" if wrong.size else ""
-    return excess[k], limit[k], f"worst at {time[k]:.4g} ms{first}"
+    """Compare the value of a curve, or mean of neighbours, that is worst relative to its allowance."""
+
+    def worst(rows: int) -> Measured:
+        excess, limit = case.excess(name, rows), case.limit(name, rows)
+        ratio, time = excess / limit, means(case.time, rows) * 1e3
+        k, wrong = int(np.argmax(ratio)), np.flatnonzero(ratio > 1.0)
+        first = f", first disagreement at {time[wrong[0]]:.4g} ms" if wrong.size else ""
+        return excess[k], limit[k], f"worst at {time[k]:.4g} ms{first}"
+
+    return max(map(worst, lengths(case)), key=lambda each: each[0] / each[1])
 
 
 def root_mean_square(case: Case, name: str) -> Measured:
-    """Compare all values of a curve together: what its noise alone may leave beyond the smooth allowance."""
-    return rms(case.beyond(name)), case.rms_limit(name), ""
+    """Compare all values or means of a curve together: what noise may leave beyond the smooth allowance."""
+    found = [(case.beyond(name, n), case.rms_limit(name, n)) for n in lengths(case)]
+    return *max(found, key=lambda each: each[0] / each[1]), ""
 
 
 def steady_limit(case: Case) -> Measured:

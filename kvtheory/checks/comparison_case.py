@@ -8,6 +8,7 @@ import numpy as np
 
 from kvtheory.checks.allowances import (
     EDGES,
+    MARGIN,
     UNKNOWN_STEP,
     Band,
     Resolution,
@@ -17,7 +18,7 @@ from kvtheory.checks.allowances import (
     edge_jumps,
     resolution,
 )
-from kvtheory.checks.noise import SURE, gaps, noise
+from kvtheory.checks.noise import SURE, gaps, means, noise
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Explanation
@@ -30,8 +31,8 @@ SMALLEST = 1e-9
 LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
 """Force of half an element at an edge, over the load: beyond the first the contact is not resolved; beyond
 the second the data are wrong rather than coarse."""
-MARGIN, IN_STEP = 1.4, 1.75
-"""Margins on the spacing assumed or read from an even sawtooth; and from one nearly in step with samples."""
+IN_STEP = 1.75
+"""Margin on the spacing read from a sawtooth nearly in step with samples."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
 """Median and 95th percentile of the gaps of a sawtooth +-b sampled at random, in units of b."""
 EVEN = 0.6
@@ -104,29 +105,31 @@ class Case:
         """Return data less theory, relative to the scale of the curve."""
         return (self.columns[name] - self.now[name]) / self.theory.scales[name]
 
-    def excess(self, name: str) -> Array:
-        """Return how far the data lie outside the band of theory, relative to the scale."""
-        values = self.bands[name].excess(self.columns[name])
+    def excess(self, name: str, rows: int = 1) -> Array:
+        """Return how far the data, or means of so many rows, lie outside the band, relative to the scale."""
+        values = self.bands[name].averaged(rows).excess(means(self.columns[name], rows))
         return np.asarray(np.nan_to_num(values) / self.theory.scales[name])
 
-    def limit(self, name: str) -> Array:
-        """Return how far a single value may lie outside the band, relative to the scale."""
-        values = np.nan_to_num(self.bands[name].limit(), nan=0.0) / self.theory.scales[name]
-        return np.asarray(self.tolerance * (values + SMALLEST))
+    def limit(self, name: str, rows: int = 1) -> Array:
+        """Return how far a single value, or mean, may lie outside the band, relative to the scale."""
+        values = np.nan_to_num(self.bands[name].averaged(rows).limit(), nan=0.0)
+        return np.asarray(self.tolerance * (values / self.theory.scales[name] + SMALLEST))
 
     def allowed(self, name: str) -> Array:
         """Return the limit in the unit of the curve."""
         return np.asarray(self.limit(name) * self.theory.scales[name])
 
-    def beyond(self, name: str) -> Array:
-        """Return how far the data lie beyond the smooth error too, which leaves their noise, as `excess`."""
-        smooth = np.nan_to_num(self.bands[name].systematic) / self.theory.scales[name]
-        return np.asarray(np.maximum(self.excess(name) - self.tolerance * smooth, 0.0))
+    def beyond(self, name: str, rows: int) -> float:
+        """Return the root mean square beyond the smooth error too, which leaves noise, as `excess`."""
+        smooth = means(self.bands[name].systematic, rows) / self.theory.scales[name]
+        off = self.excess(name, rows) - self.tolerance * np.nan_to_num(smooth)
+        return rms(np.maximum(off, 0.0))
 
-    def rms_limit(self, name: str) -> float:
-        """Return the largest root mean square of `beyond` that is allowed, relative to the scale."""
-        random = rms(self.bands[name].noise) / self.theory.scales[name]
-        return self.tolerance * (random * (1.0 + SURE * math.sqrt(2.0 / self.time.size)) + SMALLEST)
+    def rms_limit(self, name: str, rows: int = 1) -> float:
+        """Return the largest value of `beyond` that is due to noise."""
+        random = rms(self.bands[name].noise) / math.sqrt(rows) / self.theory.scales[name]
+        few = SURE * math.sqrt(2.0 * rows / self.time.size)
+        return self.tolerance * (random * (1.0 + few) + SMALLEST)
 
 
 def make_case(

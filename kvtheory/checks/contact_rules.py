@@ -40,8 +40,9 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
 """Kinds of scenes in which a mistake can show."""
 FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
 TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
-STARTS, LOSSES = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95)
-"""Simulated strengths: factors of damping, of a time and of the depth; parts of a force and of a length."""
+STARTS, LOSSES, LAGS = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95), (0.0, 0.1, 0.25, 0.6)
+"""Simulated strengths: factors of damping, of a time and of the depth; parts of a force and of a length; and
+lags, of which Runge-Kutta is unstable with more than the last one."""
 BETWEEN = 5
 """Starts of a fit for each simulated strength: beyond some strength there may be no slope."""
 HUGE, BEYOND = 1e100, 0.02
@@ -85,6 +86,11 @@ MISTAKES = (
             "as where an element counts as free once the indenter is above where the last step left it "
             "(Eqs. 24 and 25, F8)",
             [Rule(drops=part) for part in LOSSES], "moves", LOSSES, 0.0),
+    Mistake("contact lost while rising",
+            "contact is lost within a Runge-Kutta step, in the stages at which the indenter rises: it sinks "
+            "until half of the force bears the load, with the lag of half a step, {:.2g} M/(C A), A being "
+            "its contact at rest (Eqs. 24 and 25, F8)",
+            [Rule(drops=0.5, creep=lag) for lag in LAGS], "moves", LAGS),
     Mistake("no relaxation of the free surface",
             "the free surface does not relax where the indenter recedes from it or comes back to it: it "
             "decays as exp(-t/tau) (Eqs. 20 and 25, F8)", [Rule(decay=0.0), Rule(freezes=True)]),

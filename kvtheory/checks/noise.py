@@ -40,6 +40,11 @@ def extreme(count: int) -> float:
     return (math.sqrt(2.0 * math.log(n)) + RARE) * (1.0 + FROM_FEW / math.sqrt(n))
 
 
+def means(values: Array, rows: int) -> Array:
+    """Return the means of so many neighbours each."""
+    return np.asarray(values[: values.size - values.size % rows].reshape(-1, rows).mean(axis=1))
+
+
 def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
     """Return how far values are from the line between their neighbours, and the indices of these values.
 

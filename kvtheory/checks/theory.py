@@ -140,6 +140,11 @@ class Theory:
         return float(self.motion.velocity(self.motion.end))
 
     @cached_property
+    def swing(self) -> float:
+        """The period of the mass on the spring of the drive over 2 pi, in s."""
+        return math.sqrt(self.scene.drive_mass / float(self.scene.drive.stiffness or 0.0))
+
+    @cached_property
     def steady_state(self) -> Any:
         """Steady sliding at the last velocity."""
         return self.methods.steady(replace(self.scene, drive=Drive(self.final_velocity)))

@@ -32,6 +32,9 @@ class Rule(NamedTuple):
         0.0  # part of the pressure of receding elements that the equation of motion misses
     )
     drops: float = 0.0  # part of the whole force that it misses while the indenter rises
+    creep: float = (
+        0.0  # lag of a step that rises and sinks by turns, in units of M/C over the contact
+    )
     hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
@@ -299,17 +302,18 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     static = StaticState.of(scene)
     motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)
-    reach, drive, held, M = WINDOW * static.half_length, scene.drive, scene.held, scene.support.mass
+    reach, drive, held = WINDOW * static.half_length, scene.drive, scene.held
+    M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
     swing = 0.0 if drive.rigid else SWING * static.half_length
     low, high = motion.extremes(0.0, float(times[-1]))
     elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
-    depth = np.array([rule.start for rule in rules]) * static.depth
-    rate, along, along_rate = np.zeros((3, len(rules)))
-    damper = np.array([rule.damper for rule in rules]) * scene.foundation.slow_damping
-    damper *= static.load / (scene.foundation.stiffness * static.depth)
-    drops = np.array([1.0 - rule.drops for rule in rules])
-    M_x, (lifted, pulled) = scene.drive_mass, np.zeros((2, len(rules)))
+    damping = (
+        scene.foundation.slow_damping * static.load / (scene.foundation.stiffness * static.depth)
+    )
+    parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
+    depth, damper, creep, drops = (parts * [static.depth, damping, 1.0 / damping, 1.0]).T
+    rate, along, along_rate, lifted, pulled, sinks = np.zeros((6, len(rules)))
 
     def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
@@ -341,8 +345,9 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
                     / M / (1.0 + IMPLICIT * h * slope / M)
                     for kept in (1.0, drops)
                 )  # fmt: skip
-                # Where the whole force raises the indenter and what is left lowers it, it stays.
-                rate = np.where(full >= 0.0, full, np.minimum(less, 0.0))
+                # Where the whole force raises the indenter and what is left lowers it, it stays, or creeps.
+                sinks = creep * np.maximum(-lift(sunk, rate, found), 0.0)
+                rate = np.maximum(full, np.minimum(less, sinks))
             if k_x:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
@@ -352,7 +357,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if not held:
             full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
             lifted = np.where(
-                rate > 0.0, full, np.where(rate < 0.0, less, np.clip(0.0, full, less))
+                rate > sinks, full, np.where(rate < 0.0, less, np.clip(0.0, full, less))
             )
         if k_x:
             pulled = pull(along, along_rate, found)
