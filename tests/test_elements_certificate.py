@@ -98,6 +98,24 @@ def alone(seed):
     return kv.elements(scene, per_length=25.0, at=times, scheme=scheme), truth, scene
 
 
+def brief(seed):
+    """Return a run on one arm at one instant, until which the base has moved by a few elements or less."""
+    rng = np.random.default_rng(seed)
+    density, V, passed = 10.0 ** rng.uniform([0.9, -1.5, -1.0], [1.8, 1.0, 0.7])
+    end, V = float(passed / density / V), float(V * rng.choice([-1.0, 1.0]))
+    scene = of_unit_scales(
+        10.0 ** rng.uniform(-3.0, 0.5), [0.0, math.inf, 1.0][seed % 3], kv.Drive(V), end
+    )
+    K_1, tau = (10.0 ** rng.uniform([-0.5, -1.0], [1.2, 1.0])).tolist()
+    arms = kv.GeneralizedMaxwell(0.75, arms=[(K_1, tau)])
+    scene = replace(
+        scene, foundation=arms, drive=kv.Drive(history=histories(rng, end, V)[seed % 5])
+    )
+    times = [float(end * rng.uniform(0.1, 1.0))]
+    truth = kv.transient(scene, at=times, rtol=1e-8, certify=False)
+    return kv.elements(scene, per_length=density, at=times), truth, scene
+
+
 def ball(seed):
     """Return a run of a ball, and one with several times as many elements.
 
@@ -148,7 +166,7 @@ def errors(run, truth, scene):
     }
 
 
-KINDS = {plain: 40, swinging: 12, on_arms: 9, tipped: 6, on_spring: 4, alone: 6, ball: 4}
+KINDS = {plain: 40, swinging: 12, on_arms: 9, tipped: 6, on_spring: 4, alone: 6, brief: 10, ball: 4}
 """How many scenes of each kind."""
 
 
@@ -160,6 +178,25 @@ def test_the_certificate_covers_the_error_on_random_scenes(kind):
         assert len(found) >= 5
         for name, error in found.items():
             assert error <= run.certificate.relative_error[name] + known, (seed, name)
+
+
+@pytest.mark.parametrize(
+    ("support", "arm", "way", "density", "time"),
+    [(kv.DeadWeight(1.0, 1.0), (13.0, 9.0), [(0.0, 0.05)], 44.2, 0.3),
+     (kv.Fixed(1.0), (13.0, 0.05), [(0.0, 2.0), (0.03, 2.0), (0.03, -1.4)], 12.2, 0.032),
+     (kv.DeadWeight(0.1455, 1.0 / 0.1455), (7.26, 1.4), [(0.0, -6.54)], 61.8116, 6.519e-4)],
+    ids=["start", "reversal", "swing"],
+)  # fmt: skip
+def test_what_no_run_sees_before_an_element_enters_is_in_the_error(
+    support, arm, way, density, time
+):
+    """Arms have a kink where contact ended before; and of two steps, only the last could be compared."""
+    drive, arms = kv.Drive(history=way), kv.GeneralizedMaxwell(0.75, arms=[arm])
+    scene = kv.Scene(kv.Parabola(0.5), arms, support, drive, kv.Run(1.0))
+    run = kv.elements(scene, per_length=density, at=[time])
+    truth = kv.transient(scene, at=[time], rtol=1e-9, certify=False)
+    for name, error in errors(run, truth, scene).items():
+        assert error <= run.certificate.relative_error[name], name
 
 
 SWINGING = kv.Scene(

@@ -74,9 +74,11 @@ COUNTS = record(
 )  # fmt: skip
 """The range of elements needed, and the strips; the runs in contact at the start of a step and at its end;
 elements in these; updates of elements."""
-REPORT = record(**dict.fromkeys((*SERIES_UNITS, "doubt", "at_edge", "left", "right"), "f8"))
+REPORT = record(
+    **dict.fromkeys((*SERIES_UNITS, "doubt", "at_edge", "unloaded", "left", "right"), "f8")
+)
 """The columns of a time series as on a spring, the doubt about the peak pressure and the highest pressure at
-an edge (Pa), and the left and right edge, whichever leads."""
+an edge (Pa), by how much arms at edges may press less, and the left and right edge, whichever leads."""
 
 
 class Surface(NamedTuple):
@@ -898,7 +900,7 @@ def report(
         return status
     press(row, none, (depth, now.rate), place, sliding, False)
     found.normal_force = found.friction_force = found.peak_pressure = found.doubt = 0.0
-    found.at_edge = 0.0
+    found.at_edge = found.unloaded = 0.0
     found.left = found.right = math.nan
     for r in range(row.counts.ended):
         j, low, stop = run_at(row.ended, r)
@@ -909,7 +911,7 @@ def report(
                 after = (c.kinks[k] - place) / c.spacing - row.numbers[0]
                 high = max(low, min(stop, math.floor(after) + 1))
             if high > low:
-                report_run(row, (j, low, high), (before, after), place, unsure, found)
+                report_run(row, (j, low, high), (before, after), (place, sliding), unsure, found)
             low, before = high, after
     if now.along_rate and abs(sliding) > c.creep:
         forward = 1.0 if sliding > 0.0 else 0.0
@@ -922,18 +924,22 @@ def report(
 
 
 def report_run(
-    row: Row, run: tuple[int, int, int], kinks: Pair, place: float, unsure: float, found: Any
+    row: Row, run: tuple[int, int, int], kinks: Pair, base: Pair, unsure: float, found: Any
 ) -> None:
-    """Add the forces of a run, or of its part between two kinks, to a report, and its peak and edges."""
-    (j, low, high), (before, after), c = run, kinks, row.constants
+    """Add the forces of a run, or of its part between two kinks, to a report, and its peak and edges.
+
+    `base` is how far the base has moved under the indenter, and its velocity there.
+    """
+    (j, low, high), (before, after), (place, _), c = run, kinks, base, row.constants
     p, slope = row.elements.pressure[j], row.elements.slope[j]
     top = low + int(np.argmax(p[low:high]))
-    first = end_run(row, j, low, -1, place, low - before, high - low)
-    last = end_run(row, j, high - 1, 1, place, after - (high - 1), high - low)
+    first = end_run(row, j, low, -1, base, low - before, high - low)
+    last = end_run(row, j, high - 1, 1, base, after - (high - 1), high - low)
     weight = c.spacing * row.weights[j]
     found.normal_force += weight * (summed(p, low, high) + first.gained + last.gained)
     along = dotted(p, slope, low, high) + first.gained_along + last.gained_along
     found.friction_force -= weight * along
+    found.unloaded += weight * (first.unloaded + last.unloaded)
     if p[top] > found.peak_pressure or not found.peak_pressure:
         reach = first.outward if top == low else 1.0, last.outward if top == high - 1 else 1.0
         if (top == low and low - before <= 1.0) or (top == high - 1 and after - top <= 1.0):
@@ -958,18 +964,19 @@ class End(NamedTuple):
     pressure: float  # at the edge
     doubt: float  # about it
     jump: float  # how much p differs between the elements beside it
+    unloaded: float  # by how much arms may press less up to it
 
 
-def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size: int) -> End:
+def end_run(row: Row, j: int, i: int, out: int, base: Pair, kink: float, size: int) -> End:
     """Return how a run ends beyond its last element i, to the left (`out` = -1) or to the right (1).
 
     An edge peels where p falls to zero, between two elements by a straight line, and touches where the
     indenter meets the free surface. A run ends at a `kink` of the shape, so far outward, at the latest, and
     one of whole elements half an element beyond the last.
     """
-    c, of = row.constants, row.elements
+    c, of, (place, velocity) = row.constants, row.elements, base
     if not c.parts:
-        return End(0.5, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return End(0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     p, slope, threshold = of.pressure[j], of.slope[j], of.threshold[j]
     inside, outside, within = p[i], p[i + out], p[i - out] if size > 1 else p[i]
     share, doubt, touched = 1.0, 0.0, of.touched[j, i + out]
@@ -989,7 +996,33 @@ def end_run(row: Row, j: int, i: int, out: int, place: float, kink: float, size:
     _, steep = surface_at(c.surface, x, j * c.across)
     gained = 0.5 * (share * (inside + p_edge) - inside)
     along = 0.5 * (share * (slope[i] * inside + steep * p_edge) - slope[i] * inside)
-    return End(share, gained, along, p_edge, doubt, abs(inside - outside))
+    less = 0.0
+    if c.law.arm_time.size and p_edge > 0.0 and not touched:
+        rise = row.now.rate - velocity * steep
+        passing = c.spacing * share * abs(steep) / rise if rise > 0.0 else 0.0
+        less = share * unloaded(row, (j, i, i - out if size > 1 else i, i + out), share, passing)
+    return End(share, gained, along, p_edge, doubt, abs(inside - outside), less)
+
+
+def unloaded(row: Row, at: tuple[int, int, int, int], share: float, passing: float) -> float:
+    """Return how much less arms may press on average up to an edge than if continued from inside.
+
+    They enter as they are on free ground and tend to that continuation as 1 - e^(-t/τ_i). The edge goes from
+    the last element to where it is, `share` elements farther, in the time `passing`; if it stands or goes
+    back it is unknown when it came, and zero. `at` are a strip, this element, its neighbour inside, and that
+    outside.
+    """
+    law, (j, i, within, outside) = row.constants.law, at
+    free = less = 0.0
+    for m in range(row.faded.size):
+        free += law.shares[m] * row.faded[m] * row.modes[m, j, outside]
+    for k in range(law.arm_time.size):
+        arm, stretched = row.modes[k, j], free
+        for m in range(row.faded.size):
+            stretched -= law.from_modes[k, m] * row.faded[m] * row.modes[m, j, outside]
+        over = arm[i] + share * (arm[i] - arm[within]) - law.arm_stiffness[k] * stretched
+        less += (1.0 - exponential_fit(passing / law.arm_time[k])) * over
+    return max(less, 0.0)
 
 
 def touching(overlap: Any) -> tuple[float, bool]:

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from operator import itemgetter
 from time import thread_time
 from typing import Any, NamedTuple
@@ -133,7 +133,8 @@ def simulate(
         )
     own_step = time_step is None and not scheme.tableau
     graded = _graded(model, path, h, max(wanted)) if own_step else {}
-    fine = _timetable(path, wanted, h, graded)
+    jumps = set(_jumps(path, max(wanted))) if own_step and at is not None else set[float]()
+    fine = _timetable(path, wanted, h, graded, jumps)
     if certify:
         fine = _watched(path, fine)
     times, steps, instants = fine
@@ -244,16 +245,21 @@ def _instants(scene: Scene, path: BaseMotion, h: float) -> list[float]:
 
 
 def _timetable(
-    path: BaseMotion, wanted: list[float], h: float, graded: dict[float, float]
-) -> Timetable:
-    """Return steps of at most h, or of the graded lengths, that end on the wanted instants."""
+    path: BaseMotion, wanted: list[float], h: float, graded: dict[float, float],
+    jumps: Collection[float] = (),
+) -> Timetable:  # fmt: skip
+    """Return steps of at most h, or of the graded lengths, that end on the wanted instants.
+
+    From a jump to an instant they are so many that runs can be compared in between.
+    """
     asked, end = set(wanted), max(wanted)
     times, lengths, instants = [0.0], list[float](), list[Any]()
     start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({0.0, *asked, *graded, *(t for t in path.changes if t < end)}):
         if stop - start > TOGETHER * step:
             # An even number of steps, so that half as many fit too.
-            count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
+            fewest = 2 * WATCHED if start in jumps and stop in asked else 2
+            count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), fewest)
             lengths += [(stop - start) / count] * count
             times += [start + (stop - start) * k / count for k in range(1, count)] + [stop]
             start = stop
@@ -360,6 +366,8 @@ def _estimate(model: Model, unsure: Unsure, rows: Rows, others: list[Rows]) -> C
     )
     # The sawtooth of an element that enters is at most that high, and no estimate.
     force = unsure.at_jumps / SAFETY * sawtooth + KINKED * (kinks and arms) * one
+    # An edge may have passed less than an element since the pressure at it had a kink: no run sees that.
+    force += float(rows["unloaded"].max()) / SAFETY
     for name, more in {
         "leading_edge": edge, "trailing_edge": edge, "normal_force": force,
         "friction_force": force * model.steepest, "peak_pressure": float(rows["doubt"].max()),
