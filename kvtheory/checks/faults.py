@@ -365,9 +365,10 @@ def _filtered(bench: Bench, time_constant: float, names: Sequence[str]) -> Pair:
     kept = np.exp(-z)
     mean = np.where(z > SMALL, -np.expm1(-z) / np.maximum(z, SMALL), 1.0 - 0.5 * z)
     for name in names:
-        x, value, found = known[name], float(bench.columns[name][0]), []
-        for k in range(z.size):  # exact for a straight line between two instants
-            found.append(value)
-            value = kept[k] * value + (mean[k] - kept[k]) * x[k] + (1.0 - mean[k]) * x[k + 1]
-        now[name] = np.interp(bench.time, known["time"], [*found, value])
+        x, found = known[name], [float(bench.columns[name][0])]
+        # Exact for a straight line between two instants.
+        driven = (mean - kept) * x[:-1] + (1.0 - mean) * x[1:]
+        for fall, added in zip(kept.tolist(), driven.tolist(), strict=True):
+            found.append(fall * found[-1] + added)
+        now[name] = np.interp(bench.time, known["time"], found)
     return bench.columns, {**bench.now, **now}
