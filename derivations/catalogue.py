@@ -19,7 +19,7 @@ CHAPTERS: tuple[ModuleType, ...] = tuple(
         *("theorems", "master_curve", "energy", "asymptote_errors", "circle"),
         *("power_law", "power_law_limits", "power_law_weight", "power_law_errors", "wedge"),
         *("ball", "ball_slopes"),
-        *("viscoelastic", "relaxation", "viscoelastic_limits", "few_arms"),
+        *("viscoelastic", "relaxation", "viscoelastic_limits", "few_arms", "damped_arms"),
         "viscoelastic_ball",
         *("transient_scaling", "transient_memory", "contact_interval", "transient_edges"),
         *("transient_motion", "transient_rates", "transient_balance"),

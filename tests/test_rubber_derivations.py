@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.chapters import few_arms, rubber_transient, viscoelastic
+from kvtheory.derivations.chapters import damped_arms, few_arms, rubber_transient, viscoelastic
+from kvtheory.derivations.engine import book
 from kvtheory.derivations.engine.book import established
 from scipy.optimize import brentq, minimize_scalar
 
@@ -174,3 +175,91 @@ def test_f27_bounds_what_another_series_changes():
         change = abs(forces(length, other)[1] / friction - 1)
         worst = max(worst, change / (few_arms.BOUND * relative))
     assert 0.05 < worst < 1
+
+
+DAMPING, ARMS, RADIUS, DEPTH = 0.5e9, ((20e9, 5e-3), (10e9, 0.2)), 0.01, 3e-4
+"""A damper beside two arms."""
+_moments = damped_arms.A, damped_arms.B, damped_arms.D, damped_arms.E, damped_arms.P
+_excess = damped_arms.WHOLE[damped_arms.B] / damped_arms.WHOLE[damped_arms.A]
+_TOGETHER = sp.lambdify(
+    (*_moments, damped_arms.lam, damped_arms.e),
+    [form.subs(damped_arms.beta, 1) for form in (_excess, damped_arms.LOAD, damped_arms.WORK)],
+    "mpmath",
+)
+"""The excess over half of the contact, load and friction force, with the moments of all arms added up."""
+_P, _Q, _D, _E = (viscoelastic.MOMENTS[name][1] for name in (viscoelastic.P, viscoelastic.Q, viscoelastic.D,
+                                                               viscoelastic.E))  # fmt: skip
+_OF_ARM = sp.lambdify(viscoelastic.z, [_P + _Q, (_P - _Q) / 2, _D, _E, _P], "mpmath")
+
+
+def _sliding_on_arms_and_damper(velocity, depth):
+    """Return load and friction force, by the record F33."""
+    half = mp.sqrt(2 * RADIUS * depth)
+
+    def at(c):
+        totals = [mp.mpf(0)] * len(_moments)
+        for stiffness, time in ARMS:
+            own = _OF_ARM(c / (velocity * time))
+            totals = [total + stiffness / K * each for total, each in zip(totals, own, strict=True)]
+        ratio = DAMPING * velocity / (K * c)
+        excess, *_ = _TOGETHER(*totals, ratio, 0)
+        _, load, work = _TOGETHER(*totals, ratio, excess)
+        return excess, K * c**3 / RADIUS * load, K * c**4 / RADIUS**2 * work
+
+    c = mp.findroot(
+        lambda c: c * (mp.mpf(1) / 2 + at(c)[0]) - half, (half, 2 * half), solver="anderson"
+    )
+    return at(c)[1:]
+
+
+@pytest.mark.parametrize(
+    ("velocity", "load", "friction"),
+    [("1e-3", 9955.691, 214.8258), ("0.03", 19014.63, 1486.771), ("1", 169030.5, 26179.89)],
+)
+def test_f33_slides_as_a_quadrature_of_the_history_says(velocity, load, friction):
+    with mp.workdps(40):
+        found = _sliding_on_arms_and_damper(mp.mpf(velocity), DEPTH)
+    assert [*map(float, found)] == pytest.approx([load, friction], rel=1e-6)
+
+
+def test_f33_has_the_limits_and_the_critical_velocities_that_it_states(by_label):
+    half = np.sqrt(2 * RADIUS * DEPTH)
+    damping = DAMPING + sum(stiffness * time for stiffness, time in ARMS)
+    with mp.workdps(60):
+        slow, fast = (
+            _sliding_on_arms_and_damper(v, DEPTH) for v in (mp.mpf("1e-9"), mp.mpf("1e9"))
+        )
+    low = float(slow[1] / slow[0]) / 1e-9
+    high = float(fast[1] / fast[0])
+    assert (low, high) == pytest.approx((damping / (K * RADIUS), 2 * half / (3 * RADIUS)), rel=1e-5)
+    assert float(fast[0]) == pytest.approx(DAMPING * 1e9 * DEPTH, rel=1e-5)
+    scene = {
+        s.K: K,
+        s.R: RADIUS,
+        s.delta: DEPTH,
+        s.C: DAMPING,
+        s.W: WEIGHT,
+        damped_arms.C_all: damping,
+    }
+    fixed, weight = (
+        float(established(label, s.V_star).subs(scene))
+        for label in ("F33-critical", "F33-critical-weight")
+    )
+    assert low * fixed == pytest.approx(high, rel=1e-5)
+    assert (low * weight) ** 2 == pytest.approx(
+        8 * WEIGHT / (9 * RADIUS * DAMPING * weight), rel=1e-5
+    )
+    assert by_label["F33-critical"].status == "proved"
+
+
+def test_f33_relaxes_behind_the_contact_with_the_rates_of_its_polynomial(by_label):
+    stiffness, time = ARMS[0]
+    # u' = -(K u + s)/C and s' = K_1 u' - s/tau
+    system = np.array([[-K, -1], [-stiffness * K, -stiffness - DAMPING / time]]) / DAMPING
+    rates = np.sort(-np.linalg.eigvals(system))
+    scene = {s.K: K, s.C: DAMPING, damped_arms.spring_1: stiffness, damped_arms.tau_1: time}
+    _, form = book.finished(["F33-free"])["F33-free"].result
+    assert by_label["F33-free"].status == "proved"
+    values = [float(form.subs(scene).subs(damped_arms.fades, rate)) for rate in rates]
+    assert values == pytest.approx([0, 0], abs=1e-9 * K / time)
+    assert rates[0] < 1 / time < rates[1]

@@ -11,7 +11,7 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.rules import Computed
 from ..engine.step import Proof
-from .model import K, R, delta_t, t
+from .model import C, K, R, delta_t, t, x
 from .relaxation import spring_1, spring_2
 from .viscoelastic_limits import rates
 
@@ -139,6 +139,24 @@ def _edge(proof: Proof) -> None:
                 left=r"\frac{d s_i}{d t_{\mathrm{in}}}",
                 right=r"-\frac{K_i}{R} \left[\beta_i(t_1) - E_i \beta_i(t_{\mathrm{in}}) + E_i "
                 r"x_{\mathrm{LE}}(t_{\mathrm{in}})\right] \frac{d \xi}{d t_{\mathrm{in}}}")  # fmt: skip
+
+
+@result("F33-forces")
+def _damped(proof: Proof) -> None:
+    r"""Rubber: what a damper beside the arms adds to the forces.
+
+    Where $p = K u + C \dot u + \sum s_i$, the damper adds these to $F_z$ and to $-R F_x$ of F23, with the
+    rate of compression $\dot u$ of F23-stress at $x = \xi + Y$. Both follow the velocities at once.
+    """
+    proof.recall("F23", *I_n)
+    rate, over = C * (delta_t.diff(t) - v_t * x / R), (x, le_t(t), te_t(t))
+    for n, what in ((0, "of $F_z$"), (1, "of $-R F_x$")):
+        value = C * (delta_t.diff(t) * I_n[n] - v_t * I_n[n + 1] / R)
+        primitive = C * (
+            delta_t.diff(t) * x ** (n + 1) / (n + 1) - v_t * x ** (n + 2) / ((n + 2) * R)
+        )
+        whole = sp.Integral(x**n * rate, over)
+        proof.integral(whole, whole.function, over, primitive, f"its part {what}", value=value)
 
 
 class Determinant(Computed):
