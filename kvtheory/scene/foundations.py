@@ -366,12 +366,12 @@ class Foundation(_Relaxed):
     """
 
     kind: ClassVar[str] = DAMPER
-    retardation_time: Value = quantity(  # type: ignore[misc]
+    retardation_time: Value = quantity(
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
 
     @property
-    def damping(self) -> Value:  # type: ignore[override]
+    def damping(self) -> Value:
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
 
@@ -445,10 +445,10 @@ class FractionalKelvinVoigt(_Relaxed):
 
     kind: ClassVar[str] = SPRINGPOT
     springpot: ClassVar[bool] = True
-    retardation_time: Value = quantity(  # type: ignore[misc]
+    retardation_time: Value = quantity(
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
-    order: Value = quantity(  # type: ignore[misc]
+    order: Value = quantity(
         "1", "alpha, order of the springpot", default=None, needed=True,
         minimum=LOWEST_ORDER, exclusive=False, maximum=1.0,
     )  # fmt: skip

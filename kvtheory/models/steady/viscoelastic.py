@@ -46,7 +46,8 @@ def law(scene: Scene) -> Law:
     def full(x: Any) -> Array:
         return np.broadcast_to(x, scene.shape)
 
-    foundation, V = scene.foundation, np.abs(full(scene.drive.final_velocity))
+    foundation: Any = scene.foundation
+    V = np.abs(full(scene.drive.final_velocity))
     K = full(foundation.stiffness)
     if foundation.springpot:
         return Fractional(K, foundation.retardation_time, foundation.order).over(V)

@@ -66,10 +66,8 @@ class Ground:
         self.memory = r_.named(r_.together(run.memory, r_.ARM_STATE)[:count])
         self.segments = structured(run.segments[: motion.counts.segments], r_.SEGMENT)
         self.pieces, self.arms = np.asarray(run.pieces), r_.named(r_.together(run.arms, r_.ARM))
-        self.modes, self.paused = (
-            r_.named(r_.together(run.modes, r_.MODE)),
-            r_.named(r_.together(run.clock, r_.PIECE)).paused,
-        )
+        self.modes = r_.named(r_.together(run.modes, r_.MODE))
+        self.paused = r_.named(r_.together(run.clock, r_.PIECE)).paused
         self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]
@@ -297,10 +295,8 @@ class Ground:
         if panels.size < 2:
             return 0.0, 0.0, 0.0, 0.0
         width = np.diff(panels)[:, None]
-        t, weights = (
-            (panels[:-1, None] + width * ABSCISSAE).reshape(-1),
-            (width * WEIGHTS).reshape(-1),
-        )
+        t = (panels[:-1, None] + width * ABSCISSAE).reshape(-1)
+        weights = (width * WEIGHTS).reshape(-1)
         drive, damper, pressed, powers = self.powers(t)
         age = self.time(self.step_at(np.array([s])), np.array([s])) - self.time(self.step_at(t), t)
         fade = -2.0 * age / self.arms.relaxation_time[:, None]

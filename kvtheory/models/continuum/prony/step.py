@@ -360,12 +360,8 @@ def collect_sources(run: Run, of_moments: bool) -> None:
     """Write the sources of F_i, or of M_i, at the stages."""
     stages, arm, span = run.stages, run.arm_stages, run.steps[run.now.steps].lasts
     for j in range(run.given.stages):
-        l, r, v, number = (
-            stages.edges[j, 0],
-            stages.edges[j, 1],
-            stages.depth_rate[j],
-            stages.sliding_velocity[j],
-        )
+        l, r = stages.edges[j, 0], stages.edges[j, 1]
+        v, number = stages.depth_rate[j], stages.sliding_velocity[j]
         I_0, I_1, I_2, _ = moments(l, r)
         first, second = -stages.edge_shift[j, 0], stages.edge_shift[j, 1]
         change = v * I_0 - 2.0 * number * I_1
@@ -380,12 +376,8 @@ def collect_sources(run: Run, of_moments: bool) -> None:
 
 def balance(run: Run, free: int) -> None:
     """Write the residuals of the equations of motion at the stages."""
-    given, n, change, residual = (
-        run.given,
-        run.given.stages,
-        run.unknowns.change,
-        run.unknowns.residual,
-    )
+    given, n = run.given, run.given.stages
+    change, residual = run.unknowns.change, run.unknowns.residual
     span, stages, arm, c = run.steps[run.now.steps].lasts, run.stages, run.arm_stages, given.damper
     for j in range(n):
         first = second = 0.0
