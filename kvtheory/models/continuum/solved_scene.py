@@ -87,10 +87,8 @@ class SolvedScene:
         if self.drive.highest_speed > 0.0:  # else nothing moves
             times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
             found += [(s, f"{force} force maximum") for s, force in times]
-        return tuple(
-            Event(s * self.units.time, kind)
-            for s, kind in sorted(found, key=lambda event: event[0])
-        )
+        found.sort(key=lambda event: event[0])
+        return tuple(Event(s * self.units.time, kind) for s, kind in found)
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""

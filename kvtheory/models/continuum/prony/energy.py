@@ -165,10 +165,8 @@ class Ground:
             high[here], low[here] = np.where(own, at, high[here]), np.where(own, low[here], at)
         low[rest] = np.maximum(segment["X_a"], (l - Y)[owner])[rest]
         high[rest] = np.minimum(segment["X_b"], (r - Y)[owner])[rest]
-        panels = [
-            self._panels(s[owner[k]], low[k], high[k], rest[k], self.ages[int(inside[k])])
-            for k in range(len(rows))
-        ]
+        rows_of = zip(s[owner], low, high, rest, inside, strict=True)
+        panels = [self._panels(*row, self.ages[int(here)]) for *row, here in rows_of]
         which = np.repeat(np.arange(len(rows)), [len(p) - 1 for p in panels])
         a = np.concatenate([p[:-1] for p in panels])
         width = np.concatenate([np.diff(p) for p in panels])
@@ -301,12 +299,8 @@ class Ground:
         age = self.time(self.step_at(np.array([s])), np.array([s])) - self.time(self.step_at(t), t)
         fade = -2.0 * age / self.arms.relaxation_time[:, None]
         kept = -np.expm1(fade) / self.arms.stiffness[:, None]
-        rows = (
-            drive,
-            0.375 * (kept * powers).sum(axis=0) + 0.75 * self.damper * pressed,
-            0.75 * self.met_again(t),
-            damping * damper,
-        )
+        inside = 0.375 * (kept * powers).sum(axis=0) + 0.75 * self.damper * pressed
+        rows = drive, inside, 0.75 * self.met_again(t), damping * damper
         work, contact, again, lost = (float(weights @ row) for row in rows)
         return work, contact, again, lost
 

@@ -330,10 +330,9 @@ def find_edge(run: Run, k: int) -> bool:
             arm.stress_at_edge[i, j, k] = element.stress[i]
     interpolate_edge(run, k)
     polynomials = run.polynomials
-    interpolate(
-        run, polynomials.compression[index, :, k], stages.compression[:, k], side.compression
-    )
-    interpolate(run, polynomials.rise[index, :, k], stages.rise[:, k], side.rise)
+    compression, rise = polynomials.compression[index, :, k], polynomials.rise[index, :, k]
+    interpolate(run, compression, stages.compression[:, k], side.compression)
+    interpolate(run, rise, stages.rise[:, k], side.rise)
     found, values = run.memory.stress_at_edge[index, :, :, k], arm.stress_at_edge[:, :, k]
     for i in everything:
         interpolate_arm(run, i, found, values, run.state.stress_at_edge[i, k])
@@ -446,11 +445,9 @@ def size_of(run: Run) -> float:
     remembered = first = second = 0.0
     for i in c_.over(given.arms):
         depth, slide = arm.accumulated_depth, arm.accumulated_slide
-        compressed = interpolate_arm(
-            run, i, memory.accumulated_depth[index], depth, state.accumulated_depth[i]
-        ) + moving * interpolate_arm(
-            run, i, memory.accumulated_slide[index], slide, state.accumulated_slide[i]
-        )
+        A, B = state.accumulated_depth[i], state.accumulated_slide[i]
+        compressed = interpolate_arm(run, i, memory.accumulated_depth[index], depth, A)
+        compressed += moving * interpolate_arm(run, i, memory.accumulated_slide[index], slide, B)
         remembered += c_.total(run.arms.stiffness[i] * compressed)
         farthest += c_.total(abs(depth[i, given.stages - 1]))
         first += c_.total(interpolate_arm(run, i, memory.force[index], arm.force, state.force[i]))
