@@ -260,14 +260,14 @@ def test_on_a_prony_series_measures_are_those_of_the_dense_series():
 def test_a_scene_that_the_solver_refuses_on_a_prony_series_is_swept_by_elements(monkeypatch):
     """Its values are those of elements; what only the solver gives is missing, with the reason."""
     scene, over = on_an_arm(3e10, [(0.0, 0.1), (1.0, 0.1)], 0.01), {V: [0.1, 0.3]}
-    solved = measures.on_arms.transient
+    solved = measures.certified
 
     def refusing(scene, *given, **more):
         if scene.drive.velocity == 0.3:
             raise ValueError("it takes off")
         return solved(scene, *given, **more)
 
-    monkeypatch.setattr(measures.on_arms, "transient", refusing)
+    monkeypatch.setattr(measures, "certified", refusing)
     found = kv.sweep(scene, over=over, quantities="depth.end")
     assert not found.failures
     for velocity, depth, error in zip(over[V], found["depth.end"], (1e-6, 1e-3), strict=True):

@@ -43,14 +43,14 @@ def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, A
     as at a take-off, and in trials, where coarse elements are cheaper.
     """
     from kvtheory.ladder.series import never_steady, throughout
-    from kvtheory.models.continuum import prony, solved_scene
+    from kvtheory.models.continuum import solved_scene
 
     ball = not scene.indenter.per_width
     if ball and not never_steady(scene):
         return throughout(steady, scene, np.asarray(times, dtype=float))[0]
     if scene.foundation.arms and not lacks_continuum(scene) and rtol < TRIAL_RTOL:
         with suppress(ValueError, ArithmeticError), double_precision(scene):
-            return vars(prony.solved_scene.transient(scene, times, rtol, certify=False))
+            return vars(solved_scene.transient(scene, times, rtol, certify=False))
     if ball or scene.foundation.arms:
         density = (OF_BALL if ball else PER_HALF_LENGTH) / StaticState.of(scene).half_length
         density /= COARSENING if rtol >= TRIAL_RTOL else 1.0

@@ -87,10 +87,9 @@ def transient(
     scene = one_scene(scene, "a transient")
     require(lacks_continuum, scene, "the transient")
     with double_precision(scene):
-        from kvtheory.models.continuum import prony, solved_scene
+        from kvtheory.models.continuum import solved_scene
 
-        solver = prony.solved_scene if scene.foundation.arms else solved_scene
-        found = solver.transient(
+        found = solved_scene.transient(
             scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )
         return noted(scene, found)

@@ -79,12 +79,11 @@ class Needs:
         if kind not in self.messages:
             shape = kind[0]
             # What is named, shapes or laws, is as much as holds.
-            sets = sorted(
-                self.sets,
-                key=lambda s: (
-                    (False, -len(s.laws)) if shape in s.shapes else (True, -len(s.shapes))
-                ),
-            )
+
+            def narrow(s: Scenes) -> tuple[bool, int]:
+                return (False, -len(s.laws)) if shape in s.shapes else (True, -len(s.shapes))
+
+            sets = sorted(self.sets, key=narrow)
             nearest = min((each.lacking(*kind) for each in sets), key=len)
             self.messages[kind] = nearest[0] if nearest else ""
         return self.messages[kind]

@@ -366,12 +366,12 @@ class Foundation(_Relaxed):
     """
 
     kind: ClassVar[str] = DAMPER
-    retardation_time: Value = quantity(  # type: ignore[misc]
+    retardation_time: Value = quantity(
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
 
     @property
-    def damping(self) -> Value:  # type: ignore[override]
+    def damping(self) -> Value:
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
 
@@ -445,10 +445,10 @@ class FractionalKelvinVoigt(_Relaxed):
 
     kind: ClassVar[str] = SPRINGPOT
     springpot: ClassVar[bool] = True
-    retardation_time: Value = quantity(  # type: ignore[misc]
+    retardation_time: Value = quantity(
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
-    order: Value = quantity(  # type: ignore[misc]
+    order: Value = quantity(
         "1", "alpha, order of the springpot", default=None, needed=True,
         minimum=LOWEST_ORDER, exclusive=False, maximum=1.0,
     )  # fmt: skip
@@ -474,15 +474,11 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
     pairs_expected, own = (OF_LAYER, "modulus") if layer else (PAIRS, "stiffness")
     if isinstance(given, tuple) and not given:
         raise SceneError([f"foundation.arms: missing; expected {pairs_expected}"])
-    if (
-        not isinstance(given, Sequence)
-        or isinstance(given, str)
-        or not 1 <= len(given) <= MOST_ARMS
-    ):
+    listed = isinstance(given, Sequence) and not isinstance(given, str)
+    if not (listed and 1 <= len(given) <= MOST_ARMS):
         raise ValueError(f"expected 1 to {MOST_ARMS} {pairs_expected}")
-    mixed = "only a layer, with foundation.modulus, has arms with moduli"
-    if layer:
-        mixed = "a layer with foundation.modulus has arms with moduli too"
+    which = "a layer with foundation.modulus" if layer else "only a layer, with foundation.modulus,"
+    mixed = f"{which} has arms with moduli{' too' * layer}"
     problems = Problems()
     arms: dict[int, Arm] = {}
     for number, pair in enumerate(given):
@@ -497,10 +493,9 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
         if other:
             raise mistake(key, pair, f"{mixed}; expected {pairs_expected}")
         try:
+            whole = isinstance(pair, Arm)
             arms[number] = (
-                copy.copy(pair)
-                if isinstance(pair, Arm)
-                else Arm(relaxation_time=pair[1], **{own: pair[0]})
+                copy.copy(pair) if whole else Arm(**{own: pair[0]}, relaxation_time=pair[1])
             )
         except SceneError as error:
             problems += [line.replace("arm", key, 1) for line in error.problems]

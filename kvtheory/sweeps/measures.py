@@ -19,13 +19,12 @@ from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.deviation import DEVIATION
 from kvtheory.models.continuum.evaluation import STATE
-from kvtheory.models.continuum.prony import solved_scene as on_arms
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import DONE, ROOM, begin, with_more_room
-from kvtheory.models.continuum.solved_scene import SERIES, certified, scaled_drive
+from kvtheory.models.continuum.solved_scene import SERIES, certified, method_of, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.records import readable
-from kvtheory.results.certificate import AT_REST, Certificate
+from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -83,7 +82,6 @@ class _Motions:
         names = estimate.unknown("", sprung=True).relative_error
         self.measured = Measured(errors={name: np.zeros(size) for name in names})
         self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
-        scaled = on_arms.own_units if plan.scene.foundation.arms else StaticState.of
         self.friction = np.full(size, np.nan)
         self.texts = np.full(size, "", object)
         self.cycles = np.full((size, len(CYCLE)), np.nan)
@@ -103,7 +101,7 @@ class _Motions:
         extremes["sense"] = [sense for _, sense in self.wanted]
         for index, scene in scenes.items():
             try:
-                units = scaled(scene)
+                units = method_of(scene, plan.rtol).units
                 self.scenes[index] = scene, units, scaled_drive(scene, units)
                 self.friction[index] = friction[index] / units.friction_force
             except FAILS as error:
@@ -178,8 +176,8 @@ class _Motions:
     def follow_alone(self, index: int) -> None:
         """Solve one scene."""
         scene, units, _ = self.scenes[index]
-        solution, motion, errors = self.solved(scene)
-        found = self.found
+        solution, _, errors = certified(scene, None, self.plan.rtol)
+        motion, found = solution.motion, self.found
         found.largest[index] = motion.largest(*self.wanted)
         found.settled[index] = motion.settled(self.friction[index], SETTLED)
         if self.plan.times:
@@ -191,14 +189,6 @@ class _Motions:
         if self.plan.texts:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
         self.tell(index, errors.relative_error, errors.statement)
-
-    def solved(self, scene: Scene) -> tuple[Any, Any, Certificate]:
-        """Return a solved scene, its motion and its certificate."""
-        if not scene.foundation.arms:
-            solution, _, errors = certified(scene, None, self.plan.rtol)
-            return solution, solution.motion, errors
-        found = on_arms.transient(scene, None, self.plan.rtol)
-        return found.solution, found.solution.motion, found.certificate
 
     def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
         """Keep the errors of scenes, and what the certificate states of them."""

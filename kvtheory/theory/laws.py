@@ -175,13 +175,12 @@ def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
     moving = z > 0.0
     A = np.where(moving, -fall / np.where(moving, z, 1.0), 1.0)
     Q = 0.5 * A * np.where(near, 1.0 - x * t_0, rest)
-    return (
+    ahead, bulge, twist = (
         cf.arm_ahead(A, t_0, x),
-        Q,
         cf.arm_bulge(A, t_0),
         cf.arm_twist(A, t_0, t_1, x),
-        1.0 + fall,
     )
+    return ahead, Q, bulge, twist, 1.0 + fall
 
 
 class Fractional:
@@ -195,13 +194,8 @@ class Fractional:
             from scipy.special import rgamma
 
             known = [rgamma(n - order) for n in range(1, 5)]
-            moments = (
-                cf.springpot_ahead,
-                cf.springpot_behind,
-                cf.springpot_bulge,
-                cf.springpot_twist,
-            )
-            known += [known[1] * moment(1.0 - order) for moment in moments]
+            names = ("ahead", "behind", "bulge", "twist")
+            known += [known[1] * getattr(cf, f"springpot_{name}")(1.0 - order) for name in names]
             known[-1] *= order  # not 1 - (1 - order), which loses the digits of a low one
         self.known = known
         """1/Gamma(n - alpha) for n = 1 to 4, and the moments P, Q, D, E over K (tau/c)^alpha."""
@@ -240,12 +234,9 @@ class Fractional:
 
     def modulus(self, X: Array) -> tuple[Array, Array, Array]:
         """Return G, X dG/dX and the mean of G up to X > 0."""
-        part, first = self._part(X), self.known[0]
-        return (
-            self.K + part * first,
-            -self.alpha * part * first,
-            self.K + part * self.known[1],
-        )
+        part, mean = self._part(X), self.known[1]
+        end = part * self.known[0]
+        return self.K + end, -self.alpha * part * self.known[0], self.K + part * mean
 
     def least_peak(self, a: Array) -> Array:
         """Return a distance at which the pressure still rises, or at which it is its limit at X = 0."""

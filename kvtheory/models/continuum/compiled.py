@@ -5,6 +5,8 @@ A run is followed to its end interpreted, or compiled from where on that pays, w
 
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import cached_property
 from time import thread_time
 from typing import Any, NamedTuple
 
@@ -80,6 +82,28 @@ def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
     KERNEL(bulk.FOLLOW, fine, other, *NOTHING, steps, all_of)
 
 
+@dataclass(frozen=True)
+class Finished:
+    """A run that has ended; its records are arrays if its kernels were compiled."""
+
+    run: Any
+
+    @cached_property
+    def given(self) -> Any:
+        """Inertia, support, spring, tolerance: the record `GIVEN` of the run."""
+        return readable(self.run.given[0])
+
+    @cached_property
+    def counts(self) -> Any:
+        """The state at the end, and the numbers of steps, events and so on: the record `NOW` of the run."""
+        return readable(self.run.now[0])
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the run ended with compiled kernels."""
+        return in_use(self.run)
+
+
 class Solver(NamedTuple):
     """How runs of one kind are followed.
 
@@ -110,7 +134,7 @@ def finished(
         run = solver.begin(False)
     left, status, begun = max_steps, PAUSED, thread_time()
     while status != DONE:
-        interpreted = not isinstance(run.steps, np.ndarray)
+        interpreted = not in_use(run)
         with solver.kernel.interpreting() if interpreted else nullcontext():
             status = solver.walk(run, min(solver.attempts, left))
         now, s = readable(run.now[0]), solver.time(run)

@@ -77,21 +77,20 @@ def ledger(motion: Any, s: ArrayLike) -> Ledger:
         (l, r), v, number = found["edges"].T, found["depth_rate"], found["sliding_velocity"]
         thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)
         inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
-        rows = (
+        inside = np.where(np.isnan(l), 0.0, inside)  # in flight there are no edges
+        behind = 0.75 * relaxing(motion, t.reshape(-1).tolist(), 2, memory)
+        work, damped = (
             found["velocity"] * found["friction_force"],
-            np.where(np.isnan(l), 0.0, inside),  # in flight there are no edges
-            0.75 * relaxing(motion, t.reshape(-1).tolist(), 2, memory),
             given.damping * found["offset_rate"] ** 2,
         )
+        rows = work, inside, behind, damped
         return np.stack(rows, axis=-1).reshape(*t.shape, len(rows))
 
     sums = accumulated(lambda low, high: integrals(powers, low, high), motion.starts, flat)
     found = motion.states(flat)
     d, (l, r) = found["depth"], found["edges"].T
-    stored = (
-        np.where(np.isnan(l), 0.0, _stored(d, l, r)),
-        0.375 * relaxing(motion, flat.tolist(), 2, memory),
-    )
+    inside = np.where(np.isnan(l), 0.0, _stored(d, l, r))
+    stored = inside, 0.375 * relaxing(motion, flat.tolist(), 2, memory)
     moving = np.array([found[name] for name in MOVING])
     return entries(given, moving, sums, stored, times.shape)
 
@@ -115,18 +114,10 @@ def entries(given: Any, moving: Array, sums: Array, stored: Any, shape: tuple[in
     d, v, x, w = moving
     work, in_contact, in_surface, in_damper = sums
     found = (
-        np.full(d.shape, _stored(1.0, -1.0, 1.0)),
-        work,
-        0.5 * (0.0 if given.fixed else given.eps) * v**2,
-        1.0 - d,
-        0.5 * given.kappa * (d - 1.0) ** 2,
-        *stored,
-        in_contact,
-        in_surface,
-        0.5 * given.eps_x * w * w,
-        0.5 * given.spring * x * x,
-        in_damper,
-    )
+        np.full(d.shape, _stored(1.0, -1.0, 1.0)), work, 0.5 * (0.0 if given.fixed else given.eps) * v**2,
+        1.0 - d, 0.5 * given.kappa * (d - 1.0) ** 2, *stored, in_contact, in_surface,
+        0.5 * given.eps_x * w * w, 0.5 * given.spring * x * x, in_damper,
+    )  # fmt: skip
     return Ledger(*(entry.reshape(shape)[()] for entry in found))
 
 

@@ -46,14 +46,14 @@ def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepCo
 
 
 def certificate(
-    fine: Trajectory, other: Trajectory | None, times: Array | None, tolerance: float
+    fine: Trajectory, other: Trajectory | None, times: Array | None, tolerance: float, why: str
 ) -> Certificate:
     """Return the certificate of the states at the scaled `times`, by default the natural ones.
 
-    `tolerance` is that of the polynomials that approximate a drive.
+    `tolerance` is that of the polynomials that approximate a drive; `why` there is no `other`.
     """
     if other is None:
-        return unknown(NOTHING, sprung=fine.given.sprung)
+        return unknown(why, sprung=fine.given.sprung)
     given, whole = fine.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
     found = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)

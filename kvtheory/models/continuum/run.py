@@ -157,15 +157,10 @@ def begin(
     make, matrix = np.zeros if arrays else blanks, np.zeros((unknowns + 3, unknowns + 1))
     return Run(
         given=np.array([given], GIVEN) if arrays else [new(GIVEN, *given)],
-        method=_method(stages, arrays),
-        now=make(1, NOW),
-        pieces=pieces if arrays else pieces.tolist(),
-        steps=make(room, STEP),
-        nodes=make(3 * room // 2, NODE),
-        events=make(room, EVENT),
-        matrix=matrix if arrays else matrix.tolist(),
-        along=make(room if sprung else 1, STEP),
-    )
+        method=_method(stages, arrays), now=make(1, NOW), pieces=pieces if arrays else pieces.tolist(),
+        steps=make(room, STEP), nodes=make(3 * room // 2, NODE), events=make(room, EVENT),
+        matrix=matrix if arrays else matrix.tolist(), along=make(room if sprung else 1, STEP),
+    )  # fmt: skip
 
 
 def rest(run: Run) -> None:

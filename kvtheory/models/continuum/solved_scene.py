@@ -1,18 +1,19 @@
 """The transient of a scene in SI units, from the scaled solution of `continuum`."""
 
 import math
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.energy import Ledger
-from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
+from kvtheory.models.continuum.error_estimate import NOT_ASKED, NOTHING, certificate, methods
 from kvtheory.models.continuum.run import STATE_NAMES, Spring, StepControl
-from kvtheory.models.continuum.solver import STEP_LIMIT, Trajectory, solve
+from kvtheory.models.continuum.solver import STEP_LIMIT, solve
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
@@ -86,10 +87,8 @@ class SolvedScene:
         if self.drive.highest_speed > 0.0:  # else nothing moves
             times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
             found += [(s, f"{force} force maximum") for s, force in times]
-        return tuple(
-            Event(s * self.units.time, kind)
-            for s, kind in sorted(found, key=lambda event: event[0])
-        )
+        found.sort(key=lambda event: event[0])
+        return tuple(Event(s * self.units.time, kind) for s, kind in found)
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
@@ -158,6 +157,34 @@ def force_maxima(motion: Any) -> tuple[float, float]:
     return normal, friction
 
 
+class Method(NamedTuple):
+    """How scenes of a law are solved: in which units, by what, with which tolerances and steps."""
+
+    units: StaticState
+    solve: Callable[..., Any]
+    """Of a drive, both numbers, the end and a tolerance."""
+    steps: int
+    first: tuple[float, StepControl]
+    others: tuple[tuple[float, StepControl], ...]
+    """Tolerance and steps of the solution that it is compared with: the first that succeeds."""
+    certificate: Callable[..., Certificate]
+    """Of a solved scene, another solution or None, the times asked, and why there is no other."""
+
+
+def method_of(scene: Scene, rtol: float) -> Method:
+    """Return how a scene is solved: on arms by `prony`, else by the closed forms of Kelvin-Voigt."""
+    if scene.foundation.arms:
+        from kvtheory.models.continuum import prony
+
+        return prony.solved_scene.method(scene, rtol)
+    first, second = methods(rtol)
+
+    def errors(fine: SolvedScene, other: Any, s: Array | None, why: str) -> Certificate:
+        return certificate(fine.motion, other, s, scene.drive.tolerance, why)
+
+    return Method(StaticState.of(scene), solve, STEP_LIMIT, first, (second,), errors)
+
+
 def certified(
     scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
     *, certify: bool = True, max_steps: int | None = None,
@@ -166,31 +193,33 @@ def certified(
 
     Without `times`, these are the natural ones.
     """
-    units = StaticState.of(scene)
+    method = method_of(scene, rtol)
+    units = method.units
     drive, spring = scaled_drive(scene, units), spring_of(units)
-    limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
-    first, second = methods(rtol)
+    limit = max_steps or method.steps + STEPS_A_PIECE * len(drive.pieces)
 
-    def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
+    def solved(part: int, tolerance: float, control: StepControl) -> Any:
         def report(s: float) -> None:
             if progress is not None:
                 progress((part + s / drive.end) / (1 + certify), "")
 
-        return solve(
+        return method.solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,
             spring=spring, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     try:
-        fine = SolvedScene(solved(0, *first), drive, units, end_of(scene) / units.time)
+        motion = solved(0, *method.first)
     except TransientError as error:
-        reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
+        lasts = drive.end * (units.time / scene.foundation.retardation_time)
+        reason = f"{error.reason}, in a run of {lasts:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
+    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
-    if not certify:
-        return fine, time, unknown(NOT_ASKED, sprung=spring is not None)
     other = None
-    with suppress(TransientError):  # a tighter solution may fail where this one did not
-        other = solved(1, *second)
+    for each in method.others if certify else ():
+        with suppress(ValueError, ArithmeticError):  # it may fail where the first one did not
+            other = solved(1, *each)
+            break
     s = None if times is None else fine.scaled(time)
-    return fine, time, certificate(fine.motion, other, s, scene.drive.tolerance)
+    return fine, time, method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)

@@ -10,7 +10,6 @@ indenter, d = 1, needs no equation along z, only events.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -30,9 +29,9 @@ from kvtheory.models.continuum import (
     surface,
 )
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.compiled import NOTHING, Solver, finished
+from kvtheory.models.continuum.compiled import NOTHING, Finished, Solver, finished
 from kvtheory.models.continuum.run import STATE_NAMES, TOUCHING, Run, Spring, StepControl
-from kvtheory.records import blanks, readable, set_fields, structured, value
+from kvtheory.records import blanks, set_fields, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
@@ -73,34 +72,13 @@ class ScaledEvent(NamedTuple):
     kind: str
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`.
-
-    `run` is the finished run, with arrays for records if its kernels were compiled.
-    """
-
-    run: Run
-
-    @cached_property
-    def given(self) -> Any:
-        """Inertia, support, spring, tolerance, see `run.GIVEN`."""
-        return readable(self.run.given[0])
-
-    @cached_property
-    def counts(self) -> Any:
-        """The numbers of steps, nodes, events and so on, see `run.NOW`."""
-        return readable(self.run.now[0])
+class Trajectory(Finished):
+    """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`."""
 
     @property
     def end(self) -> float:
         """The time at which it ends."""
         return float(value(self.run.given[0], "end"))
-
-    @property
-    def compiled(self) -> bool:
-        """Whether the run ended with compiled kernels."""
-        return compiled.in_use(self.run)
 
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:

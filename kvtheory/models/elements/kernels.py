@@ -189,9 +189,6 @@ class Row(NamedTuple):
     dampers: Array  # work space for the compressions of the dampers of an element
 
 
-# Loops over elements
-
-
 def over(low: Any, high: Any) -> Any:
     """Return the elements from `low` to before `high`: one by one if compiled, else all as one slice."""
     return (slice(low, high),) if low < high else ()
@@ -300,9 +297,6 @@ COMPILED = {
 """What stands for these functions where they are compiled."""
 
 
-# The shape of the indenter
-
-
 def surface_at(s: Surface, x: Any, y: Any) -> Any:
     """Return h and dh/dx at (x, y): `FAR` and 0 where the indenter has no surface."""
     if s.exponent == 2.0:
@@ -352,9 +346,6 @@ def weigh_strips(row: Row, depth: float) -> None:
     if c.across:
         rim = c.surface.stretch * extent(c.surface, depth, 1.0) if c.parts else 0.0
         weigh(row.weights, c.across, rim)
-
-
-# Which elements the indenter can meet
 
 
 def set_window(row: Row, places: Pair, depth: float) -> int:
@@ -427,9 +418,6 @@ def begin(row: Row, depth: float) -> None:
     row.counts.begun = row.counts.ended
 
 
-# Where the indenter meets them
-
-
 def approach(
     row: Row, fall: Array, place: float, depth: float, back: float = 0.0, inclined: bool = True
 ) -> None:
@@ -467,22 +455,14 @@ def gap(row: Row, j: int, i: int, place: float, depth: float) -> float:
     return 0.0 if row.elements.touched[j, i] else float(depth - h - u)
 
 
-# An element over a step
-
-
 def change_contact(row: Row, law: ElementStep, j: int, i: int, g: float, rise: float) -> None:
     """Complete a step for an element that leaves the indenter in it, or that it meets: u = g, up by `rise`.
 
     y_k = u - s_k/K_k, the compressions of the dampers of the arms, and u of a damper beside them, are a
     product of a matrix and the modes. An element that is met is loaded during the whole step.
     """
-    arm, y, of, leaves = (
-        row.modes[:, j, i],
-        row.dampers,
-        row.constants.law,
-        row.elements.touched[j, i],
-    )
-    arms = of.arm_stiffness.size
+    arm, y, of = row.modes[:, j, i], row.dampers, row.constants.law
+    leaves, arms = row.elements.touched[j, i], of.arm_stiffness.size
     for k in range(arm.size):
         y[k] = row.elements.u[j, i] if leaves else arm[k] * row.faded[k] * law.fall[k]
         y[k] -= arm[k] / of.arm_stiffness[k] if leaves and k < arms else 0.0
@@ -528,9 +508,6 @@ def finish(row: Row, law: ElementStep, depth: float, sunk: float) -> None:
                     row.modes[k, j, i] *= choose(contact, 1.0, row.faded[k])
             row.faded[k] = 1.0
     begin(row, depth)
-
-
-# The implicit step
 
 
 def exponential_fit(z: float) -> float:
@@ -592,9 +569,8 @@ def implicit_step(row: Row, law: ElementStep, Y: Pair) -> int:
                 judge_edges(row, place - travel, depth, first)
             wide = max(number_in(row, row.ended, row.counts.ended),
                        number_in(row, row.begun, row.counts.begun))  # fmt: skip
-            theta = (
-                exponential_fit(h * law.damping * c.spacing * wide / c.mass) if row.fitted else 1.0
-            )
+            z = h * law.damping * c.spacing * wide / c.mass
+            theta = exponential_fit(z) if row.fitted else 1.0
             sunk = solve_depth(row, law, theta, first)
             if not sunk > sinks:  # if elements were missed, it sinks too deep, never too little
                 break
@@ -781,9 +757,6 @@ def solve_along(row: Row, law: ElementStep, sunk: float, slid: float) -> Pair:
     return slid, final_velocity(slid, now.along_rate, h, theta)
 
 
-# The explicit step
-
-
 def explicit_step(
     row: Row, laws: tuple[ElementStep, ElementStep, ElementStep], Y: Array, V: Array
 ) -> int:
@@ -876,9 +849,6 @@ def press(
         for i in over(low, high):
             pressed[i] = (touched[i] | (met & (threshold[i] < 0.0))) & (p[i] >= 0.0)
     find_runs(row)
-
-
-# Forces and edges at an instant
 
 
 def report(
@@ -1069,9 +1039,6 @@ def find_peak(row: Row, p: Array, k: int, reach: Pair, low: int, high: int) -> A
     ahead = 0.5 * (after - before) / bend
     far = abs(ahead) > reach[1 if ahead > 0.0 else 0]
     return here if far else here + 0.25 * (after - before) * ahead, 0.0
-
-
-# The run
 
 
 class Instants(NamedTuple):

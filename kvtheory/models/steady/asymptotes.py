@@ -173,17 +173,12 @@ def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
     depth, a, load = contact(scene, limit)
     mu = depth / a * limit.friction * (l_r / a) ** limit.slope
     return {
-        "depth": depth,
-        "half_length": a,
-        "retardation_length": l_r,
-        "leading_edge": -side * a,
-        "trailing_edge": side * a if limit.slow else 0.0 * a,  # Eqs. 38, 39
-        "load": load,
-        "friction_force": side * (load * mu) + 0.0,  # no negative zero
-        "friction_coefficient": side * mu + 0.0,
+        "depth": depth, "half_length": a, "retardation_length": l_r, "leading_edge": -side * a,
+        "trailing_edge": side * a if limit.slow else 0.0 * a, "load": load,  # Eqs. 38, 39
+        "friction_force": side * (load * mu) + 0.0, "friction_coefficient": side * mu + 0.0,  # not -0
         "peak_pressure": K * depth if limit.slow else K * depth * (n * l_r / a),
         "dissipated_in_contact": 0.0 * a + 1.0,
-    }
+    }  # fmt: skip
 
 
 def error(limit: Value, exact: Value) -> Value:

@@ -72,17 +72,13 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     pressure, slope = K * delta, a / R
     force = pressure * a * (a * stretch)
     return (
-        delta,
-        a,
-        l_r,
-        -a,
-        a * cf.trailing_edge_ratio(l),
+        delta, a, l_r, -a, a * cf.trailing_edge_ratio(l),
         force * cf.ball_load_factor(l, tail),
         force * (slope * cf.ball_friction_force_factor(l, tail)),
         slope * cf.ball_friction_coefficient_factor(l, tail),
         pressure * cf.peak_pressure_factor(l),
         cf.ball_dissipated_in_contact(l, tail),
-    )
+    )  # fmt: skip
 
 
 def depth(scene: Scene) -> Any:

@@ -61,15 +61,9 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     plane = viscoelastic.state(scene, row, c)
     _, load, _, friction, lost, error = _sums(scene, row, c, friction=True)
     moving = friction > 0.0
-    return (
-        *plane[:5],
-        load,
-        friction,
-        friction / load,
-        plane[8],
-        np.where(moving, lost / np.where(moving, friction, 1.0), 1.0),
-        np.where(moving, error, 0.0) + RELATIVE_ERROR,
-    )
+    inside = np.where(moving, lost / np.where(moving, friction, 1.0), 1.0)
+    error = np.where(moving, error, 0.0) + RELATIVE_ERROR
+    return *plane[:5], load, friction, friction / load, plane[8], inside, error
 
 
 def contact_length(scene: Scene, row: Law) -> Array:

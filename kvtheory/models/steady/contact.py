@@ -80,22 +80,15 @@ class Contact:
     def _drag(self) -> tuple[Value, Value, Value]:
         """Return int h'^2 dx with its relative error, and u_TE/l_r."""
         shape, rolls, a, x = self.shape, self.rolls, self.half_length, self.x
-        squared = d_.integral(
-            lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
-        )
-        left = rolls * shape.slope(x) + (1.0 - rolls) * self.depth / (self.l_r + rolls)
-        return *squared, left
+        ends = (a, x), (a, rolls * x)
+        drag, error = d_.integral(lambda x: shape.slope(x) ** 2, *ends, not shape.kinks)
+        return drag, error, rolls * shape.slope(x) + (1.0 - rolls) * self.depth / (self.l_r + rolls)
 
     def quantities(self) -> Quantities:
         """Return quantities over K, their errors, d ln/d ln delta; F = l_r (int h'^2 dx + u_TE^2/(2 l_r))."""
         shape, l_r, depth, rolls = self.shape, self.l_r, self.depth, self.rolls
-        a, x, load, a_moves, x_moves = (
-            self.half_length,
-            self.x,
-            self.load,
-            self.a_moves,
-            self.x_moves,
-        )
+        a, x, load = self.half_length, self.x, self.load
+        a_moves, x_moves = self.a_moves, self.x_moves
         drag, drag_error, left = self._drag()
         at_a, at_x, spring = shape.slope(a), shape.slope(x), 0.5 * self.u_te * left
         total = drag + spring
@@ -108,20 +101,13 @@ class Contact:
         lost = d_.pick((rolls * x < d_.SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
         values = a, -a, rolls * x, load, l_r * total, peak, drag / total
         own = {"trailing_edge": lost, "load": self.load_error, "friction_force": drag_error}
+        steeper = -d_.least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a)
         powers = (
-            edge,
-            edge,
-            depth * x_moves / x,
-            depth * self.load_slope / load,
-            depth * (left + at_a) / total,
-            depth / peak * -d_.least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
-            depth * (by_a + abs(by_x)) / total,
-        )
-        return (
-            dict(zip(d_.OF_LINE, values, strict=True)),
-            own,
-            dict(zip(d_.OF_LINE, powers, strict=True)),
-        )
+            edge, edge, depth * x_moves / x, depth * self.load_slope / load, depth * (left + at_a) / total,
+            depth / peak * steeper, depth * (by_a + abs(by_x)) / total,
+        )  # fmt: skip
+        names = d_.OF_LINE
+        return dict(zip(names, values, strict=True)), own, dict(zip(names, powers, strict=True))
 
 
 class ConvexLine:

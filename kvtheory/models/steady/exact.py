@@ -52,17 +52,13 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     q = cf.trailing_edge_ratio(l)
     pressure, slope = K * delta, a / R
     return (
-        delta,
-        a,
-        l_r,
-        -a,  # Eq. 26
-        a * q,  # Eq. 27
+        delta, a, l_r, -a, a * q,  # Eqs. 26, 27
         pressure * a * cf.load_factor(q),
         pressure * a * (slope * cf.friction_force_factor(l, q)),
         slope * cf.friction_coefficient_factor(l, q),
         pressure * cf.peak_pressure_factor(l),
         cf.dissipated_in_contact(q),
-    )
+    )  # fmt: skip
 
 
 def depth(scene: Scene) -> Any:

@@ -199,13 +199,8 @@ def _nearly_flat(mu: Array, error: Array) -> NDArray[np.bool_]:
     before, here, after = slope[:, :-2], slope[:, 1:-1], slope[:, 2:]
     least = np.abs(here) <= np.minimum(np.abs(before), np.abs(after))
     doubt = 2.0 * error[:, 1:-2]
-    return (
-        least
-        & (before * here > 0.0)
-        & (here * after > 0.0)
-        & (np.abs(here) < FLAT)
-        & (np.abs(here) > doubt)
-    )
+    flat = (np.abs(here) < FLAT) & (np.abs(here) > doubt)
+    return least & (before * here > 0.0) & (here * after > 0.0) & flat
 
 
 def _refined(friction: Friction, bracket: Sequence[Array], row: Any, tolerance: float) -> Array:

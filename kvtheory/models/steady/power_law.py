@@ -69,18 +69,14 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     q, Q = trailing_edge(n, l)
     pressure, x_te = K * delta, a * q
     return (
-        delta,
-        a,
-        l_r,
-        -a,
-        x_te,
+        delta, a, l_r, -a, x_te,
         pressure * a * cf.power_law_load(n, l, q, Q),
         pressure * delta * cf.power_law_friction_force(n, l, q, Q),
         (delta / a) * cf.power_law_friction_coefficient(n, l, q, Q),
         pressure * cf.power_law_peak_pressure(n, l),
         cf.power_law_dissipated_in_contact(n, l, q, Q),
         _edge_error(n, l, q, Q, x_te),
-    )
+    )  # fmt: skip
 
 
 def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> tuple[Array, Array]:

@@ -265,15 +265,11 @@ def _line(
         plain(np.where(np.isfinite(each), each, np.nan))
         for each in (np.copysign(value, exact), asymptotes.error(value, np.abs(exact)))
     )
+    ends = (np.zeros_like(edge), edge) if low else (edge, np.full_like(edge, np.inf))
     return AsymptoteLine(
-        *line[:5],
-        value=value,
-        exact=plain(exact),
-        relative_error=error,
-        velocity_min=plain(np.zeros_like(edge) if low else edge),
-        velocity_max=plain(edge if low else np.full_like(edge, np.inf)),
-        velocity_proved=plain(proved),
-    )
+        *line[:5], value=value, exact=plain(exact), relative_error=error, velocity_min=plain(ends[0]),
+        velocity_max=plain(ends[1]), velocity_proved=plain(proved),
+    )  # fmt: skip
 
 
 def _exact(scene: Scene) -> dict[str, Array]:

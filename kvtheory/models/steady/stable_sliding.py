@@ -70,7 +70,7 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
         spring = None if rigid else np.broadcast_to(scene.drive.stiffness, scene.shape)
         on_arms = scene.foundation.arms and scene.shape != (
             0,
-        )  # where there is nothing to search for
+        )  # else there is nothing to search for
         module = general_stability if on_arms else stability
         motions = module.SmallMotions(scene)
         values, wrong = motions.critical()

@@ -46,7 +46,8 @@ def law(scene: Scene) -> Law:
     def full(x: Any) -> Array:
         return np.broadcast_to(x, scene.shape)
 
-    foundation, V = scene.foundation, np.abs(full(scene.drive.final_velocity))
+    foundation: Any = scene.foundation
+    V = np.abs(full(scene.drive.final_velocity))
     K = full(foundation.stiffness)
     if foundation.springpot:
         return Fractional(K, foundation.retardation_time, foundation.order).over(V)
@@ -112,19 +113,12 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
     inside, error = row.dissipated(M, c, np.where(work > 0.0, work, 1.0))
+    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     return (
-        a * (a / (2.0 * R)) if delta is None else delta,
-        a,
-        np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time,
-        -a,
-        c * (M.Q / A),
-        c * c * slope * load,
-        (c * slope) ** 2 * work,
-        slope * (work / load),
-        _peak(R, row, a),
-        np.where(work > 0.0, inside, 1.0),
-        error,
-    )
+        a * (a / (2.0 * R)) if delta is None else delta, a, l_r, -a, c * (M.Q / A),
+        c * c * slope * load, (c * slope) ** 2 * work, slope * (work / load), _peak(R, row, a),
+        np.where(work > 0.0, inside, 1.0), error,
+    )  # fmt: skip
 
 
 def _peak(R: Array, row: Law, a: Array) -> Array:

@@ -66,10 +66,8 @@ class Ground:
         self.memory = r_.named(r_.together(run.memory, r_.ARM_STATE)[:count])
         self.segments = structured(run.segments[: motion.counts.segments], r_.SEGMENT)
         self.pieces, self.arms = np.asarray(run.pieces), r_.named(r_.together(run.arms, r_.ARM))
-        self.modes, self.paused = (
-            r_.named(r_.together(run.modes, r_.MODE)),
-            r_.named(r_.together(run.clock, r_.PIECE)).paused,
-        )
+        self.modes = r_.named(r_.together(run.modes, r_.MODE))
+        self.paused = r_.named(r_.together(run.clock, r_.PIECE)).paused
         self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         self.parts = [self._parts(index) for index in range(count)]
@@ -167,10 +165,8 @@ class Ground:
             high[here], low[here] = np.where(own, at, high[here]), np.where(own, low[here], at)
         low[rest] = np.maximum(segment["X_a"], (l - Y)[owner])[rest]
         high[rest] = np.minimum(segment["X_b"], (r - Y)[owner])[rest]
-        panels = [
-            self._panels(s[owner[k]], low[k], high[k], rest[k], self.ages[int(inside[k])])
-            for k in range(len(rows))
-        ]
+        rows_of = zip(s[owner], low, high, rest, inside, strict=True)
+        panels = [self._panels(*row, self.ages[int(here)]) for *row, here in rows_of]
         which = np.repeat(np.arange(len(rows)), [len(p) - 1 for p in panels])
         a = np.concatenate([p[:-1] for p in panels])
         width = np.concatenate([np.diff(p) for p in panels])
@@ -297,20 +293,14 @@ class Ground:
         if panels.size < 2:
             return 0.0, 0.0, 0.0, 0.0
         width = np.diff(panels)[:, None]
-        t, weights = (
-            (panels[:-1, None] + width * ABSCISSAE).reshape(-1),
-            (width * WEIGHTS).reshape(-1),
-        )
+        t = (panels[:-1, None] + width * ABSCISSAE).reshape(-1)
+        weights = (width * WEIGHTS).reshape(-1)
         drive, damper, pressed, powers = self.powers(t)
         age = self.time(self.step_at(np.array([s])), np.array([s])) - self.time(self.step_at(t), t)
         fade = -2.0 * age / self.arms.relaxation_time[:, None]
         kept = -np.expm1(fade) / self.arms.stiffness[:, None]
-        rows = (
-            drive,
-            0.375 * (kept * powers).sum(axis=0) + 0.75 * self.damper * pressed,
-            0.75 * self.met_again(t),
-            damping * damper,
-        )
+        inside = 0.375 * (kept * powers).sum(axis=0) + 0.75 * self.damper * pressed
+        rows = drive, inside, 0.75 * self.met_again(t), damping * damper
         work, contact, again, lost = (float(weights @ row) for row in rows)
         return work, contact, again, lost
 

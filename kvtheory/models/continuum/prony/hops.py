@@ -128,10 +128,9 @@ def end_with(run: Run, l: float, r: float, l_end: float, r_end: float) -> None:
         _uniform(edges[:, k], first, end_of)
         run.stages.edges[n - 1, k] = end_of
         side, of_stage, powers = now.sides[k], run.stages, run.polynomials
-        _uniform(
-            powers.compression[now.steps, :, k], side.compression, of_stage.compression[n - 1, k]
-        )
-        _uniform(powers.rise[now.steps, :, k], side.rise, of_stage.rise[n - 1, k])
+        compression, rise = powers.compression[now.steps, :, k], powers.rise[now.steps, :, k]
+        _uniform(compression, side.compression, of_stage.compression[n - 1, k])
+        _uniform(rise, side.rise, of_stage.rise[n - 1, k])
     memory, index = run.memory, now.steps
     for i in range(run.given.arms):
         _uniform(memory.force[index, i], state.force[i], last.force[i, n - 1])

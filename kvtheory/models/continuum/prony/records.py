@@ -191,30 +191,20 @@ def begin(
     own_arms["stiffness"], own_arms["relaxation_time"] = k, T
     modes = np.zeros(element.rates.size, MODE)
     modes["rate"], modes["share"] = element.rates, element.shares
+    shapes = {
+        "polynomials": (ROOM, n + 1), "memory": (ROOM, count, n + 1), "arm_stages": (count, n),
+        "state": count, "element": count, "unknowns": unknowns,
+    }  # fmt: skip
     run = Run(
-        given=[new(GIVEN, *given)],
-        now=blanks(1, NOW),
-        pieces=pieces,
-        clock=clock,
-        steps=blanks(1 if arrays else ROOM, STEP),
-        polynomials=np.zeros((ROOM, n + 1), POLYNOMIAL),
-        memory=np.zeros((ROOM, count, n + 1), ARM_STATE),
-        segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
-        chain=np.zeros(8 * ROOM, dtype=np.int64),
-        method=method,
-        arms=own_arms,
-        modes=modes,
+        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, clock=clock,
+        steps=blanks(1 if arrays else ROOM, STEP), segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
+        chain=np.zeros(8 * ROOM, dtype=np.int64), method=method, arms=own_arms, modes=modes, stages=stages,
         to_modes=np.ascontiguousarray(element.to_modes),
         from_modes=-(k * T)[:, None] * element.from_modes[:count] * element.rates,
-        state=np.zeros(count, ARM_STATE),
-        stages=stages,
-        arm_stages=np.zeros((count, n), ARM_STAGE),
         filters=np.zeros((count, n, n)),
-        jacobian=np.zeros((unknowns, unknowns)),
-        inverse_jacobian=np.zeros((unknowns, unknowns)),
-        unknowns=np.zeros(unknowns, UNKNOWN),
-        element=np.zeros(count, ELEMENT),
-    )
+        **{f"{kind}jacobian": np.zeros((unknowns, unknowns)) for kind in ("", "inverse_")},
+        **{name: np.zeros(shape, NAMED[name]) for name, shape in shapes.items()},
+    )  # fmt: skip
     _rest(run._replace(now=run.now[0]))
     if not arrays:
         return run._replace(**{name: named(getattr(run, name)) for name in NAMED})
@@ -284,13 +274,8 @@ def _rest(run: Run) -> None:
         run.chain[k] = k
     for k in range(2):
         side = now.sides[k]
-        side.state, side.segment, side.own, side.xi, side.pace = (
-            TOUCHING,
-            NEVER,
-            2 * k,
-            SIDES[k],
-            1.0,
-        )
+        side.state, side.segment, side.own = TOUCHING, NEVER, 2 * k
+        side.xi, side.pace = SIDES[k], 1.0
         now.kinked[k] = 1
 
 

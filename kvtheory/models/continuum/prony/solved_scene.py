@@ -2,40 +2,29 @@
 
 import math
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
     FLOOR,
     LOOSEST,
     MARGIN,
-    NOT_ASKED,
-    NOTHING,
     TIGHTER,
     TIGHTEST,
 )
 from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
 from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.run import FREE, StepControl
-from kvtheory.models.continuum.solved_scene import (
-    SERIES,
-    STEPS_A_PIECE,
-    SolvedScene,
-    end_of,
-    result,
-    scaled_drive,
-    spring_of,
-)
-from kvtheory.progress import Progress
+from kvtheory.models.continuum.solved_scene import SERIES, Method, SolvedScene, end_of
 from kvtheory.records import readable
-from kvtheory.results import AT_REST, Certificate, Transient
-from kvtheory.results.errors import TransientError
+from kvtheory.results import AT_REST, Certificate
 from kvtheory.results.table import scales
+from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -74,58 +63,33 @@ def own_units(scene: Scene) -> StaticState:
     )  # fmt: skip
 
 
-def transient(
-    scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
-    *, certify: bool = True, max_steps: int | None = None,
-) -> Transient:  # fmt: skip
-    """Solve a scene whose foundation is a Prony series; `kvtheory.transient` documents it.
-
-    ValueError if the method fails.
-    """
-    units = own_units(scene)
-    drive = scaled_drive(scene, units)
-    limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
-    foundation, spring = scene.foundation, spring_of(units)
+def method(scene: Scene, rtol: float) -> Method:
+    """Return how a scene whose foundation has arms is solved; ValueError if that fails."""
+    units, rtol, foundation = own_units(scene), min(rtol, LOOSEST), scene.foundation
+    stiffness = foundation.stiffness
     arms = [
-        (arm.stiffness / foundation.stiffness, arm.relaxation_time / units.time)
-        for arm in foundation.arms
+        (arm.stiffness / stiffness, arm.relaxation_time / units.time) for arm in foundation.arms
     ]
+    damper = foundation.damping / (stiffness * units.time)
 
-    def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
-        def report(s: float) -> None:
-            if progress is not None:
-                progress((part + s / drive.end) / (1 + certify), "")
+    def solved(drive: BaseMotion, eps: float, kappa: float, *given: Any, **how: Any) -> Trajectory:
+        try:
+            return solve(drive, arms, (eps, kappa), *given, damper=damper, **how)
+        except ValueError as error:
+            why, s = error.args
+            message = (
+                f"fails numerically at t = {s * units.time:.6g} s: {why}; try another tolerance"
+            )
+            raise ValueError(f"the transient on a Prony series {message}") from None
 
-        return solve(
-            drive, arms, (units.inertia_number, units.support_number), drive.end, tolerance,
-            spring=spring, control=control, progress=report, max_steps=limit,
-            damper=foundation.damping / (foundation.stiffness * units.time),
-        )  # fmt: skip
-
-    rtol = min(rtol, LOOSEST)
-    try:
-        motion = solved(0, rtol, FIRST)
-    except TransientError as error:
-        raise TransientError(error.reason, error.s * units.time, "t", " s") from None
-    except ValueError as error:
-        why, s = error.args
-        raise ValueError(
-            f"the transient on a Prony series fails numerically at t = {s * units.time:.6g} s: {why}; "
-            "try another tolerance"
-        ) from None
-    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time)
-    time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
-    other, why = None, NOTHING if certify else NOT_ASKED
-    for tighter in (TIGHTER, LESS_TIGHT) if certify else ():
-        with suppress(ValueError, ArithmeticError):  # it may fail where the first one did not
-            other = solved(1, max(rtol / tighter, TIGHTEST), SECOND)
-            break
-    return result(fine, time, certificate(fine, other, fine.scaled(time), rtol, scene, why))
+    others = tuple((max(rtol / each, TIGHTEST), SECOND) for each in (TIGHTER, LESS_TIGHT))
+    errors = partial(certificate, rtol=rtol, scene=scene)
+    return Method(units, solved, STEP_LIMIT, (rtol, FIRST), others, errors)
 
 
 def certificate(
-    fine: SolvedScene, other: Trajectory | None, s: Array, rtol: float, scene: Scene, why: str
-) -> Certificate:
+    fine: SolvedScene, other: Trajectory | None, s: Array | None, why: str, *, rtol: float, scene: Scene
+) -> Certificate:  # fmt: skip
     """Return the certificate of the states at scaled times, from a solution with a tighter tolerance.
 
     Where only one of them flies, the contact of the other is narrow: its width is the error of an edge.
@@ -134,6 +98,7 @@ def certificate(
     if other is None:
         errors = dict.fromkeys([*own, *ANYWHERE], math.inf)
         return Certificate("estimated", why, {**errors, "time": 0.0}, AT_REST)
+    s = fine.scaled(fine.natural_times) if s is None else s
     here, there = _series(fine.motion.states(s), own), _series(other.states(s), own)
     run = other.run
     depths = together(run.memory, ARM_STATE)["accumulated_depth"][: other.counts.steps, :, 0]
@@ -149,7 +114,7 @@ def certificate(
         apart = float(np.max(off, initial=0.0))
         least = min(
             1.0, measures[name] / own[name]
-        )  # of a very short run the unit of velocity is large
+        )  # of a very short run that of velocity is large
         least += float(np.max(np.abs(np.nan_to_num(values)), initial=0.0))
         errors[name] = max(MARGIN * apart, FLOOR * rtol * least) + rounding
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}

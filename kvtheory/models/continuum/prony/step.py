@@ -330,10 +330,9 @@ def find_edge(run: Run, k: int) -> bool:
             arm.stress_at_edge[i, j, k] = element.stress[i]
     interpolate_edge(run, k)
     polynomials = run.polynomials
-    interpolate(
-        run, polynomials.compression[index, :, k], stages.compression[:, k], side.compression
-    )
-    interpolate(run, polynomials.rise[index, :, k], stages.rise[:, k], side.rise)
+    compression, rise = polynomials.compression[index, :, k], polynomials.rise[index, :, k]
+    interpolate(run, compression, stages.compression[:, k], side.compression)
+    interpolate(run, rise, stages.rise[:, k], side.rise)
     found, values = run.memory.stress_at_edge[index, :, :, k], arm.stress_at_edge[:, :, k]
     for i in everything:
         interpolate_arm(run, i, found, values, run.state.stress_at_edge[i, k])
@@ -360,12 +359,8 @@ def collect_sources(run: Run, of_moments: bool) -> None:
     """Write the sources of F_i, or of M_i, at the stages."""
     stages, arm, span = run.stages, run.arm_stages, run.steps[run.now.steps].lasts
     for j in range(run.given.stages):
-        l, r, v, number = (
-            stages.edges[j, 0],
-            stages.edges[j, 1],
-            stages.depth_rate[j],
-            stages.sliding_velocity[j],
-        )
+        l, r = stages.edges[j, 0], stages.edges[j, 1]
+        v, number = stages.depth_rate[j], stages.sliding_velocity[j]
         I_0, I_1, I_2, _ = moments(l, r)
         first, second = -stages.edge_shift[j, 0], stages.edge_shift[j, 1]
         change = v * I_0 - 2.0 * number * I_1
@@ -380,12 +375,8 @@ def collect_sources(run: Run, of_moments: bool) -> None:
 
 def balance(run: Run, free: int) -> None:
     """Write the residuals of the equations of motion at the stages."""
-    given, n, change, residual = (
-        run.given,
-        run.given.stages,
-        run.unknowns.change,
-        run.unknowns.residual,
-    )
+    given, n = run.given, run.given.stages
+    change, residual = run.unknowns.change, run.unknowns.residual
     span, stages, arm, c = run.steps[run.now.steps].lasts, run.stages, run.arm_stages, given.damper
     for j in range(n):
         first = second = 0.0
@@ -454,11 +445,9 @@ def size_of(run: Run) -> float:
     remembered = first = second = 0.0
     for i in c_.over(given.arms):
         depth, slide = arm.accumulated_depth, arm.accumulated_slide
-        compressed = interpolate_arm(
-            run, i, memory.accumulated_depth[index], depth, state.accumulated_depth[i]
-        ) + moving * interpolate_arm(
-            run, i, memory.accumulated_slide[index], slide, state.accumulated_slide[i]
-        )
+        A, B = state.accumulated_depth[i], state.accumulated_slide[i]
+        compressed = interpolate_arm(run, i, memory.accumulated_depth[index], depth, A)
+        compressed += moving * interpolate_arm(run, i, memory.accumulated_slide[index], slide, B)
         remembered += c_.total(run.arms.stiffness[i] * compressed)
         farthest += c_.total(abs(depth[i, given.stages - 1]))
         first += c_.total(interpolate_arm(run, i, memory.force[index], arm.force, state.force[i]))

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass
 from functools import cached_property
 from time import thread_time
 from typing import Any
@@ -15,7 +14,7 @@ from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import compiled, maxima
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.compiled import Solver, finished
+from kvtheory.models.continuum.compiled import Finished, Solver, finished
 from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.evaluation import MEASURED, STATE
 from kvtheory.models.continuum.maxima import EXTREME
@@ -60,9 +59,6 @@ REFUSED = {
     r_.INCONSISTENT: "the pressure in the contact, or the gap outside, has the wrong sign",
 }
 """Why a motion is not solved: numerical failures, for the contact is one interval (theorem F17-interval)."""
-
-Array = NDArray[np.float64]
-
 GRID, ZOOMS, BESIDE = 65, 2, 2
 """Points around the largest sample, how often they are laid, and the samples that they cover on each side:
 two, as a step ends where the next starts. The time is known to 1/256 of the distance of samples."""
@@ -89,21 +85,8 @@ def time_of(run: Run) -> float:
     return time_at(run._replace(clock=clock), now.piece, now.s)
 
 
-@dataclass(frozen=True)
-class Trajectory:
+class Trajectory(Finished):
     """A solved transient: evaluate it anywhere in [0, end] with `states`."""
-
-    run: Run
-
-    @cached_property
-    def counts(self) -> Any:
-        """The state at the end, with the numbers of steps and evaluations, see `records.NOW`."""
-        return readable(self.run.now[0])
-
-    @property
-    def compiled(self) -> bool:
-        """Whether the kernels were compiled."""
-        return isinstance(self.run.steps, np.ndarray)
 
     @cached_property
     def steps(self) -> NDArray[Any]:
@@ -147,11 +130,6 @@ class Trajectory:
     def ledger(self, s: ArrayLike) -> Ledger:
         """Return the energy ledger at times."""
         return energy.ledger(self, s)
-
-    @cached_property
-    def given(self) -> Any:
-        """Inertia, support, spring, tolerance, see `records.GIVEN`."""
-        return readable(self.run.given[0])
 
     @property
     def events(self) -> tuple[ScaledEvent, ...]:
