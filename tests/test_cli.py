@@ -52,7 +52,7 @@ COMMANDS = dict(commands())
 SLOW = {
     "charts.failures.findings": lambda _: [],
     "charts.stability.stability_maps": lambda **_: {"velocity": (), "step": ()},
-    "plots.stability.draw_stability": lambda *_: Figure(),
+    "plots.failures.draw_stability": lambda *_: Figure(),
     "charts.collection.measure": lambda *_, **__: (),
     "plots.work_precision.save_work_precision": lambda *_: None,
 }
@@ -369,7 +369,7 @@ def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
         raise ValueError("cannot be made")
 
     monkeypatch.setattr("kvtheory.plots.comparison.save_comparison_report", refuse)
-    monkeypatch.setattr("kvtheory.plots.files.save_page", refuse)
+    monkeypatch.setattr("kvtheory.plots.pictures.save_page", refuse)
     for replaced, by in SLOW.items():
         monkeypatch.setattr(f"kvtheory.{replaced}", by)
     run(*arguments, status=2)
