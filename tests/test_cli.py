@@ -369,7 +369,7 @@ def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
         raise ValueError("cannot be made")
 
     monkeypatch.setattr("kvtheory.plots.comparison.save_comparison_report", refuse)
-    monkeypatch.setattr("kvtheory.plots.pictures.save_page", refuse)
+    monkeypatch.setattr("kvtheory.plots.files.save_page", refuse)
     for replaced, by in SLOW.items():
         monkeypatch.setattr(f"kvtheory.{replaced}", by)
     run(*arguments, status=2)

@@ -6,7 +6,7 @@ from pathlib import Path
 from generators.files import put
 from kvtheory.charts.failures import Finding, findings
 from kvtheory.plots.failures import save_failures, shown
-from kvtheory.plots.pictures import environment
+from kvtheory.plots.files import environment
 
 
 def write(directory: Path, found: Sequence[Finding] = ()) -> None:

@@ -1,7 +1,6 @@
 """Results drawn on matplotlib axes: each function takes axes and a result, and returns the artists."""
 
 from kvtheory.plots.comparison import plot_comparison
-from kvtheory.plots.pictures import BLACK, BLUE, GREEN, LABELS, PURPLE, RED, STYLE
 from kvtheory.plots.result import (
     plot_asymptote_errors,
     plot_pressure,
@@ -10,6 +9,7 @@ from kvtheory.plots.result import (
     plot_transient,
     save_plot,
 )
+from kvtheory.plots.style import BLACK, BLUE, GREEN, LABELS, PURPLE, RED, STYLE
 from kvtheory.plots.sweep import plot_sweep
 
 __all__ = [

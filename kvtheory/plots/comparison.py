@@ -7,18 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.plots.pictures import (
-    BLACK,
-    BLUE,
-    GREEN,
-    RED,
-    TRANSIENT_ROWS,
-    Picture,
-    inline,
-    save_page,
-    template,
-    with_unit,
-)
+from kvtheory.plots.files import inline, save_page, template
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, Picture, with_unit
 from kvtheory.results.comparison import HEADS, Comparison
 from kvtheory.results.presented import aligned
 from kvtheory.results.table import QUANTITIES, SPRING_UNITS

@@ -14,16 +14,8 @@ from matplotlib.patches import Patch
 
 from kvtheory.charts.failures import TEXTS, Finding
 from kvtheory.charts.stability import CLASSES, Map
-from kvtheory.plots.pictures import (
-    BLACK,
-    BLUE,
-    RED,
-    Picture,
-    inline,
-    save_chart,
-    save_page,
-    template,
-)
+from kvtheory.plots.files import inline, save_chart, save_page, template
+from kvtheory.plots.style import BLACK, BLUE, RED, Picture
 from kvtheory.results.presented import record
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
-from kvtheory.plots.pictures import BLACK, BLUE, LABELS, RED, Picture
-from kvtheory.plots.pictures import label as axis_label
+from kvtheory.plots import style
+from kvtheory.plots.style import BLACK, BLUE, LABELS, RED, Picture
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit, FrictionFit
 from kvtheory.results.presented import with_unit
@@ -164,7 +164,7 @@ def _over_velocity(fit: FrictionFit, data: Any, name: str, off: Any, over: Any, 
     rows = np.array([0.0 * V, *others.values()]).T
     sets, group = np.unique(rows, axis=0, return_inverse=True)
     colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(sets)))
-    label, factor = axis_label(name, fit.data["units"][name])
+    label, factor = style.label(name, fit.data["units"][name])
     x_label, x_factor = LABELS["velocity"]
     for i, (values, colour) in enumerate(zip(sets, colours, strict=True)):
         own = np.ravel(group) == i
@@ -192,7 +192,7 @@ def _over_time(
     fit: FrictionFit, data: Any, name: str, fitted: Any, off: Any, over: Any, rest: Any
 ) -> None:
     measured = data.measured[name]
-    label, factor = axis_label(name, fit.data["units"][name])
+    label, factor = style.label(name, fit.data["units"][name])
     x_label, x_factor = LABELS["time"]
     over.plot(data.time * x_factor, measured * factor, "o", color=BLUE, markersize=2, alpha=0.5)
     over.plot(data.time * x_factor, fitted * factor, color=BLACK, linewidth=1.0)

@@ -11,17 +11,9 @@ from scipy.integrate import simpson
 
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.plots.comparison import draw_comparison
+from kvtheory.plots.files import save_picture
 from kvtheory.plots.fits import draw_fit
-from kvtheory.plots.pictures import (
-    BLUE,
-    LABELS,
-    RED,
-    TRANSIENT_ROWS,
-    Picture,
-    label,
-    save_picture,
-    with_unit,
-)
+from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, Picture, label, with_unit
 from kvtheory.plots.sweep import plot_over, plot_sweep
 from kvtheory.results import (
     QUANTITIES,

@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 from numpy.typing import NDArray
 
-from kvtheory.plots.pictures import BLUE, Picture, label, with_unit
+from kvtheory.plots.style import BLUE, Picture, label, with_unit
 from kvtheory.results import QUANTITIES, SteadyState, Sweep
 from kvtheory.scene.mistakes import nearest
 from kvtheory.sweeps.plan import Plan

@@ -10,7 +10,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
 from kvtheory.charts.work_precision import REASONS, Chart
-from kvtheory.plots.pictures import BLACK, BLUE, GREEN, PURPLE, RED, Picture, save_chart
+from kvtheory.plots.files import save_chart
+from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED, Picture
 
 RESOLVED = 100.0
 """Multiple of the floor above which an error is significant; points below it are hollow."""
