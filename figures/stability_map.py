@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from figures import drawing
 from kvtheory.charts.stability import CLASSES, Map, stability_maps
-from kvtheory.plots.stability import draw_stability
+from kvtheory.plots.failures import draw_stability
 
 
 @dataclass(frozen=True)

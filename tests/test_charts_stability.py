@@ -11,7 +11,7 @@ from kvtheory.charts.stability import CLASSES, contact_lengths, step_map, unwatc
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
-from kvtheory.plots.stability import draw_stability
+from kvtheory.plots.failures import draw_stability
 from kvtheory.results.errors import DivergenceError
 from tests.commands import run
 

@@ -9,7 +9,14 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.charts import methods, naive
-from kvtheory.charts.collection import chosen, measure
+from kvtheory.charts.collection import (
+    SteadyProblem,
+    brentq_over_quad,
+    chosen,
+    measure,
+    steady_methods,
+    suits,
+)
 from kvtheory.charts.methods import transient_methods
 from kvtheory.charts.problems import (
     ARMS,
@@ -21,7 +28,6 @@ from kvtheory.charts.problems import (
     errors,
     standard_scene,
 )
-from kvtheory.charts.steady_precision import SteadyProblem, brentq_over_quad, steady_methods, suits
 from kvtheory.charts.work_precision import (
     REASONS,
     Clock,

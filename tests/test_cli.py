@@ -52,7 +52,7 @@ COMMANDS = dict(commands())
 SLOW = {
     "charts.failures.findings": lambda _: [],
     "charts.stability.stability_maps": lambda **_: {"velocity": (), "step": ()},
-    "plots.stability.draw_stability": lambda *_: Figure(),
+    "plots.failures.draw_stability": lambda *_: Figure(),
     "charts.collection.measure": lambda *_, **__: (),
     "plots.work_precision.save_work_precision": lambda *_: None,
 }

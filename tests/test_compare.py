@@ -16,7 +16,7 @@ from kvtheory.checks.theory import Theory
 from kvtheory.fitting.series import MOST_ROWS, read
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.plots.comparison import save_comparison_report
-from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.results.table import SCHEME_ROWS
 from kvtheory.scene.columns import SPELLINGS
 from tests import SCENES as MANY
 from tests import confusion

@@ -23,6 +23,7 @@ GROUPS = {
     "kvtheory.scene.drives": "Drives",
     "kvtheory.scene.waveforms": "Drives",
     "kvtheory.results": "Results",
+    "kvtheory.results.errors.Certificate": "Results",
     "kvtheory.results.errors": "Errors",
     "kvtheory.scene.mistakes.SceneError": "Errors",
 }

@@ -16,7 +16,7 @@ from kvtheory.checks.theory import TRIAL_RTOL, Methods, Theory
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
-from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.results.table import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
 from kvtheory.scene.capabilities import lacks_continuum, lacks_quadratic_on_arms, require
 from kvtheory.scene.model import Scene

@@ -6,7 +6,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
-from kvtheory.results.schemes import SIMULATED
+from kvtheory.results.table import SIMULATED
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity

@@ -103,7 +103,7 @@ def fit(
     ----------
     Facts F3, F18, F25 and F26 of the derivations; Burnham and Anderson (2002), Model Selection.
     """
-    from kvtheory.fitting import confidence, friction, remarks
+    from kvtheory.fitting import confidence, friction
     from kvtheory.fitting.records import read
 
     scene = one_scene(scene, "a fit")
@@ -186,8 +186,8 @@ def fit(
         ),
         notes=(
             *dict.fromkeys(note for each in problem.data for note in each.notes),
-            *remarks.alike(problem, best.point),
-            *remarks.large(problem, best.point),
+            *confidence.alike(problem, best.point),
+            *confidence.large(problem, best.point),
             *confidence.others(problem, best, limits),
         ),
         scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),

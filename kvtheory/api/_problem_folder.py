@@ -20,7 +20,7 @@ from kvtheory.api._transient import transient
 from kvtheory.export import replace_file
 from kvtheory.reference_problems import problem, problem_text, problems
 from kvtheory.reference_problems.named import about
-from kvtheory.results.certificate import record
+from kvtheory.results.presented import record
 from kvtheory.scene import Scene
 
 DRIVERS = Path(reference_problems.__file__).with_name("drivers")

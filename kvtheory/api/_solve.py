@@ -89,8 +89,7 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
-    from kvtheory.ladder import series, sliding  # these import the models over time
-    from kvtheory.ladder.climbing import Request, climb
+    from kvtheory.ladder import climbing, series  # these import the models over time
 
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
@@ -110,9 +109,9 @@ def solve(
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
-        rungs = sliding.rungs(steady)
+        rungs = climbing.rungs(steady)
     with double_precision(scene):
-        return climb(scene, Request(names, rtol, at, units), rungs)
+        return climbing.climb(scene, climbing.Request(names, rtol, at, units), rungs)
 
 
 def _names(

@@ -17,8 +17,8 @@ from typing import Any, Literal
 import numpy as np
 
 from kvtheory.progress import Progress, silent
-from kvtheory.results.certificate import record
 from kvtheory.results.errors import DivergenceError
+from kvtheory.results.presented import record
 
 MISSED, WRONG = "missed event", "wrong but reported success"
 REASONS = "unstable", "not converged", "timed out", "refused", MISSED, WRONG

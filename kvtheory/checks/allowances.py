@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from kvtheory.checks.noise import SEVERAL, extreme, means, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
-from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.results.table import SCHEME_ROWS
 from kvtheory.scene.model import Fixed, Scene
 
 Mask = NDArray[np.bool_]

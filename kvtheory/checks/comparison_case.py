@@ -22,7 +22,7 @@ from kvtheory.checks.noise import SURE, gaps, means, noise
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.comparison import Check, Explanation
-from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.results.table import SCHEME_ROWS
 
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""

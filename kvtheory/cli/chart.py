@@ -75,7 +75,7 @@ def stability(output: Path, quick: bool) -> None:
     """Map where each scheme is stable, predicted and measured."""
     with console.progress_bar("maps") as report:
         from kvtheory.charts.stability import stability_maps
-        from kvtheory.plots.stability import save_stability
+        from kvtheory.plots.failures import save_stability
 
         save_stability(stability_maps(quick=quick, progress=report), output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")

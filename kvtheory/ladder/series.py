@@ -21,7 +21,7 @@ from kvtheory.results import (
     SteadyState,
     Transient,
 )
-from kvtheory.results.certificate import AT_REST
+from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.capabilities import (
     lacks_arms,

@@ -1,15 +1,16 @@
 """Results of models: values in SI units, and their errors."""
 
-from kvtheory.results.certificate import AT_REST, Certificate, record
 from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.results.errors import (
+    AT_REST,
+    Certificate,
     DivergenceError,
     QuadratureError,
     ToleranceError,
     TransientError,
 )
 from kvtheory.results.fits import FewerArms, FoundationFit, FrictionFit
-from kvtheory.results.solution import ClimbStep, Solution
+from kvtheory.results.presented import ClimbStep, Solution, record
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, Stability, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import (

@@ -8,8 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from kvtheory.export import Columns
-from kvtheory.results.certificate import Recorded
-from kvtheory.results.presented import Exported, aligned
+from kvtheory.results.presented import Exported, Recorded, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene

@@ -1,7 +1,9 @@
-"""The presentation of a result: a few lines of text, a table in a notebook, a picture, a file."""
+"""What results have in common: text, tables in notebooks, pictures and files; and the result of any model."""
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
 from html import escape
 from importlib import import_module
 from pathlib import Path
@@ -10,13 +12,36 @@ from typing import Any
 import numpy as np
 
 from kvtheory.export import SERIES_SUFFIXES, Columns, check_path, dataset, replace_file, save_csv
-from kvtheory.results.certificate import Certificate, Recorded
+from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS
 
 
 def above(module: str) -> Any:
     """Return a module such as ``plots``, which imports the results, for a method that needs it."""
     return import_module(f"kvtheory.{module}")
+
+
+class Recorded:
+    """A result that can be written as JSON."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        return dict(record(self))
+
+
+def record(result: Any) -> Any:
+    """Return a result, and everything in it that is shown, as values that `json` can write."""
+    if is_dataclass(result):
+        return {f.name: record(getattr(result, f.name)) for f in fields(result) if f.repr}
+    if isinstance(result, Mapping):
+        return {key: record(value) for key, value in result.items()}
+    if isinstance(result, tuple) and hasattr(result, "_asdict"):
+        return record(result._asdict())
+    if isinstance(result, (np.ndarray, np.generic)):
+        return record(result.tolist())
+    if isinstance(result, (tuple, list)):
+        return [record(item) for item in result]
+    return None if isinstance(result, float) and not math.isfinite(result) else result
 
 
 class Exported(Recorded):
@@ -107,6 +132,64 @@ class Presented(Exported):
         varies, or, for a single parabola or ball, as its pressure over the contact.
         """
         return above("plots").plot_result(self, ax, **style)
+
+
+@dataclass(frozen=True)
+class ClimbStep:
+    """One rung that was tried.
+
+    `assumed` states the assumptions of the model, `outcome` is ``"used"`` or why it was not, `error` the
+    largest relative error that it may have (NaN if not known), `margin` the tolerance over it; `choosing`
+    and `solving` are the seconds spent on judging the model and on running it.
+    """
+
+    rung: str
+    assumed: str
+    outcome: str
+    error: float
+    margin: float
+    choosing: float
+    solving: float
+
+
+@dataclass(frozen=True, repr=False)
+class Solution(Presented):
+    """Values within a tolerance, by the cheapest model that is known to be enough.
+
+    `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,
+    `time` first); each is also an attribute: ``solution.friction_force``. Quantities of a series that were
+    not requested are NaN. `answer` is the full result of the model, if it has one.
+    """
+
+    values: Mapping[str, Value]
+    rtol: float
+    model: str
+    certificate: Certificate
+    climb: tuple[ClimbStep, ...]
+    answer: Any = field(default=None, repr=False, compare=False)
+    units: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+
+    def __getattr__(self, name: str) -> Value:
+        if name.startswith("_") or name == "values" or name not in self.values:
+            raise AttributeError(f"a {type(self).__name__} of this request has no `{name}`")
+        return self.values[name]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The notes of the model that was used."""
+        return getattr(self.answer, "notes", ())
+
+    @property
+    def choosing_share(self) -> float:
+        """Share of the time spent on the choice, including rungs that were run but not used."""
+        vain = sum(step.choosing + step.solving for step in self.climb[:-1])
+        last = self.climb[-1]
+        return (vain + last.choosing) / (vain + last.choosing + last.solving)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; a missing value is None."""
+        rest = {"model": self.model, "certificate": self.certificate, "climb": self.climb}
+        return dict(record({**self.values, **rest}))
 
 
 def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:

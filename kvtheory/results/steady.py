@@ -7,8 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.results.certificate import Certificate, Recorded, Value
-from kvtheory.results.presented import Presented, aligned, html_table, value_range, with_unit
+from kvtheory.results.errors import Certificate, Value
+from kvtheory.results.presented import (
+    Presented,
+    Recorded,
+    aligned,
+    html_table,
+    value_range,
+    with_unit,
+)
 from kvtheory.results.table import STEADY_UNITS
 
 UNSTABLE = (

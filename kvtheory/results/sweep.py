@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.export import xarray
-from kvtheory.results.certificate import Certificate, Recorded, record
-from kvtheory.results.presented import above
+from kvtheory.results.errors import Certificate
+from kvtheory.results.presented import Recorded, above, record
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 

@@ -1,5 +1,6 @@
-"""The quantities of results: the only table of their names, symbols, units, descriptions and scales."""
+"""The quantities of results, and the schemes of simulators: the only tables of their names and properties."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -96,3 +97,35 @@ def scales(at_rest: StaticState) -> dict[str, float]:
     """Return the scale of each quantity of a series, from the static state."""
     names = series_units(rigid_drive=at_rest.rigid_drive)
     return {name: getattr(at_rest, QUANTITIES[name].scale) for name in names}
+
+
+class SchemeRow(NamedTuple):
+    """A scheme on Kelvin-Voigt; on a Prony series limits are other, and the paper's order in time is two."""
+
+    name: str
+    summary: str
+    order_in_time: int  # of the motion while no element enters or leaves the contact
+    order: int  # of the depth when spacing and step are refined together; of forces it is one
+    stability_limit: float  # largest stable h C L/M, L the length of the contact: |R(-z)| = 1 (F15)
+    parts_of_elements: bool = False  # whether fractions of elements at the edges are counted
+    papers_step: bool = False  # whether h = 2 dx/V, as in the paper
+
+
+RK4_LIMIT = 2.785293563405282
+"""The root of 1 - z + z^2/2 - z^3/6 + z^4/24 = 1."""
+
+_SCHEMES = (
+    SchemeRow("paper", "Runge-Kutta of order 4, dt = 2 dx/V, contact rules 20-25, as in the paper",
+              4, 1, RK4_LIMIT, papers_step=True),
+    SchemeRow("rk4", "the paper's scheme with any time step", 4, 1, RK4_LIMIT),
+    SchemeRow("explicit-euler", "Euler's method with the paper's contact rules", 1, 1, 2.0),
+    SchemeRow("semi-implicit", "exact memory (F8), implicit damping, order 1", 1, 1, math.inf),
+    SchemeRow("exponential", "exact memory (F8), exponentially fitted damping, order 2 in time",
+              2, 2, math.inf),
+    SchemeRow("edge-corrected", "the exponential scheme with part of an element at each edge, order 2",
+              2, 2, math.inf, parts_of_elements=True),
+)  # fmt: skip
+SCHEME_ROWS = {row.name: row for row in _SCHEMES}
+"""The rows by name."""
+SIMULATED = tuple(name for name in SCHEME_ROWS if name != "rk4")
+"""Those that `elements` runs; the other one occurs in series of other simulators."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from kvtheory.results.certificate import Certificate, Value
+from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 from kvtheory.scene.arguments import checked, instant, instants, positions

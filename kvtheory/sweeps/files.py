@@ -18,7 +18,7 @@ import numpy as np
 import orjson
 
 from kvtheory.export import check_path, replace_file
-from kvtheory.results.certificate import Certificate
+from kvtheory.results.errors import Certificate
 from kvtheory.results.sweep import Failure, Sweep
 from kvtheory.sweeps.blocks import Block
 from kvtheory.sweeps.plan import EVENTS, Plan, Table, is_csv

@@ -24,7 +24,7 @@ from kvtheory.models.continuum.run import DONE, ROOM, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import SERIES, certified, method_of, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.records import readable
-from kvtheory.results.certificate import AT_REST
+from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene

@@ -10,7 +10,7 @@ from kvtheory.models.continuum.deviation import DEVIATION
 from kvtheory.models.continuum.evaluation import MEASURED
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import Trajectory
-from kvtheory.results.certificate import AT_REST, Certificate
+from kvtheory.results.errors import AT_REST, Certificate
 
 Array = NDArray[np.float64]
 

@@ -37,7 +37,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kvtheory.results.schemes import SCHEME_ROWS, SchemeRow
+from kvtheory.results.table import SCHEME_ROWS, SchemeRow
 from kvtheory.theory.laws import Array
 
 DEFAULT = "edge-corrected"

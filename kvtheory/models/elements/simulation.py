@@ -24,7 +24,7 @@ from kvtheory.results import (
     SprungSimulation,
     units_for,
 )
-from kvtheory.results.certificate import AT_REST
+from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import POWERS, BaseMotion
 from kvtheory.scene.model import Scene
