@@ -114,9 +114,7 @@ def _fixed(proof: Proof) -> None:
     proof.sign(
         sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
     )
-    proof.notation[r"\hat p"] = sp.Lambda(xi, PARABOLA)
-    leading = PARABOLA.subs(xi, -1)
-    proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
+    proof.equal(sp.Subs(PARABOLA, xi, -1), 2 * l, "pressure at the leading edge")
     proof.recall("F1", w)
     proof.recall("F1", phi)
     moved = (xi, -1 + recedes, q + _shift * eps)

@@ -60,20 +60,20 @@ def _instant(proof: Proof) -> None:
         *(-x / R * p, slope * p / K + l_r / R * p,
           r"the integrand of Eq. (15); the first term is $p\, p'/K$"),
     )  # fmt: skip
-    height, rate = delta_t - x**2 / (2 * R), depth_rate - V * x / R
-    primitive = K * sp.integrate(height, x) + C * sp.integrate(rate, x)
-    proof.recall("dense-row", F_z)
-    over, reason = (
-        r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}}",
-        "for a dense row, a polynomial of the edges",
-    )
-    proof.integral(F_z, p, steady.CONTACT, primitive, reason, right=rf"{over} p(x) \, dx")
-    primitive = (
-        -(K * sp.integrate(sp.expand(x * height), x) + C * sp.integrate(sp.expand(x * rate), x)) / R
-    )
-    proof.recall("dense-row", F_x)
-    proof.integral(F_x, -h(x).diff(x) * p, steady.CONTACT, primitive, reason,
-                   right=rf"{over} \left(-h'(x) p(x)\right) \, dx")  # fmt: skip
+    level = K * delta_t + C * depth_rate
+
+    def moment(power: int, place: sp.Expr) -> sp.Expr:
+        """Return the antiderivative of x**power times the pressure."""
+        terms = (level, 0), (-C * V / R, 1), (-K / (2 * R), 2)
+        return sum(
+            factor * place ** (power + order + 1) / (power + order + 1) for factor, order in terms
+        )
+
+    for force, power, factor, label in ((F_z, 0, sp.S.One, p), (F_x, 1, -1 / R, -h(x).diff(x) * p)):
+        proof.recall("dense-row", force)
+        values = factor * (moment(power, x_te) - moment(power, x_le))
+        proof.integral(force, label, steady.CONTACT, factor * moment(power, x),
+                       "for a dense row, a polynomial of the edges", value=values)  # fmt: skip
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")
     proof.define(p_te, sp.Subs(p, x, x_te), "at the trailing edge")
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)

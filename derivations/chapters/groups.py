@@ -15,7 +15,7 @@ from sympy.printing.latex import LatexPrinter
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter, symbol
 from ..engine.rules import Computed
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .model import K, M, R, V, delta, delta_t, depth_rate, h, tau, x
 from .steady import W, mu, p
 
@@ -32,6 +32,8 @@ result = Chapter("Dimensionless groups")
 
 BASE = sp.symbols("N X Z T", positive=True)
 _N, _X, _Z, _T = BASE
+_dim = sp.Function(r"\dim", positive=True)
+"""The dimension of a quantity."""
 
 DIMENSIONS = {
     R: _X**2 / _Z,
@@ -114,13 +116,9 @@ def _lengths(proof: Proof) -> None:
     ):
         changed = sp.Subs(law, (R, x), (R * units[R], x * units[x]))
         proof.equal(changed, unit * law, reason)
-    proof.notation |= {"h": sag, "h'": sp.diff(sag, x)}
     given = [each for each in units if pressure.has(each)]
     changed = sp.Subs(pressure, given, [each * units[each] for each in given])
-    proof.equal(
-        *(changed, _N / _X * pressure, "the pressure keeps its form"),
-        left=_CHANGED, right=r"\frac{N}{X} [K (\delta - h) + K \tau (\dot\delta - V h')]",
-    )  # fmt: skip
+    proof.equal(changed, _N / _X * pressure, "the pressure keeps its form")
     proof.recall("pressure-moving", p)
     proof.recall("eq22", tau)
     moving = {delta: delta_t, depth_rate_now: depth_rate}
@@ -143,17 +141,12 @@ def _circle(proof: Proof) -> None:
     proof.root(factor - _Z, _Z, _X, "except if both lengths change by the same factor")
 
 
-_CHANGED = (
-    r"\frac{N}{X Z} K (Z \delta - Z h) + \frac{N}{X Z} K T \tau \left(\frac{Z}{T} \dot\delta - "
-    r"\frac{X}{T} V \frac{Z}{X} h'\right)"
-)
-
-
 def _groups(proof: Proof, groups: Mapping[str, sp.Expr], quantities: tuple[sp.Symbol, ...]) -> None:
     for quantity in quantities:
-        proof.define(quantity, DIMENSIONS[quantity], "dimension", left=rf"[{tex(quantity)}]")
-    for display, group in groups.items():
-        proof.equal(group, sp.S.One, "all dimensions cancel", left=rf"\left[{display}\right]")
+        proof.define(_dim(quantity), DIMENSIONS[quantity], "dimension")
+    of = {quantity: _dim(quantity) for quantity in quantities}
+    for group in groups.values():
+        proof.equal(group.subs(of, simultaneous=True), sp.S.One, "all dimensions cancel")
     matrix = dimension_matrix(quantities)
     free = matrix.nullspace()
     powers = [group.as_powers_dict() for group in groups.values()]
@@ -170,7 +163,7 @@ def _groups(proof: Proof, groups: Mapping[str, sp.Expr], quantities: tuple[sp.Sy
         (n - Rank(isotropic(matrix)), m + 1, _ISOTROPIC),
     ):
         proof.equal(found, sp.Integer(expected), reason)
-    proof.done(next(iter(groups.values())), 1)
+    proof.done(next(iter(groups.values())).subs(of, simultaneous=True), 1)
 
 
 _STEADY = "One group of the operation and the scaled friction coefficient, so one master curve."

@@ -125,11 +125,9 @@ def _bell(proof: Proof) -> None:
     proof.recall("F3-values", mu_peak, Lambda_peak)
     stiffness, time = (mu_peak / mu_max) ** 3 * W / R**2, Lambda_peak * sp.cbrt(R * W / K) / V_max
     known = r"$\mu_{\max} (K R^2/W)^{1/3}$ is known"
-    proof.root(mu_max * sp.cbrt(K * R**2 / W) - mu_peak, K, stiffness, known,
-               right=r"\left(\frac{\hat\mu_{\max}}{\mu_{\max}}\right)^3 \frac{W}{R^2}")  # fmt: skip
+    proof.root(mu_max * sp.cbrt(K * R**2 / W) - mu_peak, K, stiffness, known)
     reason = r"$V_{\max} \tau (K/(R W))^{1/3}$, too"
-    proof.root(V_max * tau * sp.cbrt(K / (R * W)) - Lambda_peak, tau, time, reason,
-               right=r"\frac{\Lambda_{\max}}{V_{\max}} \left(\frac{R W}{K}\right)^{1/3}")  # fmt: skip
+    proof.root(V_max * tau * sp.cbrt(K / (R * W)) - Lambda_peak, tau, time, reason)
     height, place = established("F3-values", mu_peak), established("F3-values", Lambda_peak)
     numbers = {
         r"\hat \mu_{\max}": height,

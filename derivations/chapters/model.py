@@ -217,7 +217,6 @@ def _decay(proof: Proof) -> None:
     """Compression of a free element."""
     proof.recall("eq20")
     growth, start = sp.exp((t - t_0) / tau), u_i.subs(t, t_0)
-    left = r"\frac{\mathrm{d}}{\mathrm{d}t} \left[u_i \exp\frac{t - t_0}{\tau}\right]"
-    proof.equal((u_i * growth).diff(t), sp.S.Zero, "the product keeps its value", left=left)
+    proof.equal(sp.Derivative(u_i * growth, t), sp.S.Zero, "the product keeps its value")
     later = start * sp.exp(-(t - t_0) / tau)
     proof.root(u_i * growth - start, u_i, later, "its value at $t_0$ is $u_i(t_0)$")

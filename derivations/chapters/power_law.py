@@ -77,15 +77,9 @@ def _pressure(proof: Proof) -> None:
     proof.recall("eq29", C)
     proof.define(l_r, l * a, "the retardation length over the half length")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
-        proof.notation |= {"h": height, "h'": -side * slope, "C": C, "V": V, "K": K}
-        proof.equal(
-            *(
-                (K * (delta - height) + side * C * V * slope) / (K * delta),
-                form,
-                f"at $x = {where}$",
-            ),
-            left=r"\frac{K (\delta - h) - C V h'}{K \delta}",
-        )
+        pressure = K * (delta - height) + side * C * V * slope
+        reason = rf"$(K (\delta - h) - C V h')/(K \delta)$ at $x = {where}$"
+        proof.equal(pressure / (K * delta), form, reason)
     proof.define(P, BEHIND, "behind the tip, with $y = x/a$")
     proof.equal(
         sp.Derivative(BEHIND, y), -n * y ** (n - 2) * (y + (n - 1) * l), "falling behind the tip"
@@ -104,17 +98,11 @@ def _edge(proof: Proof) -> None:
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
     proof.recall("F19-pressure")
     proof.define(l, NUMBER, "$l$ for an edge at $y = q$")
-    proof.notation |= {"l": sp.Lambda(q, NUMBER)}
     proof.equal(sp.Subs(P, y, q), sp.S.Zero, "no pressure there")
-    proof.equal(
-        *(sp.diff(NUMBER, q), -(n - 1 + q**n) / (n * q**n), "slope"),
-        left=r"\frac{d l}{d q}",
-    )
+    proof.equal(sp.Derivative(l, q), -(n - 1 + q**n) / (n * q**n), "slope")
     falling = (excess + q**n) / (n * q**n)
     proof.holds(falling, ">", 0, r"$l$ falls strictly: each $l > 0$ has one $q$")
-    proof.equal(NUMBER.subs(q, 1), sp.S.Zero, r"at rest, and $l \to \infty$ for $q \to 0$",
-                left="l(1)")  # fmt: skip
-    del proof.notation["l"]
+    proof.equal(sp.Subs(l, q, 1), sp.S.Zero, r"at rest, and $l \to \infty$ for $q \to 0$")
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
     proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
     proof.equal(q, 1 / Q - n * l, "solved for $q$")
@@ -186,16 +174,12 @@ def _peak_pressure(proof: Proof) -> None:
     and at the leading edge from there on.
     """
     slope = n * y ** (n - 2) * ((n - 1) * l - y)
-    proof.notation[r"\hat p"] = sp.Lambda(y, AHEAD)
-    proof.equal(
-        sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$", left=r"\frac{d \hat p}{d y}"
-    )
+    proof.equal(sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$")
     inside = 1 + l * ((n - 1) * l) ** (n - 1)
     form = 1 + y ** (n - 1) * (n * l - y)
     proof.equal(AHEAD, form, "the pressure ahead of the tip")
-    proof.notation[r"\hat p"] = sp.Lambda(y, form)
-    proof.equal(form.subs(y, (n - 1) * l), inside, "inside the contact", left=r"\hat p((n - 1) l)")
-    proof.equal(form.subs(y, 1), n * l, "at the leading edge", left=r"\hat p(1)")
+    proof.equal(form.subs(y, (n - 1) * l), inside, "inside the contact")
+    proof.equal(sp.Subs(form, y, 1), n * l, "at the leading edge")
     proof.define(y, sp.Min(1, (n - 1) * l), "where the peak is")
     proof.define(P_n, form, "both cases in one form")
 

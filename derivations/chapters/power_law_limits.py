@@ -21,9 +21,11 @@ from .power_law import (
 )
 from .steady import l, q
 
-w_rest, m_low, m_high, l_cross, more_load, more_work = symbols(r"""
+w_rest, w_l, phi_l, m_low, m_high, l_cross, more_load, more_work = symbols(r"""
     -        \bar z        1  $1 - q^n$
     w_rest   w_{n,0}       1  scaled load of a power law at rest
+    w_l      w_n'          1  -
+    phi_l    \varphi_n'    1  -
     m_low    m_{n,0}'      1  friction coefficient of a power law at low velocity, over $l$
     m_high   m_{n,\infty}  1  friction coefficient of a power law at high velocity
     l_cross  l^{*}         1  scaled retardation length where the asymptotes meet
@@ -48,29 +50,23 @@ def _monotonic(proof: Proof) -> None:
     proof.recall("F19-load")
     proof.recall("F19-friction")
 
-    def rate(form: sp.Expr) -> sp.Expr:
-        return sp.Derivative(form, q) / sp.Derivative(l, q)
-
-    proof.notation |= {"w_n'": rate(w_n), r"\varphi_n'": rate(phi_n)}
-    load_rate, friction_rate = n * l * Q, n**2 * SQUARES
-    proof.equal(rate(w_n), load_rate, "the load grows", left="w_n'")
-    proof.equal(rate(phi_n), friction_rate, "and so does friction", left=r"\varphi_n'")
+    for name, form, growth, reason in (
+        (w_l, w_n, n * l * Q, "the load grows"),
+        (phi_l, phi_n, n**2 * SQUARES, "and so does friction"),
+    ):
+        proof.define(name, sp.Derivative(form, q) / sp.Derivative(l, q), "chain rule")
+        proof.equal(name, growth, reason)
     rest = n * (1 + q + l * q * Q) / (n + 1)
-    proof.equal(w_n - l * load_rate, rest, "$w_n/l$ falls: positive",
-                left="w_n - l w_n'")  # fmt: skip
+    proof.equal(w_n - l * w_l, rest, "$w_n/l$ falls: positive")
     less = n**2 * l**2 * Q**2 / 2
-    proof.equal(phi_n - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
-                left=r"\varphi_n - l \varphi_n'")  # fmt: skip
+    proof.equal(phi_n - l * phi_l, less, r"$\varphi_n/l$ falls: positive")
     z, double = n * l * Q, n + excess
     growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
     growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
-    gain = friction_rate * w_n - phi_n * load_rate
-    proof.equal(
-        *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
-        left=r"2 (n + 1) (2 n - 1) (w_n \varphi_n' - \varphi_n w_n')",
-    )
+    gain = phi_l * w_n - phi_n * w_l
+    proof.equal(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows")
     proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive")
-    proof.done(w_n - l * load_rate, rest)
+    proof.done(w_n - l * w_l, rest)
 
 
 @result("F19-low")

@@ -6,8 +6,8 @@ In units of the static state: s = a/a_0, delta/delta_0 = s**n, lambda = V tau/a_
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter, symbol
-from ..engine.step import Proof, tex
+from ..engine.nomenclature import symbol
+from ..engine.step import Proof
 from .model import C, K, V, delta
 from .power_law import (
     HIGH_COEFFICIENT,
@@ -15,7 +15,6 @@ from .power_law import (
     NUMBER,
     SECTION,
     SLOPE_POWER,
-    SQUARES,
     L,
     Q,
     excess,
@@ -26,15 +25,16 @@ from .power_law import (
     w_n,
     z,
 )
-from .power_law_limits import AT_REST, m_high
-from .steady import W, a, l, mu, q
+from .power_law_limits import AT_REST, m_high, phi_l, w_l
+from .steady import W, a, l, l_r, mu, q
 from .tables import delta_0
 from .theorems import kappa, lam, r, s
 
 scaled_n = symbol("f_n", "scaled load of a power law that has been lifted, $W/W_0$")
 scaled_n_s = symbol("f_n_s", latex="f_n'")
-letter("L_1", "asymptote of the friction coefficient for low velocity")
-letter("L_2", "asymptote of the friction coefficient for high velocity")
+L_1 = symbol("L_1", "asymptote of the friction coefficient for low velocity")
+L_2 = symbol("L_2", "asymptote of the friction coefficient for high velocity")
+W_0 = symbol("W_0")
 slip_n = symbol("D_n", "logarithmic slope of the friction coefficient of a power law", real=True)
 T_n = symbol("T_n", "scaled friction of a power law over its asymptote for low velocity", real=True)
 lam_cross = symbol("lambda_cross", "drive number where the asymptotes meet", latex=r"\lambda^{*}")
@@ -82,14 +82,8 @@ def _balance(proof: Proof) -> None:
     proof.define(s, lam / NUMBER, r"at fixed velocity, $\lambda$ constant")
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
     proof.recall("F19-scaled-load")
-    state = {r: s * q, Q: SLOPE_POWER}
-    place = lam / NUMBER
-    of_q = SCALED_LOAD.subs(state).subs(s, place)
-    proof.notation |= {"f_n'": sp.diff(of_q, q), "s'": sp.diff(place, q)}
-    proof.equal(
-        *(sp.diff(of_q, q), SCALED_SLOPE * sp.diff(place, q), "a deeper indenter carries more"),
-        left="f_n'", right=rf"\left[{tex(SCALED_SLOPE)}\right] s'",
-    )  # fmt: skip
+    slope = SCALED_SLOPE * sp.Derivative(s, q)
+    proof.equal(sp.Derivative(scaled_n, q), slope, "a deeper indenter carries more")
     proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
     elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
     above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole
@@ -114,8 +108,7 @@ def _exponents(proof: Proof) -> None:
     proof.recall("F19-high", m_high)
     proof.define(mu, m_high * delta / a, "the asymptote for high velocity")
     result = HIGH_COEFFICIENT * n ** (-1 / n) * (W / (C * V * L)) ** power
-    shown = r"\frac{n^{2 - 1/n}}{2 n - 1} \left(\frac{W}{C V L}\right)^{1 - 1/n}"
-    proof.equal(mu, result, "falls as a power of the velocity", right=shown)
+    proof.equal(mu, result, "falls as a power of the velocity")
 
 
 @result("F19-crossing-weight")
@@ -127,35 +120,17 @@ def _crossing(proof: Proof) -> None:
     (48).
     """
     lifted = AT_REST * (1 + kappa) / lam
-    proof.notation |= {
-        "W_0": AT_REST * K * delta_0 * a_0,
-        "K": K,
-        r"\delta_0": delta_0,
-        r"l_{\mathrm{r}}": lam * a_0,
-    }
-    proof.equal(
-        *(
-            AT_REST * K * delta_0 * a_0 * (1 + kappa) / (K * lam * a_0) / delta_0,
-            lifted,
-            r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$",
-        ),
-        left=r"\frac{(1 + \kappa) W_0}{K l_{\mathrm{r}} \delta_0}",
-    )
-    ratio = HIGH_COEFFICIENT * lifted ** (1 - 1 / n) / (LOW_SLOPE * lam)
+    proof.define(W_0, AT_REST * K * delta_0 * a_0, "the load at rest")
+    proof.define(l_r, lam * a_0, "the retardation length")
+    reason = r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$"
+    proof.equal((1 + kappa) * W_0 / (K * l_r * delta_0), lifted, reason)
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
-    proof.notation |= {
-        r"\ln (L_2/L_1)": _logarithm(ratio),
-        r"\ln (\lambda^{*}/\lambda)": _logarithm(CROSSING / lam),
-    }
-    proof.equal(
-        *(n * _logarithm(ratio), (2 * n - 1) * _logarithm(CROSSING / lam), "high over low asymptote"),
-        left=r"n \ln (L_2/L_1)", right=r"(2 n - 1) \ln (\lambda^{*}/\lambda)",
-    )  # fmt: skip
-    proof.define(lam_cross, CROSSING, r"where it is 1: $V^{*} \tau/a_0$")
-
-
-def _logarithm(expr: sp.Expr) -> sp.Expr:
-    return sp.expand_log(sp.log(expr.subs(n, 1 + excess)))
+    proof.define(lam_cross, CROSSING, r"$V^{*} \tau/a_0$")
+    proof.define(L_1, LOW_SLOPE * lam, "in units of $\\delta_0/a_0$")
+    proof.define(L_2, HIGH_COEFFICIENT * lifted ** (1 - 1 / n), "likewise")
+    ratio, drive = sp.log(L_2 / L_1), sp.log(lam_cross / lam)
+    proof.equal(n * ratio, (2 * n - 1) * drive, "so they meet at $\\lambda = \\lambda^{*}$")
+    proof.done(lam_cross, CROSSING)
 
 
 @result("F19-at-load")
@@ -166,7 +141,6 @@ def _at_load(proof: Proof) -> None:
     """
     friction = sp.Symbol("varphi_n", positive=True)
     load = AT_REST / s ** (n + 1)
-    scaled, power = s ** (n - 1) * friction / load, friction / load ** (2 * n / (n + 1))
     proof.define(n, 1 + excess, "the exponent of the shape")
     proof.define(w_n, load, r"$s^{n + 1} w_n = \frac{2 n}{n + 1}$")
     proof.define(
@@ -174,19 +148,8 @@ def _at_load(proof: Proof) -> None:
         friction / w_n,
         r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$",
     )
-    proof.notation |= {
-        r"\ln (s^{n - 1} m_n)": _logarithm(scaled), r"\ln \varphi_n": sp.log(friction),
-        r"\ln w_n": _logarithm(load), r"\ln w_{n,0}": _logarithm(AT_REST),
-    }  # fmt: skip
-    proof.equal(
-        *(
-            _logarithm(scaled),
-            _logarithm(power * AT_REST ** ((n - 1) / (n + 1))),
-            "the friction coefficient at a given load",
-        ),
-        left=r"\ln (s^{n - 1} m_n)",
-        right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln w_{n,0}",
-    )
+    power = sp.log(friction) - 2 * n / (n + 1) * sp.log(w_n) + (n - 1) / (n + 1) * sp.log(AT_REST)
+    proof.equal(sp.log(s ** (n - 1) * m_n), power, "the friction coefficient at a given load")
     proof.done(w_n, load)
 
 
@@ -197,19 +160,12 @@ def _slip(proof: Proof) -> None:
     Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; $l$ grows
     with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - \frac{1}{n + 1}$.
     """
-    proof.notation |= {
-        "w_n'": n * l * Q, r"\varphi_n'": n**2 * SQUARES,
-    }  # fmt: skip
+    proof.recall("F19-monotonic", w_l, phi_l)
     proof.recall("F19-load")
     proof.recall("F19-friction")
-    rates = (n + 1) * n**2 * SQUARES * w_n - 2 * n * phi_n * n * l * Q
+    rates = (n + 1) * w_n * phi_l - 2 * n * phi_n * w_l
     slip = n**3 * SLIP / (2 * n - 1)
-    proof.equal(
-        rates,
-        slip,
-        r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
-        left=r"(n + 1) w_n \varphi_n' - 2 n \varphi_n w_n'",
-    )
+    proof.equal(rates, slip, r"its logarithmic slope times $w_n \varphi_n$")
     proof.define(slip_n, SLIP, "an expression with its sign")
 
 
@@ -225,18 +181,21 @@ def _maximum(proof: Proof) -> None:
     peeled = 1 - q**n
     damped, double = 1 + q * Q**2, n + excess
     form = Q * (1 + q) + z / n - (2 * n - 1) * (z**2 + z**3 * Q / damped) / n**2
-    of_q = form.subs({Q: SLOPE_POWER, z: peeled})
     proof.define(z, peeled, r"$z = n l Q$")
     proof.define(T_n, form, "in this variable")
     proof.recall("F19-slip")
     slip_scaled = slip_n * Q / damped
-    proof.notation |= {"T_n": sp.Lambda(q, of_q)}
-    proof.equal(slip_scaled, T_n, "the same sign as $D_n$", left=r"\frac{Q}{1 + q Q^2} D_n")
+    proof.equal(slip_scaled, T_n, "the same sign as $D_n$")
     rest = excess**2 + n**2 * q * Q**2 + double * q**n * (1 + z + z**2)
     slope = excess * q ** (n - 2) * (q + rest / (n**2 * damped)) + double / n**2 * (
         2 * n * z * Q + 3 * n * z**2 * Q**2 / damped + double * z**3 * Q**3 / damped**2
     )
-    proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
+    proof.equal(sp.Derivative(T_n, q), slope, "slope")
     proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
-    proof.crossing(of_q, (q, 0, 1), r"from $-\nu/n^2$ in the fast limit to 2 at rest", slope=slope)
+    proof.crossing(
+        form.subs({Q: SLOPE_POWER, z: peeled}),
+        (q, 0, 1),
+        r"from $-\nu/n^2$ in the fast limit to 2 at rest",
+        slope=slope,
+    )
     proof.done(slip_scaled, T_n)

@@ -96,15 +96,11 @@ def _retardation_length(proof: Proof) -> None:
     Behind the contact the surface relaxes within this length.
     """
     start = u_i.subs(t, t_0)
-    surface = sp.Lambda(x, start * sp.exp((x_te - x) / (V * tau)))
-    proof.notation |= {"u": surface}
     proof.define(l_r, V * tau, "how far the base moves in the retardation time")
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", reason="it left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
-    shown = r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)"
-    reason = r"$l_{\mathrm{r}}$ is its e-folding length"
-    proof.equal(u_i.subs(later), result, reason, left="u(x)", right=shown)
+    proof.equal(u_i.subs(later), result, r"$l_{\mathrm{r}}$ is its e-folding length")
     proof.recall("eq22")
     proof.equal(C, K * l_r / V, "with Eq. (22), solved for the damping")
     proof.done(l_r, V * tau)
@@ -162,7 +158,7 @@ def _dense_row(proof: Proof) -> None:
         proof.equal(total, sp.Integral(density, CONTACT), "the total force")
 
 
-@result("eq26", notation={"p": sp.Lambda(x, pressure)})
+@result("eq26")
 def _leading_edge(proof: Proof) -> None:
     """Leading edge.
 
@@ -172,16 +168,16 @@ def _leading_edge(proof: Proof) -> None:
     proof.recall("eq3")
     proof.recall("eq22")
     proof.recall("eq29")
+    proof.recall("pressure")
     proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
-    at_edge = pressure.subs(x, -a)
-    proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
+    proof.equal(p.subs(x, -a), C * V * a / R, "positive, so the contact begins")
     s = sp.Symbol("s", positive=True)
     reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
     proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
     proof.done(x_le, -a)
 
 
-@result("eq27", notation={"p": sp.Lambda(x, pressure)})
+@result("eq27")
 def _trailing_edge(proof: Proof) -> None:
     """Trailing edge.
 
@@ -190,9 +186,8 @@ def _trailing_edge(proof: Proof) -> None:
     proof.recall("eq28")
     proof.recall("pressure")
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$")
-    ahead = pressure.subs(x, -a)
-    proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
-    proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
+    proof.equal(p.subs(x, -a), K * l_r * a / R, "positive at the leading edge")
+    proof.equal(p.subs(x, a), -K * l_r * a / R, "negative at $x = a$")
     proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
                over=(x, -a, sp.oo), name=x_te)  # fmt: skip
 
@@ -247,22 +242,18 @@ _limits(30, 31, "fixed indenter")
 def _moving_leading_edge(proof: Proof) -> None:
     r"""Leading edge of the movable indenter.
 
-    Here $a(t) = \sqrt{2 R \delta(t)}$. The pressure at this edge is positive while $\dot{x}_{\mathrm{LE}} <
+    The pressure at this edge is positive while $\dot{x}_{\mathrm{LE}} <
     V$: the edge moves onto undisturbed ground.
     """
-    half = sp.sqrt(2 * R * delta_t)
-    proof.notation |= {"a": sp.Lambda(t, half), r"\dot{x}_{\mathrm{LE}}": (-half).diff(t)}
     proof.recall("eq3")
+    proof.define(a, _half, "now depends on time")
     reason = "the undisturbed surface meets the indenter, $h = \\delta(t)$"
-    proof.root(delta_t - h(x), x, -half, reason, over=(x, -sp.oo, 0), name=x_le, right="-a(t)")
+    proof.root(delta_t - h(x), x, -a, reason, over=(x, -sp.oo, 0), name=x_le)
+    edge_rate = sp.Derivative(x_le, t)
     proof.equal(
-        C * (half * V / R + depth_rate),
-        C * half / R * (V - (-half).diff(t)),
-        "Eq. (7): the pressure there",
-        left=r"C \left(\frac{a V}{R} + \dot{\delta}\right)",
-        right=r"\frac{C a}{R} \left(V - \dot{x}_{\mathrm{LE}}\right)",
+        C * (a * V / R + depth_rate), C * a / R * (V - edge_rate), "Eq. (7): the pressure there"
     )
-    proof.done(x_le, -half)
+    proof.done(x_le, -a)
 
 
 @result("eq33")
@@ -281,12 +272,7 @@ def _peeling_edges(proof: Proof) -> None:
     proof.recall("pressure-moving", p)
     proof.define(a, _half, "now depends on time")
     proof.equal(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$")
-    proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
     proof.where(sp.Gt(square, 0), "else no element can be pressed")
-    proof.equal(
-        *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
-        right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
-    )
     proof.root(
         *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
         over=(x, -sp.oo, -l_r), name=_x_minus,
@@ -295,6 +281,8 @@ def _peeling_edges(proof: Proof) -> None:
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
         name=_x_plus,
     )  # fmt: skip
+    proof.equal(p, half * (_x_plus - x) * (x - _x_minus), "positive exactly between its zeros")
+    proof.done(_x_plus, TRAILING)
 
 
 @result("eq34")

@@ -116,7 +116,7 @@ def _cancellation(proof: Proof) -> None:
     proof.done(q, 1 / (l + root))
 
 
-@result("F7", notation={r"\hat p": sp.Lambda(xi, PROFILE)})
+@result("F7")
 def _peak_pressure(proof: Proof) -> None:
     r"""Peak pressure.
 
@@ -127,11 +127,11 @@ def _peak_pressure(proof: Proof) -> None:
     proof.recall("F16", (P, PROFILE))
     proof.greatest(
         *(1 + l**2, P, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$"),
-        surplus=(xi + l) ** 2, left=r"\hat p(-l)",
+        surplus=(xi + l) ** 2,
     )  # fmt: skip
     proof.greatest(
         *(2 * l, P, (xi, -1), "at the leading edge, else"),
-        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1), left=r"\hat p(-1)",
+        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1),
     )  # fmt: skip
     proof.define(
         n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
@@ -158,17 +158,9 @@ def _scaled_load(proof: Proof) -> None:
     proof.recall("F1", w)
     proof.define(f, 3 * s**3 * w / 4, r"$W = K \delta a w$")
     proof.equal(f, SCALED_LOAD, "a sum of positive terms")
-    # Derivatives act on expressions in s and lambda alone, where nothing depends on s unseen.
-    proof.notation |= {"f": SCALED_LOAD.subs(r, radius), "f'": slope.subs(r, radius)}
-    proof.define(
-        *(f_s, sp.Derivative(SCALED_LOAD.subs(r, radius), s), "at fixed velocity"),
-        right=r"\frac{\partial f}{\partial s}",
-    )
+    proof.define(f_s, sp.Derivative(SCALED_LOAD.subs(r, radius), s), "at fixed velocity")
     proof.equal(f_s, slope, "positive: a deeper indenter carries more")
-    proof.define(
-        *(f_ss, sp.Derivative(slope.subs(r, radius), s), "second derivative"),
-        right=r"\frac{\partial f'}{\partial s}",
-    )
+    proof.define(f_ss, sp.Derivative(slope.subs(r, radius), s), "second derivative")
     proof.equal(f_ss, 3 * (r + s) ** 2 / (2 * r), "positive")
     proof.done(f, SCALED_LOAD)
 

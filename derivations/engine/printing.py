@@ -194,7 +194,7 @@ class Printer(LatexPrinter):
 
     def _product(self, number: sp.Rational, factors: Iterable[sp.Expr]) -> str:
         """Print a product: sign, fraction, and what stands beside it."""
-        number, named, factors = _named(number, list(factors))
+        number, named, factors = _named(number, _gathered(factors))
         number, above, below, roots = self._parted(number, factors)
         above += [each for each in named if each.as_base_exp()[1] > 0]
         below += [1 / each for each in named if each.as_base_exp()[1] < 0]
@@ -504,6 +504,20 @@ def _named(
                 rest = [each for each in factors if each not in surds]
                 return ratio, [sp.Symbol(letter, positive=True) ** power], rest
     return number, [], factors
+
+
+def _gathered(factors: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Write the powers of one letter as one power, where an exponent is no number."""
+    found: dict[sp.Expr, list[sp.Expr]] = {}
+    for factor in factors:
+        base, exponent = factor.as_base_exp() if factor.is_Pow else (factor, sp.S.One)
+        found.setdefault(base, []).append(exponent)
+    parts: list[sp.Expr] = []
+    for base, exponents in found.items():
+        symbolic = len(exponents) > 1 and not all(each.is_number for each in exponents)
+        for each in [sp.Add(*exponents)] if symbolic else exponents:
+            parts.append(base if each == 1 else sp.Pow(base, each, evaluate=False))
+    return parts
 
 
 def _flat(factors: Iterable[sp.Expr]) -> list[sp.Expr]:
