@@ -189,6 +189,14 @@ def test_files_of_others_are_left_alone(tmp_path, name, content):
     assert list(tmp_path.iterdir()) == [foreign]
 
 
+def test_only_its_own_leftovers_are_removed(tmp_path):
+    ours, others = (tmp_path / f".{stem}.0123456789ab.part.csv" for stem in ("map", "map.fine"))
+    ours.touch()
+    others.touch()  # another sweep, into map.fine.csv, may be writing it
+    small(tmp_path / "map.csv")
+    assert sorted(names(tmp_path)) == [others.name, "map.csv"]
+
+
 def test_the_same_sweep_cannot_run_twice_at_a_time(tmp_path):
     refused = []
 
