@@ -286,10 +286,13 @@ def test_a_damaged_block_of_the_work_file_is_computed_again(tmp_path, asked):
         with pytest.raises(ValueError, match="another sweep"):
             small(path, **asked)
         assert work.read_bytes() == flipped(content, at)
-    for at in [None, *chance.sample(range(block - HEAD.size, len(content)), 18)]:
-        work.write_bytes(content if at is None else flipped(content, at))
+    places = chance.sample(range(block - HEAD.size, len(content)), 12)
+    spoilt = [flipped(content, at) for at in places] + [content[:at] for at in places[:3]]
+    zeros = bytes(len(content) - block + HEAD.size)  # what a power cut may leave
+    for left in [content, *spoilt, content[: block - HEAD.size] + zeros]:
+        work.write_bytes(left)
         found = small(path, **asked)
-        assert found.computed == found.points - (at is None)
+        assert found.computed == found.points - (left == content)
         assert path.read_bytes() == whole
         path.unlink()
 

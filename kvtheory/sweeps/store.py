@@ -110,7 +110,7 @@ def records(file: Any) -> Iterator[tuple[int, bytes]]:
         file.seek(at - HEAD.size)
         length, crc = HEAD.unpack(file.read(HEAD.size))
         content = file.read(min(length, size - at))
-        if crc32(content) == crc:
+        if content and crc32(content) == crc:
             yield at + length, content
         at += length + HEAD.size
 
