@@ -189,6 +189,14 @@ def test_files_of_others_are_left_alone(tmp_path, name, content):
     assert list(tmp_path.iterdir()) == [foreign]
 
 
+def test_only_its_own_leftovers_are_removed(tmp_path):
+    ours, others = (tmp_path / f".{stem}.0123456789ab.part.csv" for stem in ("map", "map.fine"))
+    ours.touch()
+    others.touch()  # another sweep, into map.fine.csv, may be writing it
+    small(tmp_path / "map.csv")
+    assert sorted(names(tmp_path)) == [others.name, "map.csv"]
+
+
 def test_the_same_sweep_cannot_run_twice_at_a_time(tmp_path):
     refused = []
 
@@ -278,10 +286,13 @@ def test_a_damaged_block_of_the_work_file_is_computed_again(tmp_path, asked):
         with pytest.raises(ValueError, match="another sweep"):
             small(path, **asked)
         assert work.read_bytes() == flipped(content, at)
-    for at in [None, *chance.sample(range(block - HEAD.size, len(content)), 18)]:
-        work.write_bytes(content if at is None else flipped(content, at))
+    places = chance.sample(range(block - HEAD.size, len(content)), 12)
+    spoilt = [flipped(content, at) for at in places] + [content[:at] for at in places[:3]]
+    zeros = bytes(len(content) - block + HEAD.size)  # what a power cut may leave
+    for left in [content, *spoilt, content[: block - HEAD.size] + zeros]:
+        work.write_bytes(left)
         found = small(path, **asked)
-        assert found.computed == found.points - (at is None)
+        assert found.computed == found.points - (left == content)
         assert path.read_bytes() == whole
         path.unlink()
 

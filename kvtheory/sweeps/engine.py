@@ -25,6 +25,8 @@ from kvtheory.sweeps.store import opened
 
 WORK = ".part"
 """Suffix of a work file, after the name of the result."""
+ANY = "?" * 12
+"""Matches what differs from call to call in the name of a temporary file (`export.replace_files`)."""
 VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many reduce the speed by a third."""
 QUADRATURE_BLOCK = 512
@@ -59,7 +61,7 @@ def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
         return files.from_file(path, plan)
     with opened(work, plan, anew=overwrite) as kept:
         if not finished:  # else it was killed just before it removed this
-            for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
+            for unfinished in path.parent.glob(f".{escape(path.stem)}.{ANY}.part{path.suffix}"):
                 unfinished.unlink()  # of a run that was killed while it wrote the result
             try:
                 computed = run(plan, kept.done, kept.keep, **how)

@@ -9,7 +9,7 @@ import json
 import math
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from struct import Struct
@@ -76,13 +76,14 @@ def opened(path: Path, plan: Plan, *, anew: bool = False) -> Iterator[WorkFile]:
     with named(path):
         file = path.open("a+b", buffering=0)
     with file:
-        with suppress(ImportError):  # not every system has such locks
+        try:
             from fcntl import LOCK_EX, LOCK_NB, flock
 
-            try:
-                flock(file, LOCK_EX | LOCK_NB)
-            except BlockingIOError:
-                raise OSError(f'"{path}" is in use: the same sweep is running') from None
+            flock(file, LOCK_EX | LOCK_NB)
+        except BlockingIOError:
+            raise OSError(f'"{path}" is in use: the same sweep is running') from None
+        except (ImportError, OSError):
+            pass  # not every system, nor every file system, has such locks
         file.seek(0)
         if not MARK.startswith(file.read(len(MARK))):
             raise ValueError(f'"{path}" {NOT_OURS}')
@@ -110,7 +111,7 @@ def records(file: Any) -> Iterator[tuple[int, bytes]]:
         file.seek(at - HEAD.size)
         length, crc = HEAD.unpack(file.read(HEAD.size))
         content = file.read(min(length, size - at))
-        if crc32(content) == crc:
+        if content and crc32(content) == crc:
             yield at + length, content
         at += length + HEAD.size
 
@@ -130,6 +131,6 @@ def _unpacked(plan: Plan, content: bytes) -> Block:
     left = np.frombuffer(numbers)
     for column in plan.numeric:
         shape = plan.shape(column, stop - start)
-        table[column.name], left = np.split(left, [math.prod(shape)])
-        table[column.name].shape = shape
+        part, left = np.split(left, [math.prod(shape)])
+        table[column.name] = part.reshape(shape)
     return Block(start, stop, table, *about)
