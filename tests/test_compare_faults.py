@@ -422,6 +422,19 @@ def test_a_wrong_curve_is_explained_by_a_contact_rule_or_said_to_be_zero():
     assert dry.diagnosis.startswith("Closest, but not all")
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "expected"),
+    [({"damping": 2e7}, {}, "damper missing"), ({}, {"stiffness": 5e9}, "glassy stiffness")],
+)
+def test_a_foundation_read_in_another_way_is_named(right, wrong, expected):
+    arms, at = {"stiffness": 1e10, "arms": [(3e9, 0.01), (2e9, 0.1)]}, np.linspace(0.0, 0.03, 61)
+    given, other = (kv.Scene(foundation=kv.GeneralizedMaxwell(**arms | more), run=kv.Run(0.03))
+                    for more in (right, wrong))  # fmt: skip
+    found = kv.transient(other, at=at, certify=False)
+    data = {"time": at, **{name: getattr(found, name) for name in MEASURED[1:]}}
+    assert first_of(kv.compare(given, data), expected).enough
+
+
 def test_five_fast_arms_need_no_more_elements():
     arms = [(1e11, 1e-5), (5e10, 3e-5), (5e10, 1e-4), (3e10, 3e-4), (2e10, 1e-3)]
     scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms), run=kv.Run("20 ms"))

@@ -158,9 +158,7 @@ def allowance(
         step = fine.time_step if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
-    few = (
-        np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL
-    )  # those of the drive
+    few = np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL  # as driven
     calm = ~beside_jumps(theory, time, fine.time_step)
     bands, given = {}, ("velocity", "sliding_velocity")[: 1 + (few or theory.scene.drive.rigid)]
     for name in CURVES:
@@ -294,12 +292,8 @@ def _entering(theory: Theory, now: Curves, others: Sequence[Curves], pressure: A
 
 
 def _unfollowed(
-    theory: Theory,
-    parts: Sequence[Curves],
-    ends: Sequence[Curves],
-    known: Mask,
-    order: tuple[Mask, bool],
-) -> Array:
+    theory: Theory, parts: Sequence[Curves], ends: Sequence[Curves], known: Mask, order: tuple[Mask, bool]
+) -> Array:  # fmt: skip
     """Return the force over C by which delta' and V change in a step without its motion knowing.
 
     The motion of a step balances the forces at one rate delta' and velocity V; at its end the elements feel
@@ -379,7 +373,7 @@ def _response(
     at_rest = foundation.stiffness * fine.spacing**2 * static.half_length / theory.radius
     at_rest *= float(theory.width(static.depth)) / float(stiffness[0])
     depth, rate = [at_rest + INITIAL * static.depth], [0.0]
-    swing = OVERSHOOT if theory.rates and theory.rates.oscillates else 1.0
+    swing = OVERSHOOT if theory.rates and theory.rates.oscillation else 1.0
     kick = force * (1.0 / damping + fine.time_step / theory.scene.support.mass)
     rows = zip(larger, left, ages, kick, stiffness / damping, length == 0.0, strict=True)
     for most, share, age, step, decay, flies in rows:

@@ -153,9 +153,7 @@ def balance(case: Case) -> Measured:
         )
         steady = np.abs(window.force) @ smooth[rows] + np.abs(moved) @ depth.rounding[rows]
         parts = depth.noise[rows] * moved, force.noise[rows] * window.force
-        random = extreme(case.time.size) * math.hypot(
-            *(float(np.linalg.norm(part)) for part in parts)
-        )
+        random = extreme(case.time.size) * math.hypot(*map(np.linalg.norm, parts))
         limit = case.tolerance * (2.0 * sampled + (float(steady) + random) / window.impulse)
         first, last = case.time[rows][[0, -1]] * 1e3
         found.append((lacks, limit, f"worst from {first:.4g} to {last:.4g} ms"))

@@ -64,10 +64,8 @@ def _untested(case: Case) -> str:
     """Say what an error would not show of in these data, and the reference problem in which it would."""
     rows, scene, motion = bench(case), case.theory.scene, case.theory.motion
     powers = {each.symbol: each.powers for each in faults.parameters_of(scene)}
-    stiffness = {
-        **powers["K"],
-        **({"foundation.retardation_time": -1.0} if "tau" in powers else {}),
-    }
+    per_tau = {"foundation.retardation_time": -1.0} if "tau" in powers else {}
+    stiffness = {**powers["K"], **per_tau}
     times = powers.get("tau") or powers.get("all tau_i") or powers["tau_1"]
     parts = [
         ("the stiffness", "low-velocity", stiffness),

@@ -231,9 +231,7 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
         how = f"estimated from {fine.spacing_read}" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
     allowed = 2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE
-    if (
-        common_noise(case) is not None and not of_elements
-    ):  # noise on top of the elements, as of a sensor
+    if common_noise(case) is not None and not of_elements:  # as of a sensor, on top of them
         allowed = max(allowed, LARGEST_UNCORRELATED)
     allowed *= case.tolerance
     b = float(np.median(case.edge_force)) / W

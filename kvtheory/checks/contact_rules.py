@@ -23,9 +23,7 @@ class Mistake(NamedTuple):
     text: str
     rules: Sequence[Rule]
     shows: str = ""  # the kind of scenes in which it can show (`SHOWS`)
-    strengths: Sequence[
-        float
-    ] = ()  # one for each rule: an unknown, interpolated, shown in the text
+    strengths: Sequence[float] = ()  # one for each rule: an unknown, shown in the text
     right: float | None = None  # the strength without effect
 
 

@@ -60,9 +60,7 @@ class Hypothesis(NamedTuple):
     shown: float = 1e3
     log: bool = False
     remote: Sequence[float] = ()  # starts that are tried if nothing explains the data
-    powers: Mapping[str, float] | None = (
-        None  # of the scene's quantities that scale with the number
-    )
+    powers: Mapping[str, float] | None = None  # of the quantities that scale with the number
     factor: float | None = None  # reported without an unknown
     last: bool = False  # named after any other fault that is enough, as it fits nearly anything
 

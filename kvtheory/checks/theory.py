@@ -76,11 +76,6 @@ class Rates(NamedTuple):
         settling = 1.0 / slowest if slowest > 0.0 else math.inf
         return cls(fast, slow, settling, min(turning, key=abs, default=None))
 
-    @property
-    def oscillates(self) -> bool:
-        """Whether the indenter oscillates about its steady state."""
-        return self.oscillation is not None
-
 
 class Theory:
     """A scene and the methods that solve it.

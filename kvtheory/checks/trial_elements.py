@@ -28,13 +28,9 @@ class Rule(NamedTuple):
     slide_rate: float = 1.0  # factor on -h' V there
     decay: float = 1.0  # the free surface decays as exp(-decay t/tau); infinite: no memory
     tension: bool = False  # elements may pull, until they are back at z = 0
-    stale: float = (
-        0.0  # part of the pressure of receding elements that the equation of motion misses
-    )
+    stale: float = 0.0  # part of the pressure of receding elements that the motion misses
     drops: float = 0.0  # part of the whole force that it misses while the indenter rises
-    creep: float = (
-        0.0  # lag of a step that rises and sinks by turns, in units of M/C over the contact
-    )
+    creep: float = 0.0  # lag of a step that rises and sinks by turns, in M/C over the contact
     hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
@@ -149,9 +145,7 @@ class Elements:
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         touching = g > -0.5 * np.abs(slope) * self.length  # with a part of the element
         on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
-        rubbed = (
-            p + (1.0 - rule.friction) * damping * slope * speed
-        )  # from which friction is computed
+        rubbed = p + (1.0 - rule.friction) * damping * slope * speed  # for the friction
         p, rubbed = (np.where(on & ((q > 0.0) | (rule.tension > 0.0)), q, 0.0) for q in (p, rubbed))
         inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
         area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
@@ -169,19 +163,8 @@ class Elements:
         stiff = (held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0)).sum(axis=(1, 2))
         drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
         drag = (held * drag * slope * slope).sum(axis=(1, 2))
-        return Pressed(
-            normal,
-            lift,
-            friction,
-            stiff,
-            drag,
-            left,
-            right,
-            p.max(axis=(1, 2)),
-            surface,
-            stress,
-            on,
-        )
+        peak = p.max(axis=(1, 2))
+        return Pressed(normal, lift, friction, stiff, drag, left, right, peak, surface, stress, on)
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
         """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
@@ -209,8 +192,7 @@ class Elements:
         glassy = foundation.stiffness + gain.sum()
         stress = kept * self.stress[:, :, :, near]
         slow = C / h if h else 0.0
-        free = (gain * old - stress).sum(axis=0) + slow * old
-        free = free / (glassy + slow)
+        free = ((gain * old - stress).sum(axis=0) + slow * old) / (glassy + slow)
         free = np.where(forgets | sticks, 0.0, np.where(rule.decay > 0.0, free, old)) if h else old
         on = (g > 0.0) & (sticks | (g >= free))
         if C:  # with it, pressure jumps at an edge on undisturbed ground
@@ -309,7 +291,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     low, high = motion.extremes(0.0, float(times[-1]))
     elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
     damping = (
-        scene.foundation.slow_damping * static.load / (scene.foundation.stiffness * static.depth)
+        scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
     )
     parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
     depth, damper, creep, drops = (parts * [static.depth, damping, 1.0 / damping, 1.0]).T
@@ -356,9 +338,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         elements.keep(now, near, found)
         if not held:
             full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
-            lifted = np.where(
-                rate > sinks, full, np.where(rate < 0.0, less, np.clip(0.0, full, less))
-            )
+            lifted = np.select([rate > sinks, rate < 0.0], [full, less], np.clip(0.0, full, less))
         if k_x:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
@@ -383,10 +363,8 @@ def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[st
 
 def steady_changes(theory: Theory, rules: Sequence[Rule], speeds: Array) -> list[dict[str, Array]]:
     """Return by rule what it changes in each curve of steady sliding at speeds (m/s, increasing)."""
-    kinds, V = (
-        [Rule(**{key: getattr(rule, key) for key in STEADY}) for rule in rules],
-        np.abs(speeds),
-    )
+    kinds = [Rule(**{key: getattr(rule, key) for key in STEADY}) for rule in rules]
+    V = np.abs(speeds)
     some = np.unique(np.quantile(V, np.linspace(0.0, 1.0, POINTS), method="nearest"))
     found = {rule: steady(theory, rule, some) for rule in {Rule(), *kinds}}
     sign = np.where(speeds < 0.0, -1.0, 1.0)
