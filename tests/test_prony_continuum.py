@@ -9,7 +9,14 @@ import pytest
 
 import kvtheory as kv
 from kvtheory import compilation
-from kvtheory.models.continuum.prony import contact, evaluation, solved_scene, trajectory, walk
+from kvtheory.models.continuum.prony import (
+    contact,
+    energy,
+    evaluation,
+    solved_scene,
+    trajectory,
+    walk,
+)
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 
@@ -421,7 +428,7 @@ def test_a_history_of_many_points_has_steps_for_each(monkeypatch):
 
 
 def test_a_history_of_many_points_costs_as_much_for_each_of_them(monkeypatch, interpreted):
-    """The contact has a segment for each point: no step copies or looks at all of them, nor does a peak."""
+    """The contact has a segment for each point: no step, peak or energy looks at all of them."""
     corners = [(2e-4 * i, 0.05 + 0.02 * (i % 2)) for i in range(41)]
     scene = sliding([(3e10, 0.01)], kv.Drive(history=corners), 8e-3, support=kv.Fixed(1e-4))
 
@@ -438,3 +445,10 @@ def test_a_history_of_many_points_costs_as_much_for_each_of_them(monkeypatch, in
     assert now.chain < 8 * now.count
     assert len(looks) <= 3 * 5 * now.steps
     assert apart(found, whole, scene) == 0.0
+    calls = []
+    parts = energy.Ground._parts
+    monkeypatch.setattr(
+        energy.Ground, "_parts", lambda ground, step: calls.append(step) or parts(ground, step)
+    )
+    assert abs(found.energy([4e-3, 8e-3]).balance).max() < 1e-4
+    assert len(calls) == 2  # the ground of a step is all that came before

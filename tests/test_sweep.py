@@ -193,6 +193,11 @@ def test_netcdf_is_labelled_and_carries_units_scene_and_failures(tmp_path):
     assert again["depth"].shape == (2, 4_000)
 
 
+def test_a_scene_with_an_empty_list_is_not_swept():
+    with pytest.raises(kv.SceneError, match=r"velocity = .*is empty; expected"):
+        kv.sweep(kv.Scene(drive=kv.Drive([])), over={TAU: [0.1]})
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

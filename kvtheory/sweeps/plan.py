@@ -161,6 +161,11 @@ def spread(scene: Scene, over: Mapping[Any, Any] | None) -> tuple[Scene, dict[An
     }
     if not arrays:
         return scene, over
+    problems = Problems()
+    for key, array in scene.arrays().items():
+        if not array.size:
+            problems.add(key, [], "is empty; expected at least one value")
+    problems.report()
     one = scene.replace({key: array[0] for key, array in arrays.items()})
     own = {key: array for key, array in arrays.items() if key not in swept}
     return one, ({tuple(own): tuple(own.values())} if own else {}) | over

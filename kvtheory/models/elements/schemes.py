@@ -2,7 +2,7 @@
 
 The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt), and on a spring in the drive
 M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how F_z is
-summed over the elements and over the step; what is known of each is in `results.schemes`.
+summed over the elements and over the step; what is known of each is in `results.table`.
 
 Explicit schemes are Runge-Kutta methods on F_z = dx Σ (K g + C g'), with the paper's rules of contact. They
 are stable up to dt C L/M = 2.785 (the paper's) or 2 (Euler), L the length of the contact; on arms, up to

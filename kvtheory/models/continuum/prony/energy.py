@@ -70,7 +70,6 @@ class Ground:
         self.paused = r_.named(r_.together(run.clock, r_.PIECE)).paused
         self.damper = readable(run.given[0]).damper
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
-        self.parts = [self._parts(index) for index in range(count)]
         longest = float(motion.counts.s)
         self.ages = [
             fastest * 0.5 * 2.0 ** np.arange(max(0.0, np.log2(longest / fastest) + 2.0))
@@ -149,7 +148,7 @@ class Ground:
         states = self.motion.states(self.time(self.step_at(s), s), peaks=False)
         (l, r), Y = states["edges"].T, states["way"]
         indices = enumerate(self.step_at(s).tolist())
-        rows = [(i, *part) for i, index in indices for part in self.parts[index]]
+        rows = [(i, *part) for i, index in indices for part in self._parts(index)]
         found = np.zeros((2, 3, s.size))
         if not rows:
             return found
