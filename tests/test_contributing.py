@@ -190,6 +190,10 @@ for given, arms, shape in alike:
         asked["critical_stiffness"] = lambda scene: kv.stability(
             scene.replace({"drive.velocity": 0.2}), quantity="critical_stiffness")
         asked["normal_force"] = lambda scene: kv.transient(scene, at=[1e-3])
+        motion = kv.elements(one, at=np.linspace(0.0, 2e-3, 20), per_length=1e4, certify=False)
+        names = "time", "depth", "normal_force", "friction_force"
+        data = {name: getattr(motion, name) for name in names}
+        assert kv.compare(one, data=data).verdict == kv.compare(two, data=data).verdict == "agrees"
     for name, ask in asked.items():
         a, b = (np.asarray(getattr(ask(each), name)) for each in (one, two))
         assert np.array_equal(a, b) and np.isfinite(a).all(), (name, a, b)

@@ -9,14 +9,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory import compilation
-from kvtheory.models.continuum.prony import (
-    contact,
-    energy,
-    evaluation,
-    solved_scene,
-    trajectory,
-    walk,
-)
+from kvtheory.models.continuum.prony import contact, energy, evaluation, trajectory, walk
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 
@@ -423,7 +416,7 @@ def test_a_history_of_many_points_has_steps_for_each(monkeypatch):
         drive=kv.Drive(history=corners),
         run=kv.Run(1.2e-3),
     )
-    monkeypatch.setattr(solved_scene, "STEP_LIMIT", 0)
+    monkeypatch.setattr(trajectory, "STEP_LIMIT", 0)
     assert kv.transient(scene, at=[1.2e-3], certify=False).steps > 0
 
 

@@ -66,7 +66,8 @@ def _untested(case: Case) -> str:
     powers = {each.symbol: each.powers for each in faults.parameters_of(scene)}
     per_tau = {"foundation.retardation_time": -1.0} if "tau" in powers else {}
     stiffness = {**powers["K"], **per_tau}
-    times = powers.get("tau") or powers.get("all tau_i") or powers["tau_1"]
+    named = "tau", "all tau_i", "tau_1", *(name.replace("_", " ") for name in scene.foundation.own)
+    times = next(powers[name] for name in named if name in powers)
     parts = [
         ("the stiffness", "low-velocity", stiffness),
         ("the damper" if "tau" in powers else "the relaxation times", "high-velocity", times),

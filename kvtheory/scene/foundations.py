@@ -19,6 +19,7 @@ from kvtheory.scene.mistakes import Problems, SceneError, mistake
 from kvtheory.scene.quantities import (
     Derived,
     Part,
+    Quantity,
     Value,
     as_given,
     derive,
@@ -280,6 +281,11 @@ class _Relaxed(Part):
         return DAMPED if np.any(self.damping) else ARMS
 
     @property
+    def own(self) -> dict[str, Quantity]:
+        """The quantities that foundations of other kinds need not have."""
+        return {n: spec for n, spec in quantities(self).items() if n not in quantities(_Relaxed)}
+
+    @property
     def slow_damping(self) -> Value:
         """C + sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
         return sum((arm.stiffness * arm.relaxation_time for arm in self.arms), +self.damping)
@@ -327,8 +333,7 @@ class _Relaxed(Part):
         """Return the foundation at its temperature, without layer and law, `factor` times as stiff."""
         own: dict[str, Any] = {
             name: (factor if spec.unit.startswith("N") else 1.0) * +getattr(self, name)
-            for name, spec in quantities(self).items()
-            if name not in quantities(_Relaxed)
+            for name, spec in self.own.items()
         }
         if any(field.name == "arms" for field in fields(self)):
             own["arms"] = [(factor * arm.stiffness, +arm.relaxation_time) for arm in self.arms]

@@ -23,6 +23,11 @@ MEASURED = (
     "velocity", "offset", "spring_force", "leading_edge", "trailing_edge", "left_edge", "right_edge",
 )  # fmt: skip
 """Quantities of which extremes and deviations are asked."""
+SERIES = (
+    "velocity", "sliding_velocity", "spring_force", "depth", "depth_rate", "normal_force",
+    "friction_force", "peak_pressure", "leading_edge", "trailing_edge",
+)  # fmt: skip
+"""The quantities of a series, which are fields of the states."""
 
 SUBDIVISIONS = 4
 """Points shown for each step; steps are long where the motion is steady."""

@@ -3,7 +3,8 @@
 import math
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.energy import Ledger
-from kvtheory.models.continuum.error_estimate import NOT_ASKED, NOTHING, certificate, methods
+from kvtheory.models.continuum.error_estimate import (
+    LOOSEST,
+    NOT_ASKED,
+    NOTHING,
+    TIGHTEST,
+    certificate,
+    methods,
+)
+from kvtheory.models.continuum.evaluation import SERIES
 from kvtheory.models.continuum.run import STATE_NAMES, Spring, StepControl
 from kvtheory.models.continuum.solver import STEP_LIMIT, solve
 from kvtheory.progress import Progress
@@ -29,11 +38,6 @@ AFTER_END = 1e-12
 TO_A_CHANGE = 0.5 * AFTER_END
 """Share of the run by which it is extended if the drive changes so close to its end that both count as one
 time: the solver then includes the change."""
-SERIES = (
-    "velocity", "sliding_velocity", "spring_force", "depth", "depth_rate", "normal_force",
-    "friction_force", "peak_pressure", "leading_edge", "trailing_edge",
-)  # fmt: skip
-"""The quantities of a series, which are fields of the states."""
 STEPS_A_PIECE = 100
 """Upper bound on the steps for one piece of a drive; a stop takes 25."""
 
@@ -174,15 +178,57 @@ class Method(NamedTuple):
 def method_of(scene: Scene, rtol: float) -> Method:
     """Return how a scene is solved: on arms by `prony`, else by the closed forms of Kelvin-Voigt."""
     if scene.foundation.arms:
-        from kvtheory.models.continuum import prony
-
-        return prony.solved_scene.method(scene, rtol)
+        return _on_arms(scene, rtol)
     first, second = methods(rtol)
 
     def errors(fine: SolvedScene, other: Any, s: Array | None, why: str) -> Certificate:
         return certificate(fine.motion, other, s, scene.drive.tolerance, why)
 
     return Method(StaticState.of(scene), solve, STEP_LIMIT, first, (second,), errors)
+
+
+def _on_arms(scene: Scene, rtol: float) -> Method:
+    """Return how a scene whose foundation has arms is solved; ValueError if that fails."""
+    from kvtheory.models.continuum.prony import error_estimate, trajectory
+
+    units, rtol, foundation = own_units(scene), min(rtol, LOOSEST), scene.foundation
+    stiffness = foundation.stiffness
+    arms = [
+        (arm.stiffness / stiffness, arm.relaxation_time / units.time) for arm in foundation.arms
+    ]
+    damper = foundation.damping / (stiffness * units.time)
+
+    def solved(drive: BaseMotion, eps: float, kappa: float, *given: Any, **how: Any) -> Any:
+        try:
+            return trajectory.solve(drive, arms, (eps, kappa), *given, damper=damper, **how)
+        except ValueError as error:
+            why, s = error.args
+            message = (
+                f"fails numerically at t = {s * units.time:.6g} s: {why}; try another tolerance"
+            )
+            raise ValueError(f"the transient on a Prony series {message}") from None
+
+    first, second = (rtol, error_estimate.FIRST), error_estimate.SECOND
+    others = tuple((max(rtol / each, TIGHTEST), second) for each in error_estimate.OTHERS)
+    errors = partial(error_estimate.certificate, scene, rtol)
+    return Method(units, solved, trajectory.STEP_LIMIT, first, others, errors)
+
+
+def own_units(scene: Scene) -> StaticState:
+    """Return the static state with a unit of time of the motion: that of the foundation may be far from it.
+
+    It is that of the run, or that in which the base moves by a half length if this is shorter.
+    """
+    units, end = StaticState.of(scene), end_of(scene)
+    speed = scene.drive.motion(end, units.velocity).highest_speed
+    time = min(end, units.half_length / speed) if speed > 0.0 else end
+    ratio = units.time / time
+    return replace(
+        units, time=time, drive_number=units.drive_number / ratio,
+        inertia_number=units.inertia_number * ratio**2,
+        drive_inertia_number=units.drive_inertia_number * ratio**2,
+        drive_damping_number=units.drive_damping_number * ratio,
+    )  # fmt: skip
 
 
 def certified(

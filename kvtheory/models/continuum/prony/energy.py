@@ -164,12 +164,8 @@ class Ground:
             high[here], low[here] = np.where(own, at, high[here]), np.where(own, low[here], at)
         low[rest] = np.maximum(segment["X_a"], (l - Y)[owner])[rest]
         high[rest] = np.minimum(segment["X_b"], (r - Y)[owner])[rest]
-        panels = [
-            self._panels(time, first, last, still, self.ages[int(here)])
-            for time, first, last, still, here in zip(
-                s[owner], low, high, rest, inside, strict=True
-            )
-        ]
+        rows_of = zip(s[owner], low, high, rest, [self.ages[int(k)] for k in inside], strict=True)
+        panels = [self._panels(*row) for row in rows_of]
         which = np.repeat(np.arange(len(rows)), [len(p) - 1 for p in panels])
         a = np.concatenate([p[:-1] for p in panels])
         width = np.concatenate([np.diff(p) for p in panels])

@@ -1,9 +1,7 @@
-"""The transient of a scene on a Prony series in SI units, and its error, estimated as on Kelvin-Voigt."""
+"""Error of a transient on a Prony series, estimated as on Kelvin-Voigt."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,19 +10,16 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum.error_estimate import (
     COMPARISON,
     FLOOR,
-    LOOSEST,
     MARGIN,
     TIGHTER,
-    TIGHTEST,
 )
+from kvtheory.models.continuum.evaluation import SERIES
 from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
-from kvtheory.models.continuum.prony.trajectory import STEP_LIMIT, Trajectory, solve
+from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.models.continuum.run import FREE, StepControl
-from kvtheory.models.continuum.solved_scene import SERIES, Method, SolvedScene, end_of
 from kvtheory.records import readable
 from kvtheory.results import AT_REST, Certificate
 from kvtheory.results.table import scales
-from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -34,6 +29,7 @@ ROUNDING = 4e-16
 """Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
 LESS_TIGHT = 10.0
 """First over second tolerance where a solution with the one over `TIGHTER` fails."""
+OTHERS = TIGHTER, LESS_TIGHT
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with at most {1 / LESS_TIGHT:g} times the tolerance and "
     "other step sizes, plus a bound of rounding; `jump_time` is the error of the time of a take-off or "
@@ -46,51 +42,10 @@ FIRST = StepControl(longest=math.inf)
 SECOND = COMPARISON._replace(longest=math.inf)
 
 
-def own_units(scene: Scene) -> StaticState:
-    """Return the static state with a unit of time of the motion: that of the foundation may be far from it.
-
-    It is that of the run, or that in which the base moves by a half length if this is shorter.
-    """
-    units, end = StaticState.of(scene), end_of(scene)
-    speed = scene.drive.motion(end, units.velocity).highest_speed
-    time = min(end, units.half_length / speed) if speed > 0.0 else end
-    ratio = units.time / time
-    return replace(
-        units, time=time, drive_number=units.drive_number / ratio,
-        inertia_number=units.inertia_number * ratio**2,
-        drive_inertia_number=units.drive_inertia_number * ratio**2,
-        drive_damping_number=units.drive_damping_number * ratio,
-    )  # fmt: skip
-
-
-def method(scene: Scene, rtol: float) -> Method:
-    """Return how a scene whose foundation has arms is solved; ValueError if that fails."""
-    units, rtol, foundation = own_units(scene), min(rtol, LOOSEST), scene.foundation
-    stiffness = foundation.stiffness
-    arms = [
-        (arm.stiffness / stiffness, arm.relaxation_time / units.time) for arm in foundation.arms
-    ]
-    damper = foundation.damping / (stiffness * units.time)
-
-    def solved(drive: BaseMotion, eps: float, kappa: float, *given: Any, **how: Any) -> Trajectory:
-        try:
-            return solve(drive, arms, (eps, kappa), *given, damper=damper, **how)
-        except ValueError as error:
-            why, s = error.args
-            message = (
-                f"fails numerically at t = {s * units.time:.6g} s: {why}; try another tolerance"
-            )
-            raise ValueError(f"the transient on a Prony series {message}") from None
-
-    others = tuple((max(rtol / each, TIGHTEST), SECOND) for each in (TIGHTER, LESS_TIGHT))
-    errors = partial(certificate, rtol=rtol, scene=scene)
-    return Method(units, solved, STEP_LIMIT, (rtol, FIRST), others, errors)
-
-
 def certificate(
-    fine: SolvedScene, other: Trajectory | None, s: Array | None, why: str, *, rtol: float, scene: Scene
+    scene: Scene, rtol: float, fine: Any, other: Trajectory | None, s: Array | None, why: str
 ) -> Certificate:  # fmt: skip
-    """Return the certificate of the states at scaled times, from a solution with a tighter tolerance.
+    """Return the certificate of the states of a `SolvedScene` at scaled times, by default the natural ones.
 
     Where only one of them flies, the contact of the other is narrow: its width is the error of an edge.
     """
@@ -134,7 +89,7 @@ def _series(states: NDArray[Any], own: Mapping[str, float]) -> dict[str, Array]:
 
 
 def _anywhere(
-    fine: SolvedScene, other: Trajectory, rtol: float, tolerance: float
+    fine: Any, other: Trajectory, rtol: float, tolerance: float
 ) -> tuple[dict[str, float], float]:
     """Return the scaled errors of pressure and surface, and that of the times of take-offs and landings.
 
