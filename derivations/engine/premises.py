@@ -128,15 +128,11 @@ def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
     if value.has(sp.nan, sp.zoo):
         return True
     seen = signs(value) or {sign_of_terms(value)} - {0}
-    if any(
+    return any(
         getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False
         for kind, sign in _KINDS.items()
         if sign not in seen and not (sign == 0 and seen)
-    ):
-        return True
-    if value.is_number and not value.has(AppliedUndef) and symbol.is_real and value.is_real is None:
-        return abs(sp.im(value).evalf(20)) > sp.Float("1e-15")
-    return False
+    )
 
 
 def fixed_value(variable: sp.Expr, premises: Iterable[Premise]) -> sp.Expr | None:
