@@ -59,7 +59,6 @@ def test_a_wrong_step_stops_the_notebook():
         ("integral", (a, q, (q, 0, 1), q**2 / 3)),
         ("integral", (a, q, (q, 0, 1), q**2 / 2, 1)),
         ("leading_order", (q + 2 * q**2, 2 * q, q, 0, q)),
-        ("sampled", (q, q**2, [(q, 0, 1)])),
     ],
 )
 def test_the_second_opinion_sees_what_is_false(check, arguments):

@@ -2,7 +2,7 @@
 
 import pytest
 import sympy as sp
-from kvtheory.derivations.engine.algebra import antiderivative
+from kvtheory.derivations.engine.algebra import UndecidedError, antiderivative
 from kvtheory.derivations.engine.book import StepError
 from kvtheory.derivations.engine.conditions import Conditions, proves_positive
 from kvtheory.derivations.engine.points import signs
@@ -68,10 +68,16 @@ def test_what_has_no_series_here_is_left_to_others():
 
 
 @pytest.mark.parametrize(
-    "expr", [y**3 * sp.exp(-z * y), sp.exp(y) * sp.exp(-z * y) / 3, 1 / y, y**z, y * sp.sin(y)]
+    "expr", [y**3 * sp.exp(-z * y), sp.exp(y) * sp.exp(-z * y) / 3, 1 / y**2, y**z, 1 + y]
 )
 def test_an_antiderivative_has_the_right_slope(expr):
     assert sp.simplify(sp.diff(antiderivative(expr, y), y) - expr) == 0
+
+
+@pytest.mark.parametrize("expr", [1 / y, y * sp.sin(y), sp.exp(-y) / y, sp.exp(y**2)])
+def test_an_antiderivative_that_no_rule_gives_is_refused(expr):
+    with pytest.raises(UndecidedError, match="no rule for the integral"):
+        antiderivative(expr, y)
 
 
 def test_a_recalled_integral_is_not_evaluated_at_its_place():

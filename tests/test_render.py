@@ -41,7 +41,7 @@ SAMPLE = (
         (Step(r"h{\left(x \right)}", "=", r"\frac{x^{2}}{2 R}", "5 % & #1_2", "definition"),),
     ),
     Derivation(
-        "eq27", 27, "Contact", "Trailing edge", "", r"x = \sqrt{a^{2}}", "sampled",
+        "eq27", 27, "Contact", "Trailing edge", "", r"x = \sqrt{a^{2}}", "argued",
         (Step("x", "=", r"\int\limits_{0}^{a} 1\, dt = a", "Eq. (3)", "proved"),), uses=("eq3", "F9"),
         table=Table(("A & B", "$x$"), (("1 %", r"$\frac{1}{2}$"),)),
     ),

@@ -371,3 +371,24 @@ def test_the_load_grows_between_its_third_and_fourth_power(drive):
     told = exact("F20-balance", sym.ball_scaled_s, known)
     assert 3 < growth < 4
     assert mp.almosteq(growth * load(place), told, 1e-10)
+
+
+@pytest.mark.parametrize("exponent", ["1.1", "2", "3.5"])
+@pytest.mark.parametrize("edge", ["0.9", "0.3", "1e-6"])
+def test_a_power_law_stays_within_its_bounds_of_high_velocity(by_label, exponent, edge):
+    """F19-high against integrals of the pressure, p/(K delta) = 1 - y^n +- n l y^(n - 1)."""
+    n, q = mp.mpf(exponent), mp.mpf(edge)
+    l = (1 - q**n) / (n * q ** (n - 1))
+
+    def under(y, side, power):
+        return (n * y ** (n - 1)) ** power * (1 - y**n + side * l * n * y ** (n - 1))
+
+    load, friction = (
+        mp.quad(lambda y, k=power: under(y, 1, k), [0, 1])
+        + sign * mp.quad(lambda y, k=power: under(y, -1, k), [0, q])
+        for power, sign in ((0, 1), (1, -1))
+    )
+    limit = n**2 / (2 * n - 1)
+    assert 0 < load / l - 1 < 2 * n / ((n + 1) * l)
+    assert 0 < friction / l - limit < 1 / (2 * l) + 1 / ((2 * n - 1) * l**2)
+    assert by_label["F19-high"].status == "proved"

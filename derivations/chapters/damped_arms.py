@@ -34,14 +34,13 @@ from .viscoelastic import (
     z,
 )
 
-tau_1, damping_share, whole_load, whole_work, slow, fast, fast_load, C_all, fades = symbols(r"""
+tau_1, damping_share, whole_load, whole_work, slow, fast, C_all, fades = symbols(r"""
     tau_1   -                   s        relaxation time of an arm  from scene
     chi_d   \breve \chi_1       1        damping of the damper over that of the arm, $C/(K \tau_1)$
     W_va    \breve W_1          1        load on spring, damper and arm, in units of $K \breve c^3/R$
     F_va    \breve F_1          1        friction force on them, in units of $K \breve c^4/R^2$  real
     m_v1    \breve m_1          1        limit of $\mu R/\breve c$ for low velocity beside a damper
     m_v2    \breve m_2          1        limit of $\mu R/\breve c$ for high velocity beside a damper
-    W_v2    \breve W_2          1        limit of the load for high velocity, in units of $K \breve c^3/R$
     C_all   C_{\Sigma}          N s/m³   damping of damper and arms at low velocity, $C + \sum K_i \tau_i$
     r_d     \breve \varrho      1/s      rate at which free ground relaxes beside a damper
 """)
@@ -62,9 +61,8 @@ def _steady(proof: Proof) -> None:
     r"""Arms beside a damper: steady sliding.
 
     For $p = K u + C \dot u + \sum s_i$, in units of $K$: $\breve \zeta = C V/(K \breve c)$ is the damper and
-    $\breve \beta = K_1/K$ one arm. With more arms $\breve \beta \breve P$ stands for the sum of all
-    $K_i \breve P(\breve z_i)/K$, and so on. Without a damper this is F17-parts, without arms
-    F17-kelvin-voigt.
+    $\breve \beta = K_1/K$ one arm. With more arms $\breve \beta \breve P$ stands for the sum of all $K_i
+    \breve P/K$, and so on. Without a damper this is F17-parts, without arms F17-kelvin-voigt.
     """
     from_moments(proof)
     for label in ("F17-edge", "F17-load", "F17"):

@@ -99,6 +99,7 @@ def _high(proof: Proof) -> None:
     the damper carries, and $\mu \to \frac{\delta}{a} m_{n,\infty}$.
     """
     in_q(proof)
+    proof.where(q < 1, "the edge is inside of its place at rest")
     proof.recall("F19-load")
     proof.recall("F19-friction")
     proof.recall("F19", (m_n, phi_n / w_n))

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import sympy as sp
-from sympy.codegen.cfunctions import expm1
 from sympy.core.function import AppliedUndef
 
 from .conditions import (
@@ -337,16 +336,10 @@ def _faded(
 
 
 def _in_exponentials(expr: sp.Expr, h: sp.Symbol) -> sp.Expr:
-    """Write by exponentials what may grow or fade as they do: then nothing else does."""
-    for function in (sp.sinh, sp.cosh):
-        expr = expr.replace(
-            function, lambda u, f=function: f(u).rewrite(sp.exp) if u.has(h) else f(u)
-        )
-    expr = expr.replace(expm1, lambda u: sp.exp(u) - 1)
-    return expr.replace(
-        lambda node: node.is_Pow and node.base != sp.E and node.exp.has(h),
-        lambda node: sp.exp(node.exp * sp.log(node.base)),
-    )
+    """Write hyperbolic functions that may grow or fade by exponentials."""
+    for kind in (sp.sinh, sp.cosh):
+        expr = expr.replace(kind, lambda u, f=kind: _WRITTEN[f](u) if u.has(h) else f(u))
+    return expr
 
 
 def _refuse_growth(expr: sp.Expr, h: sp.Symbol) -> None:
@@ -455,7 +448,7 @@ def _next_on(
 
 
 def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
-    """Integrate powers, and polynomials times exponentials, by their rules; the rest is left to SymPy.
+    """Integrate powers, and polynomials times exponentials, by their rules.
 
     >>> x, k = sp.symbols("x k", positive=True)
     >>> antiderivative(x**2 + x * sp.exp(-k * x), x)
@@ -468,19 +461,21 @@ def antiderivative(expr: sp.Expr, variable: sp.Symbol) -> sp.Expr:
         power, exponent = powers.pop(variable, sp.S.Zero), powers.pop(sp.E, sp.S.Zero)
         rate = derivative(exponent, variable)
         whole = power.is_Integer and power >= 0
-        if set(powers) - {sp.S.One} or rate.has(variable) or (rate != 0 and not whole):
-            total += factor * sp.integrate(rest, variable)
-        elif rate == 0:
-            total += factor * sp.integrate(variable**power, variable)
+        if (
+            set(powers) - {sp.S.One}
+            or rate.has(variable)
+            or power == -1
+            or not (rate == 0 or whole)
+        ):
+            raise UndecidedError(f"no rule for the integral of {rest} over {variable}")
+        if rate == 0:
+            total += factor * variable ** (power + 1) / (power + 1)
         else:
-            total += (
-                factor
-                * sum(
-                    (-1) ** k * sp.ff(power, k) * variable ** (power - k) / rate ** (k + 1)
-                    for k in range(int(power) + 1)
-                )
-                * sp.exp(exponent)
+            parts = (
+                (-1) ** k * sp.ff(power, k) * variable ** (power - k) / rate ** (k + 1)
+                for k in range(int(power) + 1)
             )
+            total += factor * sum(parts) * sp.exp(exponent)
     return expanded(total)
 
 

@@ -372,11 +372,7 @@ class Book:
         latex = f"{left} {sign} {right}"
         for form in (gap, raw):
             self._demand(form, latex)
-        premises = merged(fact.premises for fact in self._origins.values())
-        if not has_witness(tuple((each.lhs, each.rhs) for each in premises), self._conditions.gaps):
-            raise StepError(
-                f"{self.label}: no point was found where {condition} and all else holds"
-            )
+        self._ask_witness(f"{condition} and all else holds")
         claim = self._claim(condition.lhs, condition.rhs)
         self._steps.append(Step(left, sign, right, reason, "definition", claim=claim))
 
@@ -443,10 +439,7 @@ class Book:
         if label not in self._uses:
             self._uses.append(label)
         self._carry(fact)
-        if not has_witness((), self._conditions.gaps):
-            raise StepError(
-                f"{self.label}: no point was found where the conditions of {label} and all else hold"
-            )
+        self._ask_witness(f"the conditions of {label} and all else hold")
         self._origins[lhs] = fact
         self._consistent(lhs, rhs, label)
 
@@ -668,10 +661,7 @@ class Book:
             gap = case.gts - case.lts
             positive = (*self._conditions.positive, self._resolve(gap), gap)
             self._conditions = Conditions(self._conditions.intervals, positive)
-            premises = merged(fact.premises for fact in self._origins.values())
-            pairs = tuple((each.lhs, each.rhs) for each in premises)
-            if not has_witness(pairs, self._conditions.gaps):
-                raise StepError(f"{self.label}: no point was found where {case} and all else holds")
+            self._ask_witness(f"{case} and all else holds")
         elif case != sp.true:
             raise StepError(f"{self.label}: {case} is no equality and no strict inequality")
         try:
@@ -737,10 +727,17 @@ class Book:
             if part == 0 or part.has(AppliedUndef, sp.Integral, sp.Derivative, sp.Abs):
                 raise StepError(f"{self.label}: {claim}: {part} may vanish; say where it does not")
             self._demand(part**2, tex_condition(sp.Pow(part, 2, evaluate=False)))
-            premises = merged(fact.premises for fact in self._origins.values())
-            pairs = tuple((each.lhs, each.rhs) for each in premises)
-            if not has_witness(pairs, self._conditions.gaps):
-                raise StepError(f"{self.label}: {claim}: {part} vanishes where all else holds")
+            self._ask_witness(f"{part} does not vanish and all else holds")
+
+    def _premises(self) -> tuple[Premise, ...]:
+        """Return the premises of all rules in force."""
+        return merged(fact.premises for fact in self._origins.values())
+
+    def _ask_witness(self, what: str) -> None:
+        """Refuse what holds together with premises and conditions at no point."""
+        pairs = tuple((each.lhs, each.rhs) for each in self._premises())
+        if not has_witness(pairs, self._conditions.gaps):
+            raise StepError(f"{self.label}: no point was found where {what}")
 
     def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
         """Keep a definition as a premise of every step that will use it."""
@@ -751,7 +748,7 @@ class Book:
 
     def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
         """Refuse premises that cannot hold together."""
-        premises = merged(fact.premises for fact in self._origins.values())
+        premises = self._premises()
         found = contradiction(premises)
         if not found and not self._possible_with(premises, lhs):
             found = "no point was found at which all premises and conditions hold"
@@ -877,7 +874,7 @@ class Book:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
         direct: dict[sp.Expr, set[sp.Expr]] = {}
         opaque = (AppliedUndef, sp.Derivative, sp.Integral)
-        for premise in merged(fact.premises for fact in self._origins.values()):
+        for premise in self._premises():
             if premise.lhs not in self._rules and premise.lhs.is_Symbol:
                 direct.setdefault(premise.lhs, set()).update(letters_of(premise.rhs))
             if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):

@@ -10,7 +10,7 @@ True
 False
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -258,23 +258,16 @@ def _has_integers(expr: sp.Expr) -> bool:
 
 def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     """Yield the expression, and in variables that sweep over what the conditions allow, each once."""
-    return _once(_forms(expr, known))
-
-
-def _once(forms: Iterable[sp.Expr]) -> Iterator[sp.Expr]:
     seen: set[sp.Expr] = set()
-    for form in forms:
+    for form in _forms(expr, known):
         if form not in seen:
             seen.add(form)
             yield form
 
 
 @lru_cache(maxsize=1024)
-def _name(place: int) -> sp.Dummy:
-    """Return a positive variable for one place among the conditions, the same whenever it is asked.
-
-    A new one each time would defeat every cache.
-    """
+def positive_letter(place: int) -> sp.Dummy:
+    """Return a positive letter for one place, the same whenever it is asked: a new one defeats caches."""
     return sp.Dummy(f"positive_{place}", positive=True)
 
 
@@ -282,17 +275,17 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     yield expr
     for place, (variable, *ends) in enumerate(known.intervals):
         low, high = map(sp.sympify, ends)
-        step = _name(place)
+        step = positive_letter(place)
         if expr.has(variable) and low.is_finite and high.is_finite:
             expr = put(expr, {variable: (low + high * step) / (1 + step)})
             yield expr
     for place, positive in enumerate(known.positive, len(known.intervals)):
         if positive.free_symbols <= expr.free_symbols:
-            yield from _named(expr, positive, _name(place))
+            yield from _named(expr, positive, positive_letter(place))
     for order in (known.positive[::-1], known.positive):
         solved, rest = expr, order
         while rest:
-            name = _name(len(known.intervals) + len(rest))
+            name = positive_letter(len(known.intervals) + len(rest))
             solved, rest = _solved(solved, rest[0], rest[1:], name)
             yield solved
 

@@ -171,11 +171,8 @@ def reduced(expr: sp.Expr) -> sp.Expr:
     1/(x + 1)
     """
     names = Polynomials.of(expr)
-    try:
-        top, bottom = names.fraction(expr)
-        top, bottom = top.cancel(bottom)
-    except ZeroDivisionError:
-        return sp.cancel(expr)
+    top, bottom = names.fraction(expr)
+    top, bottom = top.cancel(bottom)
     return names.expression(top) / names.expression(bottom)
 
 

@@ -58,27 +58,30 @@ def contradiction(premises: tuple[Premise, ...]) -> str:
 
     That the others hold together is shown by a point at which they do: see `witness`.
     """
-    laws = [each for each in premises if isinstance(each.lhs, AppliedUndef | sp.Derivative)]
     by_function: dict[sp.Expr, list[Premise]] = {}
-    for law in laws:
+    for law in premises:
         call = law.lhs.expr if isinstance(law.lhs, sp.Derivative) else law.lhs
         if isinstance(call, AppliedUndef):
             by_function.setdefault(call.func, []).append(law)
-    for function, group in by_function.items():
-        whole = [law for law in group if law.lhs.func == function and is_general(law.lhs, law.rhs)]
+    for group in by_function.values():
         slopes = [law for law in group if isinstance(law.lhs, sp.Derivative)]
-        values = [law for law in group if law.lhs.func == function and not law.lhs.free_symbols]
-        pairs = [(one, other) for one in whole for other in group if one is not other]
-        found = [(one, other) for one, other in pairs if not _follows(one, other)]
+        values = [law for law in group if law not in slopes]
+        fixed = [law for law in values if not law.lhs.free_symbols]
+        found = [
+            (one, other)
+            for one in values
+            if is_general(one.lhs, one.rhs)
+            for other in group
+            if not _follows(one, other)
+        ]
         found += [
             (one, other)
             for one in slopes
             for other in slopes
             if one.lhs.expr == other.lhs.expr and not _follows_slope(one, other)
         ]
-        order = min((law.lhs.derivative_count for law in slopes), default=len(values))
-        if len(values) > order:
-            found.append((slopes[0], values[-1]))
+        if slopes and len(fixed) > min(law.lhs.derivative_count for law in slopes):
+            found.append((slopes[0], fixed[-1]))
         for one, other in found:
             return f"{one.lhs} = {one.rhs} and {other.lhs} = {other.rhs} are not known to agree"
     return ""
@@ -125,15 +128,11 @@ def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
     if value.has(sp.nan, sp.zoo):
         return True
     seen = signs(value) or {sign_of_terms(value)} - {0}
-    if any(
+    return any(
         getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False
         for kind, sign in _KINDS.items()
         if sign not in seen and not (sign == 0 and seen)
-    ):
-        return True
-    if value.is_number and not value.has(AppliedUndef) and symbol.is_real and value.is_real is None:
-        return abs(sp.im(value).evalf(20)) > sp.Float("1e-15")
-    return False
+    )
 
 
 def fixed_value(variable: sp.Expr, premises: Iterable[Premise]) -> sp.Expr | None:

@@ -384,22 +384,20 @@ class Proof(Guarded):
             for condition in given:
                 if condition not in mine:
                     stack.enter_context(self._case(condition))
-            gaps = [*self._open_admissions(variable, at)]
-            gaps += [
-                gap.subs(variable, at) for gap in self._conditions.positive if gap.has(variable)
+            asked = [(gap, proves_positive) for gap in self._open_admissions(variable, at)]
+            asked += [
+                (gap.subs(variable, at), proves_positive)
+                for gap in self._conditions.positive
+                if gap.has(variable)
             ]
-            gaps += [
-                (each.gts - each.lts).subs(variable, at) for each in mine if each.func in _STRICT
-            ]
-            rest = [
-                (each.gts - each.lts).subs(variable, at)
+            asked += [
+                (
+                    (each.gts - each.lts).subs(variable, at),
+                    proves_positive if each.func in _STRICT else proves_nonnegative,
+                )
                 for each in mine
-                if each.func not in _STRICT
             ]
-            fine = all(proves_positive(self._resolve(gap), self._conditions) for gap in gaps)
-            if not fine or not all(
-                proves_nonnegative(self._resolve(gap), self._conditions) for gap in rest
-            ):
+            if not all(proves(self._resolve(gap), self._conditions) for gap, proves in asked):
                 raise StepError(f"{self.label}: {claim}: {variable} is not known to reach {at}")
 
     @asked

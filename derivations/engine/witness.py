@@ -15,7 +15,7 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from .conditions import known_sign, linear, proves_nonnegative, proves_positive
+from .conditions import known_sign, linear, positive_letter, proves_nonnegative, proves_positive
 from .identity import letters_of
 
 _OPAQUE = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs, sp.Indexed)
@@ -49,7 +49,7 @@ def has_witness(premises: Pairs, positive: _Expressions) -> bool:
 
 @lru_cache(maxsize=4096)
 def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> bool:
-    slack = {gap: _slack(place) for place, gap in enumerate(gaps)}
+    slack = {gap: positive_letter(place) for place, gap in enumerate(gaps)}
     order = sorted(frozenset().union(*map(letters_of, (*laws, *gaps, *signed))), key=str)
     above = {*gaps, *signed}
     draw = random.Random(2020)
@@ -73,12 +73,6 @@ def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> 
             except (ZeroDivisionError, ValueError, OverflowError, TypeError):
                 continue
     return False
-
-
-@lru_cache(maxsize=256)
-def _slack(place: int) -> sp.Dummy:
-    """Return what a condition exceeds zero by, the same whenever it is asked: a new one defeats caches."""
-    return sp.Dummy(f"slack_{place}", positive=True)
 
 
 def _without_definitions(

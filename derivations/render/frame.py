@@ -29,7 +29,6 @@ VOCABULARY = {
     "proved": "an identity, a sign or a number of roots, proved by exact algebra",
     "proved-leading-order": "an asymptote, proved with the coefficient and the order of its "
     "remainder",
-    "sampled": "compared at many random admissible points with 50 digits, not proved",
     "argued": "its lines are proved, but the title also rests on words of the text, which are marked",
 }
 """The meaning of each `record.STATUSES`."""
@@ -38,7 +37,6 @@ SIGNS = {
     "definition": "≝",
     "proved": "∎",
     "proved-leading-order": "≈",
-    "sampled": "≟",
     "argued": "†",
 }
 """The sign after a line with this status."""

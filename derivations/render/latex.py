@@ -27,7 +27,7 @@ _WIDTHS = {3: (0.13, 0.68, 0.13), 4: (0.11, 0.46, 0.12, 0.22), 5: (0.1, 0.35, 0.
 
 _SIGNS = {
     "definition": r"$\stackrel{\scriptscriptstyle\mathrm{def}}{=}$", "proved": r"{\tiny$\blacksquare$}",
-    "proved-leading-order": r"$\approx$", "sampled": r"$\stackrel{\scriptscriptstyle ?}{=}$",
+    "proved-leading-order": r"$\approx$",
     "argued": r"$\dagger$",
 }  # fmt: skip
 

@@ -167,15 +167,6 @@ class Steps:
             falls, f"{expr} ~ {leading} as {variable} -> {point}", f"off by {float(gaps[1]):.1e}"
         )
 
-    def sampled(self, lhs: Expr, rhs: Expr, ranges: tuple[Over, ...]) -> None:
-        """Compare both sides at random points."""
-        for _ in range(POINTS):
-            point = {symbol: self._inside(low, high) for symbol, low, high in ranges}
-            left, right = (self._value(self._put(side), point) for side in (lhs, rhs))
-            close = abs(left - right) <= CLOSE * max(abs(left), abs(right))
-            self._report(close, f"{lhs} = {rhs}", "", quiet=True)
-        self._report(True, f"{lhs} = {rhs}", f"{POINTS} points")
-
     def _put(self, expr: Expr) -> Expr:
         before, after = None, sp.sympify(expr)
         while after != before:

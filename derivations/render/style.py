@@ -5,13 +5,13 @@ STYLE = """\
   color-scheme: light dark;
   --paper: #fdfdfb; --ink: #1c1c1a; --faint: #5d5d57; --rule: #d9d8d0; --link: #0b4f8a;
   --result: #f1f4ee; --shade: #0004;
-  --definition: #5d5d57; --proved: #1d6b34; --leading: #7a5200; --sampled: #a3261b;
+  --definition: #5d5d57; --proved: #1d6b34; --leading: #7a5200; --argued: #a3261b;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #161715; --ink: #e4e3dc; --faint: #a5a49b; --rule: #3b3c37; --link: #8dbdee;
     --result: #20241f; --shade: #fff5;
-    --definition: #a5a49b; --proved: #7fcf97; --leading: #e0b25c; --sampled: #f2948a;
+    --definition: #a5a49b; --proved: #7fcf97; --leading: #e0b25c; --argued: #f2948a;
   }
 }
 * { box-sizing: border-box; }
@@ -60,7 +60,7 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .status { color: var(--definition); white-space: nowrap; }
 .status.proved { color: var(--proved); }
 .status.proved-leading-order { color: var(--leading); }
-.status.sampled, .status.argued { color: var(--sampled); }
+.status.argued { color: var(--argued); }
 /* A shade at the side says that there is more to scroll to; at an end its cover hides it. */
 .scroll { overflow-x: auto; padding: 0.45rem 0; background:
   linear-gradient(to right, var(--paper) 40%, transparent) left / 2rem 100% no-repeat local,
