@@ -81,8 +81,9 @@ def _flutter(proof: Proof) -> None:
     proof.define(onset_sum, bias - 2 * T_z * rise, "the linear coefficient of the quadratic")
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
                 r"$\check n > 0$ at the lower and below: no positive $\Omega$ either")  # fmt: skip
-    proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
-                left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
+    proof.equal(
+        sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above"
+    )
     proof.where(sp.Gt(SQUARE, 0), "a frequency is real")
     proof.define(spread, sp.sqrt(SQUARE), "as in F22-critical")
     proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
