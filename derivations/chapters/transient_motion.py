@@ -13,7 +13,7 @@ from .transient_scaling import PRESSURE, P, d, d_s, f_normal, xi
 
 a, f_friction = symbols(r"""
     a           -    1  -
-    f_friction  f_x  1  scaled friction force, $F_x a_0/(W_0 \delta_0)$  from eq15  real
+    f_friction  f_x  1  scaled friction force, $F_x a_0/(W_0 \delta_0)$  from eq15  real several
 """)
 
 CONTACT = (xi, left, right)
