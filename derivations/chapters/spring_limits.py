@@ -43,7 +43,7 @@ from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
 from .transient_edges import left, rho, right
 from .transient_motion import a, f_friction
-from .transient_rates import at_motion, per_depth, quadratic, steady_sliding
+from .transient_rates import at_motion, in_whole_numbers, per_depth, quadratic, steady_sliding
 from .transient_scaling import d, d_s, f_normal
 
 lag_minus, T_flutter, sinks = symbols(r"""
@@ -184,7 +184,7 @@ def _standard(proof: Proof) -> None:
         at = {**tables.STANDARD, V: sp.Rational(speed, 1000)}
         cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(at)
         quartic, state = state_at(cubed)
-        proof.unique_root(quartic, UNIT, f"F2 with the numbers of Table 1 at {speed} mm/s")
+        proof.unique_root(quartic, UNIT, f"{in_whole_numbers(cubed)}, at {speed} mm/s")
         rows.append((str(speed), *_onset_at(sp.N(state, 40), at)))
     heads = ("$V$ [mm/s]", "$q$", r"$\check e$", "Critical stiffness [MN/m²]", "Frequency [Hz]")
     proof.done(quartic, 0, table=Table(heads, tuple(rows)))

@@ -185,7 +185,7 @@ def _standard(proof: Proof) -> None:
     """
     cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(tables.STANDARD)
     quartic, state = state_at(cubed)
-    proof.unique_root(quartic, UNIT, "F2 with the numbers of Table 1")
+    proof.unique_root(quartic, UNIT, in_whole_numbers(cubed))
     half = sp.cbrt(4 / (3 * LOAD))
     inertia = (tables.static_depth / (g * tau**2)).subs(tables.STANDARD)
     known = {
@@ -207,6 +207,11 @@ def _standard(proof: Proof) -> None:
         tuple((name, symbol, _four_digits(value.subs(known).subs(q, state)), unit)
               for name, symbol, value, unit in rows),
     ))  # fmt: skip
+
+
+def in_whole_numbers(cubed: sp.Expr) -> str:
+    """Say which equation it is whose coefficients are numbers."""
+    return rf"F2 with $\Lambda^3 = {float(cubed):.6g}$ by Table 1, in whole numbers"
 
 
 def _four_digits(value: sp.Expr) -> str:

@@ -308,7 +308,7 @@ class Book:
         """
         sides = sp.sympify(lhs), sp.sympify(rhs)
         if source := next((each for each in self._declared if sides in _source(each).exact), ""):
-            self._recall(source, *sides, reason, at=None)
+            self._recall(source, *sides, "", at=None)  # the reason stands there
             return
         if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
             raise StepError(f"{self.label}: {lhs} has a value already")
