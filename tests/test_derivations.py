@@ -12,13 +12,13 @@ from kvtheory.derivations.chapters import asymptotics, ball, groups, relaxation,
 from kvtheory.derivations.engine import book
 from kvtheory.derivations.engine.algebra import difference
 from kvtheory.derivations.engine.book import StepError
-from kvtheory.derivations.engine.display import names_in, read
 from kvtheory.derivations.engine.nomenclature import CONSTANTS, TEX
 from kvtheory.derivations.engine.printing import doprint
 from kvtheory.derivations.engine.record import STATUSES
 from kvtheory.derivations.engine.step import Proof
 
 from tests.conftest import digits
+from tests.latex_reader import names_in, read
 
 _digits = digits(50)
 
@@ -334,7 +334,7 @@ def test_a_sum_begins_with_a_positive_term(by_label):
 
 
 def test_what_is_printed_is_what_was_claimed(by_label):
-    """The print of each claim, read by the parser of displays, is the claim again."""
+    """The print of each claim, read back by a parser, is the claim again."""
     claims = [step.claim for each in by_label.values() for step in each.steps if step.claim]
     sides = {side for each in claims for side in (each.lhs, each.rhs) if isinstance(side, sp.Expr)}
     unread = 0

@@ -270,7 +270,6 @@ def _balance(proof: Proof) -> None:
     f/d \ln s$ is above 3 and below 4, there is one depth, and its relative error is less than that of the
     load.
     """
-    angle, tail = sp.atan(s / lam), TAIL.subs({l: lam / s})
     whole = 2 * s**4 * w / PI
     scaled = s**3 * (s * (1 + T / PI) / 2 + 8 * lam / (3 * PI))
     slope = 4 * s**2 * (PI * s**2 / 2 + s * lam + (s**2 + lam**2) * theta) / PI
@@ -281,13 +280,9 @@ def _balance(proof: Proof) -> None:
     proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R_{\mathrm{y}}/R}$")
     proof.equal(ball_scaled, scaled, "a sum of positive terms")
     proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
-    of_s = scaled.subs(T, tail).subs(theta, angle)
-    proof.equal(s * sp.diff(of_s, s), ball_scaled_s, "a deeper ball carries more",
-                left=r"s \frac{\partial \tilde f}{\partial s}")  # fmt: skip
+    proof.equal(s * sp.Derivative(ball_scaled, s), ball_scaled_s, "a deeper ball carries more")
     proof.define(ball_scaled_ss, curve, r"$d^2 \tilde f/d (\ln s)^2$")
-    of_slope = slope.subs(theta, angle)
-    proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "the second derivative",
-                left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
+    proof.equal(s * sp.Derivative(ball_scaled_s, s), ball_scaled_ss, "the second derivative")
     proof.recall("F20-loss", at={l: lam / s})
     gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI
     proof.equal(ball_scaled_s - 3 * ball_scaled, gain, "more than the damper alone")
@@ -328,17 +323,13 @@ def _slip(proof: Proof) -> None:
     velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is $l =
     1.842345$, beside the $\sqrt{3}$ of a cylinder (F3).
     """
-    tail = TAIL.subs(theta, ANGLE)
-    load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
     known(proof)
     proof.recall("F20-loss")
     proof.recall("F20-load")
     proof.recall("F20", phi)
     gain = l * (sp.Rational(4, 3) - 2 * D)
-    proof.equal(l * sp.diff(load, l), gain, "a faster ball carries more",
-                left=r"l \frac{d \tilde w}{d l}")  # fmt: skip
-    proof.equal(l * sp.diff(friction, l), phi - 2 * l**2 * D, "and rubs more",
-                left=r"l \frac{d \tilde \varphi}{d l}")  # fmt: skip
+    proof.equal(l * sp.Derivative(w, l), gain, "a faster ball carries more")
+    proof.equal(l * sp.Derivative(phi, l), phi - 2 * l**2 * D, "and rubs more")
     slip = (1 - 8 * l * D / (PI + T)) * w - sp.Rational(5, 4) * gain
     proof.define(ball_slip, slip, "has the sign of the slope of the friction coefficient")
     proof.equal(phi * slip, (phi - 2 * l**2 * D) * w - sp.Rational(5, 4) * gain * phi,

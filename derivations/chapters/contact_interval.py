@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, letter, symbol
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .model import R
 from .power_law import L, excess
 from .transient_memory import (
@@ -72,12 +72,11 @@ def _condition(proof: Proof) -> None:
     convex.
     """
     E_then = E * _h(place - m)
-    proof.notation |= {"D_1": DIFFERENCE, "f": sp.Lambda(place, E_then - _h(place))}
     proof.define(E, sp.exp(earlier - time), "less than 1")
     form = sp.exp(time) * ((_now - E * _then) + (E_then - _h(place)))
-    proof.equal(DIFFERENCE, form, r"a constant, and $f(\xi) = E h(\xi - m) - h(\xi)$", left="D_1",
-                right=r"e^{s} \left[(d - E d_1) + f(\xi)\right]")  # fmt: skip
-    contact_condition(proof, _now - _h(place), _then - _h(place - m), DIFFERENCE, "D_1")
+    reason = r"$D_1$: a constant, and $f(\xi) = E h(\xi - m) - h(\xi)$"
+    proof.equal(DIFFERENCE, form, reason)
+    contact_condition(proof, _now - _h(place), _then - _h(place - m), DIFFERENCE)
     proof.done(DIFFERENCE, form)
 
 
@@ -85,7 +84,7 @@ def _condition(proof: Proof) -> None:
 def _interval(proof: Proof) -> None:
     r"""The contact is one interval, for many shapes.
 
-    Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion in the
+    Let $h$ be even and convex, $h' > 0$ and $\psi = \ln h'$ concave for $x > 0$. Let $m \ge 0$; motion in the
     other direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with
     $y$: going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$.
 
@@ -97,31 +96,24 @@ def _interval(proof: Proof) -> None:
     integral.
     """
     relaxed = E * _h(place - m) - _h(place)
-    proof.notation |= {"D_1": DIFFERENCE, "f": relaxed}
     proof.recall("F9-difference", E)
     proof.recall("F9-difference")
     proof.equal(sp.Derivative(DIFFERENCE, place), sp.exp(time) * sp.Derivative(relaxed, place),
-                "$D_1$ rises and falls with $f$", left=r"\frac{\partial D_1}{\partial \xi}",
-                right=r"e^{s} \frac{\partial f}{\partial \xi}")  # fmt: skip
+                "$D_1$ rises and falls with $f$")  # fmt: skip
     between = -_height(y) + E * _height(m - y)
     behind = -_height(y) + E * _height(y - m)
     ratio = sp.exp(logarithm(y + m) - logarithm(y))
     turning = _slope(y) * (1 - E * ratio)
-    proof.notation |= {
-        "h'(y)": _slope(y), "h'(m - y)": _slope(m - y), "h'(y - m)": _slope(y - m),
-        r"\rho(y)": ratio, "f'(-y)": TURNING, "f'(y)": sp.diff(between, y),
-    }  # fmt: skip
-    proof.equal(TURNING, turning, r"ahead of the tip, with $\rho = h'(y + m)/h'(y)$",
-                left=r"f'(-y)", right=r"h'(y) \left[1 - E \rho(y)\right]")  # fmt: skip
+    reason = (
+        r"$f'(-y)$, ahead of the tip, with $\rho = h'(y + m)/h'(y) = e^{\psi(y + m) - \psi(y)}$"
+    )
+    proof.equal(TURNING, turning, reason)
     falling = _slope(y) + E * _slope(m - y)
-    proof.equal(-sp.diff(between, y), falling, r"at $0 < \xi = y < m$", left="-f'(y)",
-                right="h'(y) + E h'(m - y)")  # fmt: skip
-    proof.holds(falling, ">", 0, "so that $f$ falls there", left="h'(y) + E h'(m - y)")
-    proof.notation["f'(y)"] = sp.diff(behind, y)
+    proof.equal(-sp.Derivative(between, y), falling, r"$-f'(y)$ at $0 < \xi = y < m$")
+    proof.holds(falling, ">", 0, "so that $f$ falls there")
     convex = (1 - E) * _slope(y) + E * (_slope(y) - _slope(y - m))
-    proof.equal(-sp.diff(behind, y), convex, r"at $\xi = y > m$: the first term is positive, the second not "
-                "negative, because $h'$ does not fall", left="-f'(y)",
-                right=r"(1 - E) h'(y) + E \left[h'(y) - h'(y - m)\right]")  # fmt: skip
+    proof.equal(-sp.Derivative(behind, y), convex, r"$-f'(y)$ at $\xi = y > m$: the first term is not "
+                "negative, because $h'$ does not fall, and the second is positive")  # fmt: skip
     rate = sp.Derivative(slope_rate(zeta), zeta)
     proof.integral(
         *(_gain, rate, (zeta, y, y + m), slope_rate(zeta)),
@@ -186,8 +178,7 @@ def _circle(proof: Proof) -> None:
     proof.where(y < R / sp.sqrt(3), "not on the outer part")
     proof.where(y < R, "which follows")
     proof.equal(sp.Derivative(R - sp.sqrt(R**2 - y**2), y), slope, "$h'$")
-    proof.notation[r"(\ln h')''"] = -curvature
-    proof.equal(curvature, form, "by differentiation", left=r"-(\ln h')''")
+    proof.equal(curvature, form, r"$-(\ln h')''$")
     proof.holds(form, ">", 0, r"$\ln h'$ is concave")
     proof.done(curvature, form)
 
@@ -206,7 +197,6 @@ def _converse(proof: Proof) -> None:
     """
     middle = 2 / (ratio_near + ratio_now)
     gain = ratio_gain / (2 * ratio_near + ratio_gain)
-    proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}
     proof.define(
         ratio_now, ratio_near + ratio_gain, r"$\rho(y_2) > \rho(y_1)$ for some $y_2 > y_1$ and $m$"
     )
@@ -221,9 +211,7 @@ def _converse(proof: Proof) -> None:
         )
         proof.recall("F9-shapes", at={y: there})
         turns, slope = TURNING.subs(y, there), _slope(there)
-        proof.notation |= {f"f'(-{spot})": turns, f"h'({spot})": slope}
-        proof.equal(sign * turns, slope * gain, what, left=f"{'-' if sign < 0 else ''}f'(-{spot})",
-                    right=rf"h'({spot}) {tex(gain)}")  # fmt: skip
+        proof.equal(sign * turns, slope * gain, what)
     proof.holds(gain, ">", 0, "so that between them $f$ has a valley")
     proof.done(E, middle)
 

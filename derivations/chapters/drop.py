@@ -100,7 +100,7 @@ def _pressure(proof: Proof) -> None:
     The foundation does not move along: Eqs. (6) and (12) with a base at rest.
     """
     proof.recall("eq6")
-    proof.define(x_i.diff(t), sp.S.Zero, "no sliding", left=r"\dot{x}_i")
+    proof.define(x_i.diff(t), sp.S.Zero, "no sliding")
     proof.equal(compression_rate, depth_rate, "an element under the indenter follows it")
     proof.recall("eq12")
     proof.recall("eq22", k, c)
@@ -141,8 +141,9 @@ def _coming_out(proof: Proof) -> None:
     proof.recall("F32-pressure", p)
     proof.recall("eq3")
     proof.recall("eq22")
-    proof.define(depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$",
-                 left=r"\dot\delta", right=r"\frac{w_{\mathrm{in}} - \delta}{\tau}")  # fmt: skip
+    proof.define(
+        depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$"
+    )
 
 
 @result("F32-out")
@@ -169,8 +170,9 @@ def _apart(proof: Proof) -> None:
     place, grown = height_there, sp.exp(t / tau)
     gap, form = (u_i - (delta_t - place)) * grown, (place - relaxed) / tau * grown
     proof.recall("eq20")
-    proof.define(depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$",
-                 left=r"\dot\delta", right=r"\frac{w_{\mathrm{in}} - \delta}{\tau}")  # fmt: skip
+    proof.define(
+        depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$"
+    )
     proof.equal(sp.Derivative(gap, t), form, "the gap, at a place of the height $h_i$")
     proof.where(sp.Gt(place, relaxed), "behind the edge")
     proof.holds(form, ">", 0, "it opens, from nothing at the edge")
@@ -200,7 +202,7 @@ def _ball_in(proof: Proof) -> None:
     \delta_{\mathrm{B}}}$, is a line; the rate of its depth is that of the ball.
     """
     proof.define(delta_t, ball_depth * (1 - aside**2), "depth of a strip")
-    proof.define(depth_rate, ball_rate, "at a fixed place", left=r"\dot\delta")
+    proof.define(depth_rate, ball_rate, "at a fixed place")
     _all_strips(proof, "F32-in", ball_depth, BALL_IN)
 
 

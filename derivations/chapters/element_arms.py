@@ -7,8 +7,8 @@ line, by the rise r; z = h/tau_i. Everything is linear, so that one arm is enoug
 import sympy as sp
 
 from ..engine.chapter import Chapter
-from ..engine.nomenclature import letter
-from ..engine.step import Proof, tex
+from ..engine.nomenclature import letter, symbols
+from ..engine.step import Proof
 from .element_schemes import SECTION
 
 letter(r"\check z", "time step over the relaxation time of an arm")
@@ -19,6 +19,10 @@ letter(r"\check s_0", r"$\check s$ at the start of the step", "m")
 
 _z, _y = sp.symbols("z y", positive=True)
 _rise, _first, _stress = sp.symbols("r s_0 s", real=True)
+_spring, _damper = symbols(r"""
+    k_arm  k_{\mathrm{r}}  1  stiffness of the spring that replaces an arm, in units of $K_i$
+    c_arm  c_{\mathrm{r}}  1  damping beside that spring, in units of $K_i$ and of the step  real
+""")
 result = Chapter(SECTION)
 
 END = (1 - sp.exp(-_z)) / _z
@@ -39,32 +43,26 @@ def _arm(proof: Proof) -> None:
     in parallel can replace the arm on a ramp: the damper of a fast arm is $K_i \tau_i$, that of a slow one is
     of second order in the step.
     """
-    proof.equal(
-        sp.Derivative(STRESS, _y) + _z * STRESS,
-        _rise,
-        "the equation of the arm, with a steady rise",
-    )
-    proof.equal(sp.Subs(STRESS, _y, 0), _first, "and its stress at the start")
-    ends = _first * sp.exp(-_z) + _rise * END
-    proof.equal(sp.Subs(STRESS, _y, 1), ends, "stress at the end of the step")
+    proof.define(_stress, STRESS, "the stress")
+    grows = sp.Derivative(_stress, _y)
+    proof.equal(grows + _z * _stress, _rise, "the equation of the arm, with a steady rise")
+    proof.equal(sp.Subs(_stress, _y, 0), _first, "and its stress at the start")
+    end, ends = sp.Subs(_stress, _y, 1), _first * sp.exp(-_z) + _rise * END
+    proof.equal(end, ends, "stress at the end of the step")
     over = (_y, 0, 1)
     falling = -_first * sp.exp(-_z * _y) / _z
     rising = _rise * (_y + sp.exp(-_z * _y) / _z) / _z
     proof.integral(
-        *(sp.Integral(STRESS, over), STRESS, over, falling + rising), "mean stress",
+        *(sp.Integral(_stress, over), _stress, over, falling + rising), "mean stress",
         value=_first * END + _rise * MEAN,
     )  # fmt: skip
-    proof.equal(
-        _rise * STRESS, STRESS * sp.Derivative(STRESS, _y) + _z * STRESS**2,
-        "the power that goes in is stored in the spring or lost in the damper",
-    )  # fmt: skip
-    damper, spring = 2 * MEAN - END, 2 * (END - MEAN)
-    shown = rf"\left({tex(spring)}\right) + \left({tex(damper)}\right)"
-    proof.equal(spring + damper, END, left=shown,
-                reason="a spring and a damper with the same stress at the end of the ramp")  # fmt: skip
-    proof.equal(spring / 2 + damper, MEAN, "and the same mean", left=rf"\frac{{1}}{{2}} {shown}")
-    proof.leading_order(damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
-    proof.equal(
-        _z * damper, 1 + sp.exp(-_z) - 2 * END, r"in units of $K_i \tau_i$: 1 for a fast arm"
-    )
-    proof.done(sp.Subs(STRESS, _y, 1), ends)
+    reason = "the power that goes in is stored in the spring or lost in the damper"
+    proof.equal(_rise * _stress, _stress * grows + _z * _stress**2, reason)
+    proof.define(_spring, 2 * (END - MEAN), "the spring that replaces the arm on a ramp")
+    proof.define(_damper, 2 * MEAN - END, "and the damper beside it")
+    proof.equal(_spring + _damper, END, "the same stress at the end of the ramp")
+    proof.equal(_spring / 2 + _damper, MEAN, "and the same mean")
+    proof.leading_order(_damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
+    reason = r"in units of $K_i \tau_i$: 1 for a fast arm"
+    proof.equal(_z * _damper, 1 + sp.exp(-_z) - 2 * END, reason)
+    proof.done(end, ends)

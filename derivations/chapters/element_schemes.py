@@ -94,8 +94,7 @@ def _runge_kutta(proof: Proof) -> None:
     proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
     proof.equal(_R, RUNGE_KUTTA, "the Taylor series of $e^{-z}$ to the fourth order")
     proof.equal(1 - _R, _z * CUBIC / 24, r"so that $R \le 1$ as long as the cubic is positive")
-    proof.sign(1 + RUNGE_KUTTA, ">", 0, (_z, 0, sp.oo), "the other bound is never reached",
-               left="1 + R")  # fmt: skip
+    proof.sign(1 + _R, ">", 0, (_z, 0, sp.oo), "the other bound is never reached")
     proof.unique_root(CUBIC, (_z, 0, sp.oo), "one limit")
     stable, unstable = sp.Rational(2785, 1000), sp.Rational(2786, 1000)
     proof.sign(CUBIC, ">", 0, (_z, 0, stable), r"stable for $z \le 2.785$")
@@ -187,26 +186,18 @@ def _fitted(proof: Proof) -> None:
     (1-\theta) z]/(1 + \theta z)$. With $\theta = 1/(1 - e^{-z}) - 1/z$ this is exact, whatever the step;
     $\theta$ lies between $1/2$ and 1.
     """
-    proof.notation[r"\theta"] = FIT
-    proof.equal(
-        *(THETA_STEP.subs(_theta, FIT), sp.exp(-_z), "the exact decay of the velocity"),
-        left=r"\frac{1 - (1 - \theta) z}{1 + \theta z}",
-    )
+    proof.define(_theta, FIT, "the weight of the end of the step")
+    proof.equal(THETA_STEP, sp.exp(-_z), "the exact decay of the velocity")
     below = _z * (1 + sp.exp(-_z)) / 2 - (1 - sp.exp(-_z))
     above = 1 - (1 + _z) * sp.exp(-_z)
-    for end, gap, shown in (
-        (sp.S.Half, below, r"\theta - \frac{1}{2}"),
-        (sp.S.One, above, r"1 - \theta"),
-    ):
-        sign = 1 if gap is below else -1
-        proof.equal(sign * (FIT - end), gap / (_z * (1 - sp.exp(-_z))), "to compare", left=shown)
+    for difference, gap in ((_theta - sp.S.Half, below), (1 - _theta, above)):
+        proof.equal(difference, gap / (_z * (1 - sp.exp(-_z))), "to compare")
         proof.holds(gap, ">", 0, "it begins at 0 and rises")
-    proof.leading_order(FIT, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z,
-                        left=r"\theta")  # fmt: skip
+    proof.leading_order(_theta, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z)
     proof.recall("F15-runge-kutta", sigma)
     proof.define(_z, _h * b / eps, "the step of that mode")
     proof.equal(sp.exp(-_z), sp.exp(sigma * _h), "its exact decay")
-    proof.done(THETA_STEP.subs(_theta, FIT), sp.exp(-_z))
+    proof.done(THETA_STEP, sp.exp(-_z))
 
 
 @result("element-stability")
@@ -226,14 +217,12 @@ def _unconditional(proof: Proof) -> None:
     proof.equal(polynomial, form, "by powers of this change")
     lead = 4 * eps / _h**2 + b * (2 * _theta - 1) * (2 * eta - 1) + kappa * (2 * _theta - 1) ** 2
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
-    proof.notation |= {"m": sp.Lambda(_D, MOTION), "c_2": lead, "c_1": middle, "c_0": zeroth}
     proof.equal(
         MOTION.subs(_D, 2 * _w / (1 - _w)),
         (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
-        r"with $m(D)$ the equation of a step: the outside of the unit circle becomes a half plane",
-        left=r"m\left(\frac{2 w}{1 - w}\right)",
-        right=r"\frac{c_2 w^2 + c_1 w + c_0}{(1 - w)^2}",
-    )  # fmt: skip
+        r"at $D = 2 w/(1 - w)$ it is $(c_2 w^2 + c_1 w + c_0)/(1 - w)^2$: the outside of the unit "
+        "circle becomes a half plane",
+    )
     u, change = compression(time), compression(time + _h) - compression(time)
     proof.recall("element-mean-force")
     proof.equal(mean_push(), u + WEIGHT * change, r"the mean force, with $\eta = 1/(1 - e^{-h})$")
@@ -278,11 +267,10 @@ def _orders(proof: Proof) -> None:
     0$ with $D = e^{\sigma h} - 1$. The residual $r$ is of the order of the scheme in $h$.
     """
     growth = sp.exp(sigma * _h) - 1
-    proof.notation |= {"D": growth, r"\eta": WEIGHT, r"\theta": FIT}
-    proof.leading_order(growth, sigma * _h, _h, 0, "Taylor", eps=_h, left="D")
-    proof.leading_order(WEIGHT, 1 / _h, _h, 0, "Taylor", eps=_h, left=r"\eta")
-    proof.leading_order(FIT, sp.Rational(1, 2) + _z / 12, _z, 0, r"$z = h b/\varepsilon$", eps=_z,
-                        left=r"\theta")  # fmt: skip
+    proof.leading_order(growth, sigma * _h, _h, 0, "$D$", eps=_h)
+    proof.leading_order(WEIGHT, 1 / _h, _h, 0, r"$\eta$", eps=_h)
+    trapezoid = sp.Rational(1, 2) + _z / 12
+    proof.leading_order(FIT, trapezoid, _z, 0, r"$\theta$, with $z = h b/\varepsilon$", eps=_z)
     D = sigma * _h * (1 + sigma * _h / 2 + (sigma * _h) ** 2 / 6 + _h**3 * _rest[0])
     weight = (1 + _h / 2 + _h**2 / 12 + _h**3 * _rest[1]) / _h
     fit = sp.Rational(1, 2) + b * _h / (12 * eps) + _h**3 * _rest[2]

@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import letter, symbol
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .element_schemes import SECTION
 from .friction_identity import r
 from .model import K, delta
@@ -92,12 +92,10 @@ def _rule(proof: Proof) -> None:
     lacks = -(_spacing**2) * BERNOULLI / 2
     proof.equal(surplus, lacks, r"error of the rule for the load $y$")
     second = _spacing * BERNOULLI / (2 * (1 + _share))
-    proof.equal(lacks + second * (1 + _share) * _spacing, 0,
-                "with a larger weight of the second strip no error is left",
-                left=rf"{tex(lacks)} + {_MORE} (1 + \vartheta) \Delta")  # fmt: skip
-    proof.equal(second * ((1 + _share) * _spacing) ** POWER, _spacing ** (POWER + 1) * SECOND,
-                r"the same for the load $y^{3/2}$",
-                left=rf"{_MORE} [(1 + \vartheta) \Delta]^{{3/2}}")  # fmt: skip
+    reason = "with a larger weight of the second strip no error is left"
+    proof.equal(lacks + second * (1 + _share) * _spacing, 0, reason)
+    grown = second * ((1 + _share) * _spacing) ** POWER
+    proof.equal(grown, _spacing ** (POWER + 1) * SECOND, r"the same for the load $y^{3/2}$")
     _cell(proof)
     later = START.subs(_v, _v + 1)
     proof.equal(

@@ -69,11 +69,15 @@ def _instant(proof: Proof) -> None:
             factor * place ** (power + order + 1) / (power + order + 1) for factor, order in terms
         )
 
-    for force, power, factor, label in ((F_z, 0, sp.S.One, p), (F_x, 1, -1 / R, -h(x).diff(x) * p)):
+    for force, power, factor, density, reason in (
+        (F_z, 0, sp.S.One, p, "for a dense row, a polynomial of the edges"),
+        (F_x, 1, -1 / R, -h(x).diff(x) * p, "and along the foundation"),
+    ):
         proof.recall("dense-row", force)
         values = factor * (moment(power, x_te) - moment(power, x_le))
-        proof.integral(force, label, steady.CONTACT, factor * moment(power, x),
-                       "for a dense row, a polynomial of the edges", value=values)  # fmt: skip
+        proof.integral(
+            force, density, steady.CONTACT, factor * moment(power, x), reason, value=values
+        )
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")
     proof.define(p_te, sp.Subs(p, x, x_te), "at the trailing edge")
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)

@@ -2,7 +2,6 @@
 
 import sympy as sp
 
-from ..engine.book import established
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof
@@ -12,7 +11,7 @@ from .tables import delta_0
 from .theorems import lam
 from .transient_edges import left, rho, right
 from .transient_memory import time
-from .transient_motion import JACOBIAN, START, a, f_friction
+from .transient_motion import JACOBIAN, a, f_friction
 from .transient_rates import QUADRATIC, at_motion, change, per_depth, per_rate, sigma
 from .transient_scaling import W_0, d, d_s, d_ss, eps, f_normal
 
@@ -85,29 +84,21 @@ def _forces(proof: Proof) -> None:
     """
     _forces_of_start(proof)
     proof.recall("F11-start", a)
-    forces = {"f_z": f_normal, "f_x": f_friction}
-    slopes = {name: sp.Derivative(force, lam) for name, force in forces.items()}
-    proof.equal(slopes["f_z"], JACOBIAN[3], "F11; an edge that touches does not depend on it",
-                left=_partial("f_z", r"\lambda"))  # fmt: skip
-    proof.equal(slopes["f_z"], sp.Derivative(forces["f_x"], d_s), "a reciprocity",
-                left=_partial("f_z", r"\lambda"), right=_partial("f_x", "d'"))  # fmt: skip
-    proof.equal(slopes["f_x"], right**3 + a**3, "F11", left=_partial("f_x", r"\lambda"))
+    slope, other = sp.Derivative(f_normal, lam), sp.Derivative(f_friction, d_s)
+    proof.equal(slope, JACOBIAN[3], "F11; an edge that touches does not depend on it")
+    proof.equal(slope, other, "a reciprocity")
+    proof.equal(sp.Derivative(f_friction, lam), right**3 + a**3, "F11")
     proof.define(per_depth, right + lam + a, "stiffness of the contact")
     proof.define(per_rate, right + a, "damping of the contact: its length")
-    steady = (
-        ("f_z", "d", d, sp.Rational(3, 4) * per_depth),
-        ("f_z", "d'", d_s, sp.Rational(3, 4) * per_rate),
-        ("f_z", r"\lambda", lam, sp.Rational(3, 2) * lam * right),
-        ("f_x", "d", d, sp.Rational(3, 2) * lam * (right + a)),
-        ("f_x", "d'", d_s, sp.Rational(3, 2) * lam * right),
-        ("f_x", r"\lambda", lam, right**3 + a**3),
-    )
-    for name, latex, variable, value in steady:
-        slope = sp.Subs(sp.Derivative(forces[name], variable), d_s, 0)
-        here = sp.Subs(value, d_s, 0)
-        proof.equal(slope, here, "in steady sliding, $d' = 0$",
-                    left=rf"\left. {_partial(name, latex)} \right|_{{d' = 0}}")  # fmt: skip
-    proof.done(slopes["f_z"], sp.Derivative(forces["f_x"], d_s))
+    values = (
+        *(sp.Rational(3, 4) * per_depth, sp.Rational(3, 4) * per_rate, sp.Rational(3, 2) * lam * right),
+        *(sp.Rational(3, 2) * lam * (right + a), sp.Rational(3, 2) * lam * right, right**3 + a**3),
+    )  # fmt: skip
+    pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s, lam)]
+    for (force, variable), value in zip(pairs, values, strict=True):
+        here, there = (sp.Subs(each, d_s, 0) for each in (sp.Derivative(force, variable), value))
+        proof.equal(here, there, "in steady sliding, $d' = 0$")
+    proof.done(slope, other)
 
 
 def _forces_of_start(proof: Proof) -> None:
@@ -132,17 +123,12 @@ def _quartic(proof: Proof) -> None:
     place = a**2 + small * change * sp.exp(sigma * time)
     dragged = along_0 + small * swing * sp.exp(sigma * time)
     rate, slides = place.diff(time), lam - dragged.diff(time)
-    forces = {
-        name: sp.Lambda((d, d_s, lam), established("F11", force).subs(START))
-        for name, force in (("f_z", f_normal), ("f_x", f_friction))
-    }
-    proof.notation |= {"D": sp.Lambda(time, place), r"\check X": sp.Lambda(time, dragged), **forces}
     proof.recall("F12-linear", per_depth, per_rate)
     own = [QUADRATIC, -sp.Rational(3, 2) * lam * right * sigma]
     other = [-sp.Rational(3, 2) * lam * (right + a + right * sigma), LONGITUDINAL]
     proof.define(quartic, QUARTIC, r"changes as $e^{\sigma s}$ are possible where it vanishes")
     determinant = own[0] * other[1] - own[1] * other[0]
-    proof.equal(determinant, quartic, "the determinant of the two motions below", left=_BOTH)
+    proof.equal(determinant, quartic, "the determinant of the two motions below")
     _forces_of_start(proof)
     proof.recall("scaled-form", d_ss)
     proof.recall("F22-scaled", along_ss)
@@ -152,30 +138,15 @@ def _quartic(proof: Proof) -> None:
     proof.where(sp.Gt(slides, 0), "the foundation slides on")
     proof.where(sp.Gt(place + rate + slides**2, 0), "and the contact remains")
     moving = {d: place, d_s: rate, lam: slides, along: dragged, along_s: dragged.diff(time)}
-    for inertia, acceleration, row, shown in (
-        (eps * d_ss, eps * place.diff(time, 2), own,
-         r"\varepsilon D'' - \left(1 - f_z(D, D', \lambda - \check X') - \kappa (D - 1)\right)"),
-        (eps_x * along_ss, eps_x * dragged.diff(time, 2), other,
-         r"\varepsilon_x \check X'' - \left(f_x(D, D', \lambda - \check X') - c_x \check X' "
-         r"- \kappa_x \check X\right)"),
-    ):  # fmt: skip
+    for inertia, acceleration, row in (
+        (eps * d_ss, eps * place.diff(time, 2), own),
+        (eps_x * along_ss, eps_x * dragged.diff(time, 2), other),
+    ):
         motion = acceleration - at_motion(inertia, moving)
         first = sp.Subs(sp.Derivative(motion, small), small, 0)
-        proof.equal(
-            *(first, (row[0] * change + row[1] * swing).subs(right, edge) * sp.exp(sigma * time), _FIRST),
-            left=rf"\left. \frac{{\partial}}{{\partial \check \theta}} \left[{shown}\right] "
-            r"\right|_{\check \theta = 0}",
-        )  # fmt: skip
+        linear = (row[0] * change + row[1] * swing).subs(right, edge) * sp.exp(sigma * time)
+        proof.equal(first, linear, r"the terms of first order in $\check \theta$")
     proof.done(determinant, quartic)
-
-
-_ACROSS = r"\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa"
-_ALONG = r"\varepsilon_x \sigma^2 + (r^3 + a^3 + c_x) \sigma + \kappa_x"
-_BOTH = (
-    rf"\left({_ACROSS}\right) \left({_ALONG}\right)"
-    r" - \left(\frac{3}{2} \lambda r \sigma\right) \left(\frac{3}{2} \lambda (r + a + r \sigma)\right)"
-)
-_FIRST = r"the terms of first order in $\check \theta$"
 
 
 @result("F22-energy")
@@ -188,7 +159,6 @@ def _energy(proof: Proof) -> None:
     """
     place = sp.Function(r"\check x", real=True)(time)
     moves = sp.Derivative(place, time)
-    proof.notation[r"\check x"] = place
     proof.recall("F22-scaled")
     proof.recall("F22-scaled", lam)
     for name, value in ((along, place), (along_s, moves)):
@@ -196,8 +166,4 @@ def _energy(proof: Proof) -> None:
     proof.define(sp.Derivative(place, (time, 2)), along_ss, "and its rate")
     stored = eps_x * moves**2 / 2 + kappa_x * place**2 / 2
     spent = lam * f_friction + sp.Derivative(stored, time) + damper * moves**2
-    proof.equal(
-        *(lam_0 * f_friction, spent, "by the balance of forces"),
-        right=r"\lambda f_x + \frac{d}{ds} \left[\frac{\varepsilon_x \check x'^2}{2} + "
-        r"\frac{\kappa_x \check x^2}{2}\right] + c_x \check x'^2",
-    )  # fmt: skip
+    proof.equal(lam_0 * f_friction, spent, "by the balance of forces")

@@ -43,7 +43,7 @@ from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
 from .transient_edges import left, rho, right
 from .transient_motion import a, f_friction
-from .transient_rates import at_motion, per_depth, quadratic, steady_sliding
+from .transient_rates import at_motion, in_whole_numbers, per_depth, quadratic, steady_sliding
 from .transient_scaling import d, d_s, f_normal
 
 lag_minus, T_flutter, sinks = symbols(r"""
@@ -81,8 +81,9 @@ def _flutter(proof: Proof) -> None:
     proof.define(onset_sum, bias - 2 * T_z * rise, "the linear coefficient of the quadratic")
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
                 r"$\check n > 0$ at the lower and below: no positive $\Omega$ either")  # fmt: skip
-    proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
-                left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
+    proof.equal(
+        sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above"
+    )
     proof.where(sp.Gt(SQUARE, 0), "a frequency is real")
     proof.define(spread, sp.sqrt(SQUARE), "as in F22-critical")
     proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
@@ -183,7 +184,7 @@ def _standard(proof: Proof) -> None:
         at = {**tables.STANDARD, V: sp.Rational(speed, 1000)}
         cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(at)
         quartic, state = state_at(cubed)
-        proof.unique_root(quartic, UNIT, f"F2 with the numbers of Table 1 at {speed} mm/s")
+        proof.unique_root(quartic, UNIT, f"{in_whole_numbers(cubed)}, at {speed} mm/s")
         rows.append((str(speed), *_onset_at(sp.N(state, 40), at)))
     heads = ("$V$ [mm/s]", "$q$", r"$\check e$", "Critical stiffness [MN/m²]", "Frequency [Hz]")
     proof.done(quartic, 0, table=Table(heads, tuple(rows)))

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from ..engine.book import Shown, tex
+from ..engine.book import tex
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbol
 from ..engine.record import Table
@@ -83,11 +83,8 @@ def _standard_values(proof: Proof) -> None:
     proof.define(q, sp.S.One, "at rest the contact is symmetric")
     proof.equal(W, 4 * _third * K * a * delta, "the load at rest")
     reason = r"this load is the weight, $\frac{4}{3} K a_0 \delta_0 = M g$"
-    shown: Shown = {
-        "right": r"\left(\frac{3 M g}{4 K \sqrt{2 R}}\right)^{2/3}",
-    }
     carried = 4 * _third * K * a * delta - M * g
-    proof.root(carried, delta, static_depth, reason, name=delta_0, **shown)
+    proof.root(carried, delta, static_depth, reason, name=delta_0)
     rows = tuple(
         (name, symbol, _six_digits(value, unit), unit_name)
         for name, symbol, value, unit, unit_name in (*_GIVEN, *_DERIVED)

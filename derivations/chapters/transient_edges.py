@@ -17,7 +17,6 @@ from .transient_memory import (
     CLEAR,
     OF_TIME,
     SECTION,
-    SURFACE,
     compression,
     depth,
     earlier,
@@ -68,7 +67,7 @@ edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
 """p/(K delta_0) at an edge that touches."""
-result = Chapter(SECTION, notation={"g": SURFACE})
+result = Chapter(SECTION)
 
 
 @result("F10-peel")
@@ -99,15 +98,9 @@ def _inward(proof: Proof) -> None:
         proof.define(name, value, "at every instant")
     proof.recall("F10-peel", rho, right)
     proof.where(sp.Gt(RADICAND, 0), "else no element can be pressed")
-    proof.notation |= {r"\hat p": _PRESSED_NOW, "X": material, "Y": travel}
-    proof.equal(
-        *(sp.Subs(sp.Derivative(_PRESSED_NOW, time), material, right - travel),),
-        *(
-            2 * rho * sp.Derivative(right - travel, time),
-            "negative while a right edge moves inward",
-        ),
-        left=r"\left.\frac{d\hat p}{ds}\right|_{X = r - Y}",
-    )
+    rises = sp.Subs(sp.Derivative(_PRESSED_NOW, time), material, right - travel)
+    reason = "the pressure falls while a right edge moves inward"
+    proof.equal(rises, 2 * rho * sp.Derivative(right - travel, time), reason)
 
 
 @result("F10-touch")
@@ -157,14 +150,10 @@ def _signs(proof: Proof) -> None:
     speed, at_left = sp.Derivative(edge_path, time), {material: material - b, earlier: sigma}
     margin = margin_of(material).subs(earlier, sigma)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
-    proof.notation |= {"D": sp.Lambda(material, margin), r"\xi - E \eta": slope}
     inside, bulge = sp.Symbol("D_2", real=True), (sp.exp(time) - sp.exp(sigma)) * b**2
-    proof.define(inside, margin_of(material).subs(at_left), "at the left edge", right="D(X - b)")
-    proof.equal(
-        *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D(X) = 0$"),
-        left=r"2 e^{s} b \left(\xi - E \eta\right)",
-        right=r"D_2 - D(X) + \left(e^{s} - e^{\sigma}\right) b^2",
-    )
+    proof.define(inside, margin_of(material).subs(at_left), "$D(X - b)$, at the left edge")
+    reason = r"$2 e^{s} b (\xi - E \eta) = D_2 - D(X) + (e^{s} - e^{\sigma}) b^2$; at a right edge $D(X) = 0$"
+    proof.equal(2 * sp.exp(time) * b * slope, inside - margin + bulge, reason)
     proof.recall("F9", margin_of(material), at=at_left)
     pressed = (pushed_by()[0] - CLEAR).subs(earlier, sigma)
     proof.equal(inside, pressed, "not negative: there is contact, $\\bar c(s) = 0$")
@@ -191,7 +180,6 @@ def _at_once(proof: Proof) -> None:
     proof.integral(
         *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
         r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
-        left=r"\int_{s_0}^{s} e^{\zeta} \left(d(\zeta) + d'(\zeta)\right) d\zeta",
         value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
@@ -252,11 +240,7 @@ def _gradually(proof: Proof) -> None:
     proof.define(E, sp.exp(sigma - time))
     reason = r"no pressure there at $\sigma$"
     proof.recall("F10-peel", depth.diff(time), reason=reason, at={time: sigma, material: element})
-    proof.equal(
-        *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
-        left=r"\frac{d}{d\sigma} \left[e^{s} g(X_{\mathrm{e}}(\sigma), s) - e^{\sigma} "
-        r"g(X_{\mathrm{e}}(\sigma), \sigma)\right]",
-    )
+    proof.equal(sp.Derivative(meeting, sigma), slope, "slope of this equation")
 
 
 @result("F10-turn", uses=("F8", "F10-gradual"))
@@ -273,28 +257,29 @@ def _turning(proof: Proof) -> None:
     """
     bend, drop, shift, y = sp.symbols("k_1 k_2 k_3 y", real=True)
     peel = c * zeta**2 / 2 * (1 + bend * zeta)
-    lost = sp.expand(-2 * rho * (1 + drop * zeta) * (peel.subs(zeta, sigma) - peel))
-    proof.notation["X"] = sp.Lambda(zeta, peel)
+    lost = 2 * rho * (1 + drop * zeta) * (peel - peel.subs(zeta, sigma))
     since = (zeta, sigma, _h)
-    value = proof.integral(
-        *(sp.Integral(lost, since), lost, since, sp.integrate(lost, zeta), "pressure since then"),
-        left=_PRESSED.replace("y h", r"\sigma"), right=_PUSHED,
-    )  # fmt: skip
+    primitive = sp.integrate(sp.expand(lost), zeta)
+    value = (
+        rho
+        * c
+        * (_h - sigma) ** 2
+        * (
+            (_h + 2 * sigma) / 3
+            + bend * (_h**2 + 2 * _h * sigma + 3 * sigma**2) / 4
+            + drop * (_h + sigma) ** 2 / 4
+            + bend * drop * (2 * _h**3 + 4 * _h**2 * sigma + 6 * _h * sigma**2 + 3 * sigma**3) / 10
+        )
+    )
+    proof.integral(
+        sp.Integral(lost, since), lost, since, primitive, "pressure since then", value=value
+    )
     first = rho * c * _h**3 * (1 - y) ** 2 * (1 + 2 * y) / 3
     proof.leading_order(value.subs(sigma, y * _h), first, _h, 0, r"with $\sigma = y h$", eps=_h,
-                        short=True, left=_PRESSED)  # fmt: skip
+                        short=True)  # fmt: skip
     proof.root(first, y, -sp.S.Half, "left as long before the turn as half the time since",
                over=(y, -sp.oo, 1))  # fmt: skip
     simple = sp.Subs(sp.Derivative(first, y), y, -sp.S.Half)
     proof.equal(simple, 3 * rho * c * _h**3 / 2, "not zero: a simple root")
     edge, quarter = peel.subs(zeta, -_h / 2 + shift * _h**2), c * _h**2 / 8
-    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True,
-                        left=r"X(-h/2 + k_3 h^2)")  # fmt: skip
-
-
-_PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
-_PUSHED = (
-    r"\frac{\rho c}{3} (h - \sigma)^2 (h + 2 \sigma) + \frac{\rho c k_1}{4} (h - \sigma)^2 "
-    r"(h^2 + 2 h \sigma + 3 \sigma^2) + \frac{\rho c k_2}{4} (h^2 - \sigma^2)^2 + "
-    r"\frac{\rho c k_1 k_2}{10} (h - \sigma)^2 (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)"
-)
+    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True)

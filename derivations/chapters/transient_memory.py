@@ -143,7 +143,7 @@ _BOUND = (
 )
 
 
-@result("F8-update", text=_NOTATION, notation={"g": SURFACE})
+@result("F8-update", text=_NOTATION)
 def _update(proof: Proof) -> None:
     r"""Memory from one instant to the next.
 
@@ -156,14 +156,10 @@ def _update(proof: Proof) -> None:
     for name, value in _MOVING.items():
         proof.define(name, value)
     proof.recall("scaled-pressure")
-    proof.equal(
-        *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * P, _RISES),
-        left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
-    )
+    proof.equal(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * P, _RISES)
     after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
     impulse = sp.Symbol("J", nonnegative=True)
     larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
-    proof.notation["g"] = g
     proof.define(
         g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
     )
@@ -182,7 +178,7 @@ def _update(proof: Proof) -> None:
 _RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
 
 
-@result("F8-remainder", notation={"g": SURFACE})
+@result("F8-remainder")
 def _remainder(proof: Proof) -> None:
     r"""Error of the memory within a step.
 
@@ -200,8 +196,7 @@ def _remainder(proof: Proof) -> None:
     rise = sp.Derivative(sp.exp(time) * _HEIGHT, time)
     proof.recall("F8-update", *_MOVING, P, rise)
     bends = sp.exp(time - end) * (P + sp.Derivative(P, time))
-    proof.equal(sp.Derivative(sp.exp(-end) * rise, time), bends, "its second derivative",
-                left=r"\frac{d^2}{ds^2} \left[e^{s - s_2} g(X, s)\right]")  # fmt: skip
+    proof.equal(sp.Derivative(sp.exp(-end) * rise, time), bends, "its second derivative")
     proof.define(sp.Derivative(f(y), y), slope(y), "its slope")
     proof.define(sp.Derivative(slope(y), y), unused(y) - most, "which falls by at most this bound")
     whole, spare = (y, 0, b), sp.Integral(y * unused(y), (y, 0, b))
@@ -227,11 +222,9 @@ _one, _other = sp.symbols("X_1 X_2", real=True)
 _first, _second = sp.symbols("D_1 D_2", real=True)
 _BETWEEN, _CHORD = margin_of(mix * _one + (1 - mix) * _other), mix * _first + (1 - mix) * _second
 _BULGE = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (_one - _other) ** 2
-_MARGIN = sp.Lambda(material, margin_of(material))
-"""e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
 
 
-@result("F9", text=_NOTATION, notation={"g": SURFACE, "D": _MARGIN})
+@result("F9", text=_NOTATION)
 def _interval(proof: Proof) -> None:
     r"""The contact is one interval.
 
@@ -247,17 +240,14 @@ def _interval(proof: Proof) -> None:
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$")
     proof.define(eta, sp.exp(time - earlier))
-    proof.equal(
-        *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
-        left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
-    )
-    contact_condition(proof, _HEIGHT, _HEIGHT.subs(time, earlier), margin, "D(X)")
+    proof.equal(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant")
+    contact_condition(proof, _HEIGHT, _HEIGHT.subs(time, earlier), margin)
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements in contact")
     for name, place, shown in ((_first, _one, "X_1"), (_second, _other, "X_2")):
-        proof.define(name, margin_of(place), f"at ${shown}$, not negative", right=f"D({shown})")
-    reason = "its chord, and how far it bulges above"
-    proof.equal(_BETWEEN, _CHORD + _BULGE, reason, left=r"D(\theta X_1 + (1 - \theta) X_2)")
+        proof.define(name, margin_of(place), f"at ${shown}$, not negative")
+    reason = r"at $\theta X_1 + (1 - \theta) X_2$: its chord, and how far it bulges above"
+    proof.equal(_BETWEEN, _CHORD + _BULGE, reason)
     proof.holds(_BULGE, ">=", 0, _CONVEX)
     proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
@@ -267,17 +257,15 @@ _CONVEX = (
 )
 
 
-def contact_condition(
-    proof: Proof, now: sp.Expr, then: sp.Expr, margin: sp.Expr, shown: str
-) -> None:
+def contact_condition(proof: Proof, now: sp.Expr, then: sp.Expr, margin: sp.Expr) -> None:
     """Prove by F8 what the difference is of which the sign decides about contact."""
     proof.define(indenter(time), now, "the indenter at the element now")
     proof.define(indenter(earlier), then, "and then")
     proof.recall("F8", pushed_by()[0])
-    proof.equal(margin, pushed_by()[0] - CLEAR, r"not negative where $\bar c(s) = 0$", left=shown)
+    proof.equal(margin, pushed_by()[0] - CLEAR, r"not negative where $\bar c(s) = 0$")
 
 
-@result("F9-landing", notation={"D": _MARGIN})
+@result("F9-landing")
 def _landing(proof: Proof) -> None:
     r"""Landing is at one point.
 
@@ -291,5 +279,4 @@ def _landing(proof: Proof) -> None:
     proof.recall("F9", _BETWEEN)
     proof.where(sp.Gt(_one, _other), "that are not the same")
     proof.holds(_BETWEEN, ">", _CHORD,
-                "if both landed at the same instant, the elements between would have before",
-                left=r"D(\theta X_1 + (1 - \theta) X_2)")  # fmt: skip
+                "if both landed at the same instant, the elements between would have before")  # fmt: skip

@@ -4,7 +4,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .contact_interval import E
 from .theorems import lam
 from .transient_edges import MEETS, RADICAND, b, edge_path, left, rho, right
@@ -13,7 +13,7 @@ from .transient_scaling import PRESSURE, P, d, d_s, f_normal, xi
 
 a, f_friction = symbols(r"""
     a           -    1  -
-    f_friction  f_x  1  scaled friction force, $F_x a_0/(W_0 \delta_0)$  from eq15  real
+    f_friction  f_x  1  scaled friction force, $F_x a_0/(W_0 \delta_0)$  from eq15  real several
 """)
 
 CONTACT = (xi, left, right)
@@ -56,23 +56,13 @@ def _forces(proof: Proof) -> None:
     proof.recall("scaled-pressure")
     proof.integral(
         *(f_normal, _LOAD_SHARE * P, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
-        "all pressure is between the edges", value=NORMAL_FORCE, right=_NORMAL,
+        "all pressure is between the edges", value=NORMAL_FORCE,
     )  # fmt: skip
     proof.integral(
         *(f_friction, _FRICTION_SHARE * friction, CONTACT, _FRICTION_SHARE * sp.integrate(friction, xi)),
-        r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE, right=_FRICTION,
+        r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE,
     )  # fmt: skip
     proof.done(f_normal, NORMAL_FORCE)
-
-
-_NORMAL = (
-    r"\frac{3}{4} \left[(d + d') (r - \ell) - "
-    r"\frac{r^3 - \ell^3}{3} - \lambda (r^2 - \ell^2)\right]"
-)
-_FRICTION = (
-    r"-\frac{3}{2} \left[(d + d') \frac{r^2 - "
-    r"\ell^2}{2} - \frac{r^4 - \ell^4}{4} - 2 \lambda \frac{r^3 - \ell^3}{3}\right]"
-)
 
 
 @result("F11-peel")
@@ -84,14 +74,12 @@ def _peeling_forces(proof: Proof) -> None:
     proof.define(d_s, (right + lam) ** 2 - lam**2 - d, r"no pressure at $r$")
     proof.define(lam, rho - right)
     proof.define(left, right - b, "$b$ is the width of the contact")
-    proof.notation |= {r"\hat p": PRESSURE, "f_z": sp.Lambda(b, PEELING_NORMAL_FORCE)}
-    proof.equal(PRESSURE, (right - xi) * (xi - right + 2 * rho), "one difference", left=r"\hat p")
+    proof.equal(PRESSURE, (right - xi) * (xi - right + 2 * rho), "one difference")
     proof.recall("F11")
     proof.equal(f_normal, PEELING_NORMAL_FORCE, "without differences of powers")
     proof.recall("F11", f_friction)
     proof.equal(f_friction, PEELING_FRICTION_FORCE, "without differences of powers")
-    both = PEELING_NORMAL_FORCE.subs(b, 2 * rho)
-    proof.equal(both, rho**3, "both edges peel: $b = 2 \\rho$", left=r"f_z(2 \rho)")
+    proof.equal(sp.Subs(PEELING_NORMAL_FORCE, b, 2 * rho), rho**3, "both edges peel")
     proof.done(f_normal, PEELING_NORMAL_FORCE)
 
 
@@ -129,8 +117,7 @@ def _derivatives(proof: Proof) -> None:
     touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to
     $\partial f_z/\partial d$.
     """
-    ends = {right: sp.Function("r", real=True)(d, d_s), left: sp.Function("ell", real=True)(d, d_s)}
-    proof.notation |= {r"\hat p": sp.Lambda(xi, PRESSURE), r"\ell": ends[left], "r": ends[right]}
+    ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
     proof.recall("F11", f_normal, f_friction)
     for end, moves in ends.items():
         proof.define(end, moves, "an edge that moves")
@@ -141,32 +128,16 @@ def _derivatives(proof: Proof) -> None:
                 (weight * PRESSURE).subs(xi, end) * sp.Derivative(end, variable)
                 for end in ends.values()
             )
-            proof.equal(
-                *(sp.Derivative(force, variable), share * (inside + ahead - behind), "moving ends"),
-                left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
-            )  # fmt: skip
+            slope = share * (inside + ahead - behind)
+            proof.equal(sp.Derivative(force, variable), slope, "moving ends")
     proof.recall("F10-touch")
     proof.recall("F11-edges")
     proof.define(xi, _touching)
     speed = sp.Derivative(edge_path, time)
-    proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
-    proof.equal(P * sp.Derivative(_touching, d), speed, _TOUCHES, right=r"X_{\mathrm{e}}'")
+    proof.equal(P * sp.Derivative(_touching, d), speed, _TOUCHES)
 
 
 _TOUCHES = "an edge that touches: its velocity through the foundation"
-
-
-def _partial(force: sp.Expr, variable: sp.Expr) -> str:
-    return rf"\frac{{\partial {tex(force)}}}{{\partial {tex(variable)}}}"
-
-
-def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.Expr) -> str:
-    """Print share * (inside + what the integrand has at the ends, times how they move)."""
-    ends = [
-        rf"{tex(end) if force == f_friction else ''} \hat p({tex(end)}) {_partial(end, variable)}"
-        for end in (right, left)
-    ]
-    return rf"{tex(share)} \left[{tex(inside)} + {ends[0]} - {ends[1]}\right]"
 
 
 @result("F11-start")
@@ -182,5 +153,5 @@ def _start_from_rest(proof: Proof) -> None:
     proof.recall("F11", f_normal, f_friction)
     pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s)]
     for (force, variable), value in zip(pairs, JACOBIAN, strict=True):
-        proof.equal(sp.Derivative(force, variable), value, "F11", left=_partial(force, variable))
+        proof.equal(sp.Derivative(force, variable), value, "F11")
     proof.done(sp.Derivative(f_normal, d), JACOBIAN[0])

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from ..engine.book import established
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.record import Table
@@ -16,7 +15,7 @@ from .steady import l, q
 from .theorems import LOAD, NUMBER, UNIT, A, kappa, lam, w
 from .transient_edges import b, left, rho, right
 from .transient_memory import SECTION, time
-from .transient_motion import START, a
+from .transient_motion import a
 from .transient_scaling import P, d, d_s, d_ss, eps, f_normal, xi
 
 eps_critical, quadratic, f, change, per_depth, per_rate, sigma, drive_excess, beta = symbols(r"""
@@ -69,7 +68,7 @@ def _linearised(proof: Proof) -> None:
     steady sliding, $a^2$. To first order in $\hat d$ it is obeyed if $\sigma$ is a root of the quadratic.
     """
     near = a**2 + change * sp.exp(sigma * time)
-    rate, force = sp.diff(near, time), established("F11", f_normal).subs(START)
+    rate = sp.diff(near, time)
     proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "growth of the force with the depth")
     proof.define(per_rate, sp.sqrt(a**2 + lam**2) - lam + a, "and with its rate")
     proof.define(
@@ -83,16 +82,12 @@ def _linearised(proof: Proof) -> None:
     )
     linear = eps * sigma**2 - by_rate * sigma - by_depth
     proof.equal(linear, quadratic, "the scaled motion, linear in the change")
-    proof.notation |= {"D": sp.Lambda(time, near), "f_z": sp.Lambda((d, d_s), force)}
     proof.where(sp.Gt(near, 0), "the change is small")
     proof.where(sp.Gt(near + rate + lam**2, 0), "and the contact remains")
     motion = eps * sp.Derivative(near, (time, 2)) - at_motion(eps * d_ss, {d: near, d_s: rate})
     first = sp.Subs(sp.Derivative(motion, change), change, 0)
-    proof.equal(
-        *(first, quadratic * sp.exp(sigma * time), r"the terms of first order in $\hat d$"),
-        left=r"\left. \frac{\partial}{\partial \hat d} \left[\varepsilon D'' - \left(1 - f_z(D, D') - "
-        r"\kappa (D - 1)\right)\right] \right|_{\hat d = 0}",
-    )
+    reason = r"the terms of first order in $\hat d$"
+    proof.equal(first, quadratic * sp.exp(sigma * time), reason)
 
 
 def at_motion(expr: sp.Expr, places: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
@@ -190,7 +185,7 @@ def _standard(proof: Proof) -> None:
     """
     cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(tables.STANDARD)
     quartic, state = state_at(cubed)
-    proof.unique_root(quartic, UNIT, "F2 with the numbers of Table 1")
+    proof.unique_root(quartic, UNIT, in_whole_numbers(cubed))
     half = sp.cbrt(4 / (3 * LOAD))
     inertia = (tables.static_depth / (g * tau**2)).subs(tables.STANDARD)
     known = {
@@ -212,6 +207,11 @@ def _standard(proof: Proof) -> None:
         tuple((name, symbol, _four_digits(value.subs(known).subs(q, state)), unit)
               for name, symbol, value, unit in rows),
     ))  # fmt: skip
+
+
+def in_whole_numbers(cubed: sp.Expr) -> str:
+    """Say which equation it is whose coefficients are numbers."""
+    return rf"F2 with $\Lambda^3 = {float(cubed):.6g}$ by Table 1, in whole numbers"
 
 
 def _four_digits(value: sp.Expr) -> str:

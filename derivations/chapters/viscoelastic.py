@@ -107,9 +107,8 @@ def _pressure(proof: Proof) -> None:
     primitive = sp.exp(-z * (y - s)) * (b - s + 1 / z) / z
     reason = r"$\int G\,\dot u\,dt$ of one arm, with $R u' = a - X$ in the contact"
     proof.integral(arm_pressure, integrand, (s, 0, y), primitive, reason, value=PRESSURE)
-    slope = sp.Derivative(PRESSURE, y)
-    proof.equal(slope, b - y - z * arm_pressure, "the arm is strained by $a - X$, and relaxes",
-                left=r"\frac{d \breve p}{d \breve x}")  # fmt: skip
+    slope = sp.Derivative(arm_pressure, y)
+    proof.equal(slope, b - y - z * arm_pressure, "the arm is strained by $a - X$, and relaxes")
     proof.done(arm_pressure, PRESSURE)
 
 

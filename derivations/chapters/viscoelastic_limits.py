@@ -366,26 +366,17 @@ def _glassy(proof: Proof) -> None:
 
 
 def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Name load, friction coefficient and half length, over those of the units, of spring and springpot.
-
-    Each is defined in one fraction and shown by its parts: the display is compared with the definition.
-    """
+    """Name load, friction coefficient and half length, over those of the units, by the moments."""
     nu, t = proof._resolve(spring_share), springpot
     ahead, behind, bulge, twist = (SPRINGPOT[name].subs(spring_share, nu) for name in (P, Q, D, E))
     ahead, mean, bulge = half + t * ahead, 1 + t * (ahead + behind), twelfth + t * bulge
-    eta = ahead / mean - half
-    load = sp.factor(bulge + eta * ahead)
-    work = sp.factor(t * twist + eta**2 * ahead)
-    for name, part in ((P, ahead), (A, mean), (D, bulge), (E, t * twist), (excess_share, eta)):
-        proof.define(name, sp.factor(part), "spring and springpot")
-    names = load_number, friction_number, half_share
-    proof.define(load_number, load, "F17-load", right=r"\breve D + \breve \eta \breve P")
-    proof.define(friction_number, sp.factor(work / load), "F17",
-                 right=r"\frac{\breve E + \breve \eta^2 \breve P}{\breve \Lambda}")  # fmt: skip
-    proof.define(
-        half_share, sp.factor(ahead / mean), "F17-edge", right=r"\frac{\breve P}{\breve A}"
-    )
-    return names
+    for name, part in ((P, ahead), (A, mean), (D, bulge), (E, t * twist)):
+        proof.define(name, part, "spring and springpot")
+    proof.define(half_share, P / A, "F17-edge")
+    proof.define(excess_share, half_share - half, "its excess over half of the contact")
+    proof.define(load_number, D + excess_share * P, "F17-load")
+    proof.define(friction_number, (E + excess_share**2 * P) / load_number, "F17")
+    return load_number, friction_number, half_share
 
 
 @result("F18-springpot", uses=("F17-springpot", "F17-load", "F17", "F17-growth"))

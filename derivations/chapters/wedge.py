@@ -8,7 +8,7 @@ import sympy as sp
 
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
-from ..engine.step import Proof, tex
+from ..engine.step import Proof
 from .model import C, K, delta, h, x
 from .power_law import (
     FRICTION_COEFFICIENT,
@@ -75,21 +75,22 @@ def _forces(
         proof.recall("wedge-edge")
     ahead, behind = (y - y**2 / 2 + side * l * y for side in (1, -1))
     proof.integral(w_ahead, 1 - y + l, (y, 0, 1), ahead, "ahead of the tip")
-    proof.integral(w_behind, 1 - y - l, (y, 0, edge), behind, "behind it")
-    proof.define(w_n, w_ahead + w_behind, r"$W/(K \delta a)$")
+    rest = sp.S.Zero
+    if edge != 0:
+        rest = w_behind
+        proof.integral(rest, 1 - y - l, (y, 0, edge), behind, "behind it")
+    proof.define(w_n, w_ahead + rest, r"$W/(K \delta a)$")
     proof.equal(w_n, load, "load")
-    proof.define(phi_n, w_ahead - w_behind, r"$F/(K \delta^2)$, where $-h' = \pm c$")
+    proof.define(phi_n, w_ahead - rest, r"$F/(K \delta^2)$, where $-h' = \pm c$")
     proof.equal(phi_n, friction, "friction force")
     proof.define(m_n, phi_n / w_n, r"$\mu/c$")
     proof.equal(m_n, friction / load, "friction coefficient")
-    proof.notation["n"] = n
     for name, general, own in (
         ("w_n", LOAD, load), (r"\varphi_n", FRICTION_FORCE, friction),
         ("m_n", FRICTION_COEFFICIENT, friction / load),
     ):  # fmt: skip
         form = general.subs({Q: state[Q], q: edge})
-        proof.equal(form.subs(n, 1), own, f"${name}$ of a power law, for $n = 1$",
-                    left=tex(sp.Subs(form, n, 1)))  # fmt: skip
+        proof.equal(form.subs(n, 1), own, f"${name}$ of a power law, for $n = 1$")
     proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
     general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
     proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")
@@ -113,10 +114,8 @@ def _slow(proof: Proof) -> None:
     proof.recall("wedge-peeling")
     proof.leading_order(m_n, 2 * l, l, 0, "the asymptote", eps=l)
     proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
-    proof.notation["m_n'"] = sp.Derivative(m_n, l)
     slope = 4 * (1 - l) * (2 + l) / (2 + l**2) ** 2
-    proof.equal(sp.Derivative(m_n, l), slope, r"$\mu$ grows until $l = 1$",
-                left="m_n'")  # fmt: skip
+    proof.equal(sp.Derivative(m_n, l), slope, r"$\mu$ grows until $l = 1$")
     proof.sign(slope, ">", 0, (l, 0, 1), "strictly")
     proof.done(m_n, 2 * l)
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache, wraps
 from inspect import signature
-from typing import Any, NamedTuple, ParamSpec, TypedDict, TypeVar, Unpack, cast
+from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -27,12 +27,10 @@ from .conditions import (
     proves_positive,
     proves_real,
 )
-from .display import Meaning, UnreadableError, names_in, read_chain
 from .forms import expanded, factors
 from .identity import letters_of
 from .language import foreign, parts
 from .letters import letters, printed, told
-from .nomenclature import CONSTANTS, TEX
 from .premises import Fact, Premise, contradiction, is_general, merged, violates, weakest
 from .printing import doprint
 from .record import ARGUED, Claim, Derivation, Step, Table
@@ -68,10 +66,6 @@ def restore(proofs: Mapping[str, Finished]) -> None:
     _finished.update(proofs)
 
 
-_CONSTANTS = {r"\pi", "e", r"\infty"}
-"""What no notation may give another meaning."""
-
-
 def forget(prefix: str) -> None:
     """Forget the results whose labels begin so: those of another document, which names its own alike."""
     for label in [each for each in _finished if each.startswith(prefix)]:
@@ -95,13 +89,6 @@ class Said(NamedTuple):
 
     def __str__(self) -> str:
         return " ".join(map(str, self[:]))
-
-
-class Shown(TypedDict, total=False):
-    """LaTeX that replaces SymPy's own for a side of a step."""
-
-    left: str
-    right: str
 
 
 class _OverTimeError(BaseException):
@@ -140,10 +127,9 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
     def run(*args: _P.args, **kwargs: _P.kwargs) -> _Value:
         given = form.bind(*args, **kwargs).arguments
         book = cast("Book", given.pop("self"))
-        words = {"reason", "shown"}
-        arguments = {name: value for name, value in given.items() if name not in words}
+        arguments = {name: value for name, value in given.items() if name != "reason"}
         name = check.__name__.strip("_")
-        book._asked, book._read = (name, arguments, dict(book._rules)), {}
+        book._asked = name, arguments, dict(book._rules)
         try:
             with _limited():
                 for argument in arguments.values():
@@ -233,18 +219,6 @@ def tex_condition(gap: sp.Expr) -> str:
     return f"{tex(gap)} > 0"
 
 
-def evaluated(expr: sp.Expr) -> sp.Expr:
-    """Evaluate the integrals of polynomials, and the derivatives of what they give."""
-    found = expr.replace(
-        lambda node: (
-            isinstance(node, sp.Integral)
-            and node.function.doit(integrals=False).is_polynomial(*node.variables)
-        ),
-        lambda node: node.doit(),
-    )
-    return found.doit(integrals=False) if found != expr else found
-
-
 def tex_case(case: sp.Basic) -> str:
     """Print a case: an equation, an inequality, or several at once."""
     if isinstance(case, sp.And):
@@ -258,11 +232,6 @@ def established(label: str, lhs: sp.Expr) -> sp.Expr:
     if not forms:
         raise StepError(f"{label} does not establish {lhs}")
     return forms[-1]
-
-
-def _bare(expr: sp.Expr) -> sp.Expr:
-    """Return an expression that is kept from being evaluated as it is with it."""
-    return sp.sympify(expr).replace(sp.UnevaluatedExpr, lambda inner: inner)
 
 
 def _put(expr: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
@@ -300,7 +269,6 @@ class Book:
         title: str,
         text: str = "",
         uses: tuple[str, ...] = (),
-        notation: Mapping[str, Meaning] | None = None,
     ) -> None:
         for each in uses:
             if each == label:
@@ -309,8 +277,6 @@ class Book:
         self.label, self.equation = label, equation
         self._section, self._title, self._text = section, title, text
         self._uses, self._declared = list(uses), uses
-        self.notation = dict(notation or {})
-        """Names that displays may use beside those of the symbols."""
         self._rules: dict[sp.Expr, sp.Expr] = {}
         self._origins: dict[sp.Expr, Fact] = {}
         """For each rule, the fact that it comes from."""
@@ -323,8 +289,6 @@ class Book:
         self.finished: Derivation | None = None
         """The record, once the proof has ended."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
-        self._read: dict[str, sp.Expr] = {}
-        """The other forms that the display of the step in hand shows of its sides."""
         self._steps: list[Step] = []
         self._named: dict[str, sp.Symbol] = {}
         """The letters by their names."""
@@ -337,25 +301,24 @@ class Book:
         self._leading: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
     @asked
-    def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
+    def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "") -> None:
         """Define the left side by the right side: a name, or a law of the model.
 
         What a proof that this one uses has defined alike is recalled from there.
         """
         sides = sp.sympify(lhs), sp.sympify(rhs)
         if source := next((each for each in self._declared if sides in _source(each).exact), ""):
-            self._recall(source, *sides, reason, at=None)
+            self._recall(source, *sides, "", at=None)  # the reason stands there
             return
-        self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         if not (sp.sympify(lhs).free_symbols or sp.sympify(lhs).atoms(AppliedUndef)):
             raise StepError(f"{self.label}: {lhs} has a value already")
         self._rule(lhs, rhs)
         self._imply(sp.sympify(lhs))
-        fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
+        fact = self._record(lhs, "=", rhs, reason, "definition")
         self._premise(lhs, rhs, fact)
 
     @asked
-    def where(self, condition: Relational, reason: str = "", **shown: Unpack[Shown]) -> None:
+    def where(self, condition: Relational, reason: str = "") -> None:
         """Restrict what follows to where an inequality holds: part of the domain of the result."""
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
             raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
@@ -364,11 +327,8 @@ class Book:
         if proves_positive(-gap, self._conditions) or gap.is_nonpositive:
             raise StepError(f"{self.label}: {condition} contradicts what is given")
         sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
-        self._displayed(condition.lhs, condition.rhs, shown)
-        left, right = (
-            shown.get("left") or tex(condition.lhs),
-            shown.get("right") or tex(condition.rhs),
-        )
+        self._unambiguous(condition.lhs, condition.rhs)
+        left, right = tex(condition.lhs), tex(condition.rhs)
         latex = f"{left} {sign} {right}"
         for form in (gap, raw):
             self._demand(form, latex)
@@ -406,12 +366,12 @@ class Book:
         if fact is None:
             raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
         step = fact.step
-        shown: Shown = {"left": step.left, "right": step.right}
+        shown = step.left, step.right
         if at:
             lhs, rhs, fact = self._placed(fact, lhs, rhs, at)
-            shown = {}
+            shown = tex(lhs), tex(rhs)
         self._use(label, lhs, rhs, fact)
-        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
+        self._write(lhs, rhs, reason, step.status, shown, source=label, fact=fact)
 
     @asked
     def asymptote(
@@ -429,8 +389,8 @@ class Book:
         step = replace(fact.step, left=tex(name), right=tex(leading), status=worth)
         fact = replace(fact, step=step)
         self._use(label, name, leading, fact)
-        shown: Shown = {"left": step.left, "right": step.right}
-        self._write(name, "=", leading, reason, worth, shown, source=label, fact=fact)
+        shown = step.left, step.right
+        self._write(name, leading, reason, worth, shown, source=label, fact=fact)
         return leading
 
     def _use(self, label: str, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
@@ -486,10 +446,6 @@ class Book:
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
         check, arguments, rules = self._asked
         known = self._conditions
-        if check == "equal" and _bare(lhs) == _bare(
-            rhs
-        ):  # what the page shows, as it was read back
-            lhs, rhs = self._read.get("left", lhs), self._read.get("right", rhs)
         sides = sp.sympify(lhs), sp.sympify(rhs)
         return Claim(check, *sides, arguments, rules, known.positive, known.intervals)
 
@@ -899,55 +855,6 @@ class Book:
                 if self._letters.setdefault(name, call.func) != call.func:
                     raise StepError(f"{self.label}: two functions are printed {name}")
 
-    def _means(self, known: Meaning, meaning: Meaning) -> bool:
-        """Tell whether a name of the notation is what the symbol or function of that name is here."""
-        if known == meaning or getattr(known, "func", None) == meaning:
-            return True
-        if isinstance(meaning, sp.Lambda):
-            given = known.args if isinstance(known, AppliedUndef) else meaning.variables
-            meaning = meaning(*given) if len(given) == len(meaning.variables) else sp.nan
-        if not isinstance(known, sp.Expr) or not isinstance(meaning, sp.Expr):
-            return False
-        return difference(self._resolve(known), self._resolve(meaning)) == 0
-
-    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
-        """Refuse LaTeX that does not say what was checked: it may only rearrange."""
-        used = set(self._used)
-        self._unambiguous(lhs, rhs, *known)
-        for side, expr in (("left", lhs), ("right", rhs)):
-            if side not in shown:
-                continue
-            latex = str(dict(shown)[side])
-            rules = [*self._rules, *self._rules.values()]
-            names = names_in(lhs, rhs, *rules, *known, tex_of=TEX)
-            for name, meaning in self.notation.items():
-                bare = name[1:-1] if name[:1] == "{" else name
-                here = names.get(bare, meaning) if name in latex else meaning
-                agrees = self._means(here, meaning)
-                agrees = agrees or (
-                    isinstance(here, sp.Expr) and here == lhs and self._means(rhs, meaning)
-                )
-                if name in _CONSTANTS or not agrees:
-                    raise StepError(
-                        f"{self.label}: the notation {name} = {meaning} has another meaning here"
-                    )
-            names |= {r"\pi": sp.pi, **CONSTANTS, **self.notation}
-            try:
-                links = read_chain(latex, names)
-            except UnreadableError as error:
-                raise StepError(f"{self.label}: {error}") from error
-            if self._asked[0] == "equal" and len(links) == 1 and _bare(lhs) == _bare(rhs):
-                with sp.evaluate(False):  # all that the claim says is what is printed
-                    self._read[side] = read_chain(latex, names)[0]
-            for link in links:
-                if link == expr:
-                    continue
-                self._read.setdefault(side, link)
-                read, checked = map(evaluated, map(self._resolve, (link, expr)))
-                if difference(self._parted(read), self._parted(checked)) != 0:
-                    raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
-        self._used = used
-
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: "Said | str") -> None:
         rest = difference(self._parted(lhs), self._parted(rhs))
         if rest != 0 and rest.has(sp.Abs):
@@ -976,22 +883,20 @@ class Book:
         rhs: sp.Expr,
         reason: str,
         status: str,
-        shown: Shown,
         *,
         exact: bool = True,
         over: Interval | None = None,
         premise: Premise | None = None,
         cases: tuple[Relational, ...] = (),
-        trusted: bool = False,
+        right: str = "",
         bound: bool = False,
         note: str = "",
     ) -> Fact:
         """Keep a step; an exact one is an equality that later proofs may use as a rule.
 
-        What it shows is read back and compared, unless the display has been checked before.
+        `right` is printed where the right side says more than its value: an integral, a remainder.
         """
-        if not trusted:
-            self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
+        self._unambiguous(sp.sympify(lhs), sp.sympify(rhs))
         origins = [self._origins[name] for name in self._rules if name in self._used]
         self._needed |= self._used
         self._used = set()
@@ -1005,10 +910,9 @@ class Book:
         if cases:
             own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
         domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
-        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
         claim = self._claim(lhs, rhs)
         interval = "" if bound else ", ".join(own)
-        step = Step(left, relation, right, reason, worth, "", interval, note, claim)
+        step = Step(tex(lhs), relation, right or tex(rhs), reason, worth, "", interval, note, claim)
         fact = Fact(step, premises, conditions, domain)
         self._keep(lhs, rhs, fact, exact=exact)
         return fact
@@ -1022,14 +926,13 @@ class Book:
             self._exact[key] = fact
 
     def _write(
-        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, status: str, shown: Shown,
+        self, lhs: sp.Expr, rhs: sp.Expr, reason: str, status: str, shown: tuple[str, str],
         *, source: str, fact: Fact,
     ) -> None:  # fmt: skip
         """Keep a step of another proof."""
         self._needed |= self._used
         self._used = set()
-        left, right = shown.get("left") or tex(lhs), shown.get("right") or tex(rhs)
         claim = self._claim(lhs, rhs)
-        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim=claim)
+        step = Step(shown[0], "=", shown[1], reason, status, source, fact.step.domain, claim=claim)
         self._origins[lhs] = Fact(step, fact.premises, fact.conditions, fact.domain)
         self._keep(lhs, rhs, self._origins[lhs], exact=True)

@@ -21,7 +21,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .book import Meaning
 from .record import ARGUED, Derivation
 from .step import Proof
 
@@ -36,7 +35,6 @@ class Entry:
     title: str
     text: str
     uses: tuple[str, ...]
-    notation: Mapping[str, Meaning]
     prove: Callable[..., None]
     given: Mapping[str, Any]
 
@@ -44,7 +42,7 @@ class Entry:
         """Make all steps, and end with the last one unless the function has ended with another."""
         number = _NUMBERED.fullmatch(self.label)
         proof = Proof(self.label, int(number[1]) if number else None, section=section, title=self.title,
-                      text=self.text, uses=self.uses, notation=self.notation)  # fmt: skip
+                      text=self.text, uses=self.uses)  # fmt: skip
         self.prove(proof, **self.given)
         return proof.finished or proof.done()
 
@@ -52,13 +50,13 @@ class Entry:
 class Chapter:
     """The records of a chapter; called, a decorator that adds one."""
 
-    def __init__(self, section: str, notation: Mapping[str, Meaning] | None = None) -> None:
-        self.section, self.notation = section, dict(notation or {})
+    def __init__(self, section: str) -> None:
+        self.section = section
         self.entries: list[Entry] = []
 
     def __call__(
         self, label: str, *, title: str = "", text: str = "", uses: tuple[str, ...] = (),
-        notation: Mapping[str, Meaning] | None = None, **given: Any,
+        **given: Any,
     ) -> Callable[[Callable[..., None]], Callable[..., None]]:  # fmt: skip
         """Return a decorator for the function that proves the record, called with what else is `given`.
 
@@ -74,7 +72,7 @@ class Chapter:
             first, _, rest = ("" if title else inspect.getdoc(prove) or "").partition("\n")
             told = " ".join([*text.split(), *rest.split()]).replace(" Argued: ", f" {ARGUED} ")
             entry = Entry(label, title or first.removesuffix("."), told, uses,
-                          self.notation | dict(notation or {}), prove, given)  # fmt: skip
+                          prove, given)  # fmt: skip
             self.entries.append(entry)
             return prove
 

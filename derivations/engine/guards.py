@@ -1,13 +1,12 @@
 """Guards of a step: no interval for a fixed variable, no value outside its range, no zero divisor."""
 
 from collections.abc import Callable, Iterable
-from typing import Unpack
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from .algebra import KINKS, UndecidedError, is_continuous, leading_term, normalise
-from .book import Book, Said, Shown, StepError, asked
+from .book import Book, Said, StepError, asked
 from .conditions import (
     NONE,
     Conditions,
@@ -31,7 +30,6 @@ class Guarded(Book):
         reason: str,
         *,
         slope: sp.Expr | None = None,
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove that a smooth expression vanishes exactly once in the interval: it rises or falls through 0.
 
@@ -65,7 +63,7 @@ class Guarded(Book):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         if not all(proves_positive(end, self._conditions) for end in ends):
             raise StepError(f"{self.label}: {claim}: the signs at the ends are not those of {ends}")
-        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
+        self._record(expr, "=", sp.S.Zero, reason, "proved", exact=False, over=over)
 
     def _free(self, variable: sp.Expr) -> None:
         """Refuse a variable that has been given a value: it cannot sweep over an interval."""

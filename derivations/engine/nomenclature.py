@@ -61,7 +61,9 @@ TEX: dict[sp.Symbol, str] = {}
 SYMBOLS: set[str] = set()
 """How the declared letters that are no functions are printed."""
 CONSTANTS: dict[str, sp.Expr] = {}
-"""Numbers with a letter of their own, which every display may use."""
+"""Numbers with a letter of their own."""
+SEVERAL: set[sp.Symbol] = set()
+"""The letters of quantities that depend on several others: their derivatives are partial."""
 DECLARED: set[object] = set()
 """The symbols and functions that the chapters have declared."""
 HEADS = ("Symbol", "Meaning", "Unit", "From")
@@ -93,16 +95,19 @@ def symbol(
     *,
     printed: str = "",
     source: str | None = None,
+    several: bool = False,
     **assumptions: bool,
 ) -> sp.Symbol:
     """Declare a symbol, positive unless other assumptions are given.
 
     `latex` is how displays write it, if not as SymPy does, `printed` its letter where the document prints
-    another one (`letters`). Without a meaning it is no row: a derivative, or a letter declared elsewhere.
+    another one (`letters`); the derivatives of what depends on `several` letters are partial. Without a
+    meaning it is no row: a derivative, or a letter declared elsewhere.
     """
     found = sp.Symbol(name, **(assumptions or {"positive": True}))
     if BY_NAME.setdefault(name, found) != found:
         raise ValueError(f"the letter {name} is declared twice, with different assumptions")
+    SEVERAL.update([found] if several else [])
     SYMBOLS.add(latex or sp.latex(found))
     if latex and TEX.setdefault(found, latex) != latex:
         raise ValueError(f"{name} is printed {TEX[found]} and {latex}")

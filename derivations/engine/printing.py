@@ -22,7 +22,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.latex import LatexPrinter
 
-from .nomenclature import CONSTANTS, SYMBOLS, TEX
+from .nomenclature import CONSTANTS, SEVERAL, SYMBOLS, TEX
 
 _TALL = sp.Integral, sp.Sum, sp.Product, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
@@ -442,10 +442,11 @@ class Printer(LatexPrinter):
         if call.is_Symbol and len(expr.variable_count) == 1:
             ((variable, order),) = expr.variable_count
             power = "" if order == 1 else f"^{{{order}}}"
-            below = rf"\mathrm{{d}} {self._print(variable)}{power}"
+            sign = r"\partial" if call in SEVERAL else r"\mathrm{d}"
+            below = rf"{sign} {self._print(variable)}{power}"
             if self._small:
-                return rf"\mathrm{{d}}{power} {self._print(call)}/{below}"
-            return rf"\frac{{\mathrm{{d}}{power} {self._print(call)}}}{{{below}}}"
+                return rf"{sign}{power} {self._print(call)}/{below}"
+            return rf"\frac{{{sign}{power} {self._print(call)}}}{{{below}}}"
         return str(super()._print_Derivative(expr))
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802

@@ -12,7 +12,6 @@ derivations.engine.book.StepError: eq29: l_r/tau = 2*V is not an identity: left 
 """
 
 from contextlib import ExitStack
-from typing import Unpack
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -30,7 +29,7 @@ from .algebra import (
     sign_between,
     value_at,
 )
-from .book import Said, Shown, StepError, asked, tex, tex_interval, tex_within
+from .book import Said, StepError, asked, tex, tex_interval, tex_within
 from .conditions import (
     Interval,
     demands,
@@ -61,8 +60,7 @@ class Greatest(sp.Expr):
 class Proof(Guarded):
     """Collect checked steps and end in a `record.Derivation`.
 
-    A step is printed as `printing` has it; `left` and `right` are for the LaTeX of a side that says more by a
-    name than by the expression, which is what is checked.
+    A step is printed as `printing` has it.
     """
 
     @asked
@@ -73,7 +71,6 @@ class Proof(Guarded):
         reason: str,
         *,
         cases: tuple[Relational, ...] = (),
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove an identity: wherever one side is defined, so is the other, and they are equal.
 
@@ -82,7 +79,7 @@ class Proof(Guarded):
         for case in cases or (sp.true,):
             with self._case(case):
                 self._identical(lhs, rhs)
-        self._record(lhs, "=", rhs, reason, "proved", shown, exact=not cases, cases=cases)
+        self._record(lhs, "=", rhs, reason, "proved", exact=not cases, cases=cases)
 
     def _identical(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
         claim = Said(lhs, "=", rhs)
@@ -97,16 +94,13 @@ class Proof(Guarded):
         rhs: sp.Expr,
         factor: sp.Expr,
         reason: str,
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove that `lhs` is a number times `rhs`, and print that it goes as that: lhs ~ rhs."""
         if not (factor.is_number and factor.is_positive):
             raise StepError(f"{self.label}: {factor} is no positive number")
         self._identical(lhs, factor * rhs)
-        self._displayed(lhs, rhs, shown)
         self._asked = "equal", {"lhs": lhs, "rhs": factor * rhs}, self._asked[2]
-        shown.setdefault("right", tex(rhs))
-        self._record(lhs, r"\sim", factor * rhs, reason, "proved", shown, exact=False, trusted=True,
+        self._record(lhs, r"\sim", factor * rhs, reason, "proved", exact=False, right=tex(rhs),
                      note=f"up to the factor ${tex(factor)}$")  # fmt: skip
 
     @asked
@@ -119,7 +113,6 @@ class Proof(Guarded):
         reason: str,
         *,
         value: sp.Expr | None = None,
-        **shown: Unpack[Shown],
     ) -> sp.Expr:
         """Prove that `lhs`, the integral of `integrand`, has the value that is returned.
 
@@ -158,9 +151,6 @@ class Proof(Guarded):
         self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
         known = defined or lhs == whole
         premise = None if known else Premise(lhs, wanted, f"{tex(lhs)} = {tex(whole)}")
-        given: Shown = {**shown}
-        if lhs == whole and "left" in given:  # as long as it is an integral, and not its value
-            self._displayed(lhs, lhs, {"left": given.pop("left")}, variable)
         self._rule(lhs, wanted)
         inside = self._conditions.with_interval((variable, low, high))
         sure = lhs.is_nonnegative and not lhs.is_integer
@@ -169,10 +159,9 @@ class Proof(Guarded):
             or (proves_positive(high - low, self._conditions) and proves_positive(inner, inside))
         ):
             self._imply(lhs)
-        self._displayed(lhs, sp.sympify(wanted), given, whole, variable)
-        shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
+        right = tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}"
         self._origins[lhs] = self._record(
-            *(lhs, "=", wanted, reason, "proved", shown), premise=premise, trusted=True
+            *(lhs, "=", wanted, reason, "proved"), premise=premise, right=right
         )
         return wanted
 
@@ -186,7 +175,6 @@ class Proof(Guarded):
         *,
         over: Interval | None = None,
         name: sp.Symbol | None = None,
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove that the expression vanishes at this value of the variable, and nowhere else.
 
@@ -229,16 +217,14 @@ class Proof(Guarded):
         note = f"the only {among} of ${tex(sp.sympify(expr))} = 0$" + (
             "" if whole_line else f" for ${where}$"
         )
-        fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise,
+        fact = self._record(called, "=", value, reason, "proved", over=over, premise=premise,
                             bound=called != variable, note=note)  # fmt: skip
         if called != variable:
             self._rule(called, value)
             self._origins[called] = fact
 
     @asked
-    def unique_root(
-        self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
-    ) -> None:
+    def unique_root(self, expr: sp.Expr, over: Interval, reason: str) -> None:
         """Prove by Sturm's theorem that a polynomial changes its sign exactly once in the interval.
 
         That it has one root there, and that it is a simple one (or of odd order).
@@ -255,9 +241,8 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
         if odd != 1 or poles:
             raise StepError(f"{self.label}: {expr} does not change its sign at its root in {over}")
-        self._displayed(sp.sympify(expr), sp.S.Zero, shown)
-        given: Shown = {**shown, "right": rf"0 \quad\text{{for exactly one }} {tex_within(over)}"}
-        self._record(expr, "=", sp.S.Zero, reason, "proved", given, exact=False, over=over, trusted=True,
+        right = rf"0 \quad\text{{for exactly one }} {tex_within(over)}"
+        self._record(expr, "=", sp.S.Zero, reason, "proved", exact=False, over=over, right=right,
                      note="where it changes its sign")  # fmt: skip
 
     @asked
@@ -268,7 +253,6 @@ class Proof(Guarded):
         bound: sp.Expr | int,
         over: Interval,
         reason: str,
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove that a rational expression stays on one side of `bound` inside the interval."""
         claim = f"{expr} {relation} {bound} inside {over}"
@@ -286,7 +270,7 @@ class Proof(Guarded):
                 raise StepError(f"{self.label}: {claim}: {base} may vanish")
         shown_bound = sp.sympify(bound)
         self._record(
-            *(expr, _RELATIONS[relation], shown_bound, reason, "proved", shown),
+            *(expr, _RELATIONS[relation], shown_bound, reason, "proved"),
             exact=False,
             over=over,
         )
@@ -300,7 +284,6 @@ class Proof(Guarded):
         reason: str,
         *,
         cases: tuple[Relational, ...] = (),
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove an inequality from the assumptions on its symbols and from `where` alone.
 
@@ -311,7 +294,7 @@ class Proof(Guarded):
                 self._holds(sp.sympify(lhs - rhs), relation, Said(lhs, relation, rhs))
         shown_rhs = sp.sympify(rhs)
         self._record(
-            *(lhs, _RELATIONS[relation], shown_rhs, reason, "proved", shown),
+            *(lhs, _RELATIONS[relation], shown_rhs, reason, "proved"),
             exact=False,
             cases=cases,
         )
@@ -336,7 +319,6 @@ class Proof(Guarded):
         *,
         surplus: sp.Expr,
         given: tuple[Relational, ...] = (),
-        **shown: Unpack[Shown],
     ) -> None:
         """Prove that `value` is the greatest value of `expr`, and where it is reached.
 
@@ -370,7 +352,7 @@ class Proof(Guarded):
         self._vanish(self._resolve(reached), sp.S.Zero, f"{claim}, reached at {variable} = {at}")
         conditions = (sp.And(*given, evaluate=False),) if given else ()
         self._record(
-            *(value, "=", Greatest(expr, variable), reason, "proved", shown),
+            *(value, "=", Greatest(expr, variable), reason, "proved"),
             exact=False,
             cases=conditions,
         )
@@ -401,9 +383,7 @@ class Proof(Guarded):
                 raise StepError(f"{self.label}: {claim}: {variable} is not known to reach {at}")
 
     @asked
-    def equivalent(
-        self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
-    ) -> None:
+    def equivalent(self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str) -> None:
         """Prove that `nonnegative` >= 0 says the same as lhs >= rhs: their ratio is positive."""
         top, gap = self._resolve(nonnegative), self._resolve(lhs - rhs)
         ratio = sp.cancel(top / gap)
@@ -412,7 +392,7 @@ class Proof(Guarded):
                 f"{self.label}: {lhs} >= {rhs} is not the same as {nonnegative} >= 0: ratio {ratio}"
             )
         self._equally_defined((nonnegative, top), (lhs - rhs, gap), f"{lhs} >= {rhs}")
-        self._record(lhs, r"\ge", rhs, reason, "proved", shown, exact=False)
+        self._record(lhs, r"\ge", rhs, reason, "proved", exact=False)
 
     @asked
     def leading_order(
@@ -425,7 +405,6 @@ class Proof(Guarded):
         *,
         eps: sp.Expr,
         short: bool = False,
-        **shown: Unpack[Shown],
     ) -> tuple[sp.Expr, sp.Expr]:
         """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
 
@@ -451,23 +430,19 @@ class Proof(Guarded):
         for base in demands(sp.cancel(c * parts[1]) if short else c)[0] - {parts[2], variable}:
             if not proves_nonzero(base, self._conditions):
                 self._exclude(base, claim)
-        self._displayed(expr, leading, shown)
         self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
-        factor = shown.get("right") or (
-            rf"\left({tex(leading)}\right)" if leading.is_Add else tex(leading)
-        )
+        factor = rf"\left({tex(leading)}\right)" if leading.is_Add else tex(leading)
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)
-            shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
+            right = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             series = _series(c, eps, k)
-            self._displayed(1 + c * eps**k, sp.S.Zero, {"left": series})
-            shown["right"] = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
+            right = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
         note = rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$"
         fact = self._record(
-            *(expr, "=", leading, reason, "proved-leading-order", shown),
+            *(expr, "=", leading, reason, "proved-leading-order"),
             exact=False,
-            trusted=True,
+            right=right,
             note=note,
         )
         self._leading.setdefault((sp.sympify(expr), sp.sympify(leading)), fact)

@@ -127,7 +127,8 @@ def _lettered(expr: sp.Expr) -> sp.Expr:
     """Write letters for what depends on unknown functions, with their sign."""
     if isinstance(expr, _OPAQUE):
         known = {"positive": proves_positive(expr), "nonnegative": proves_nonnegative(expr)}
-        return sp.Dummy(real=True, **{k: v for k, v in known.items() if v})
+        # Named, so that the order of the letters does not depend on how many there were before.
+        return sp.Dummy(str(expr), real=True, **{k: v for k, v in known.items() if v})
     return expr.func(*map(_lettered, expr.args)) if expr.has(*_OPAQUE) else expr
 
 

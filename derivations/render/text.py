@@ -136,7 +136,8 @@ def blocks(
     """Arrange the steps: premises in sentences, proved steps and the result in lines.
 
     Premises are definitions and steps recalled from elsewhere; those too large for a sentence
-    have a separate line. Long results that were printed `before` are cited, not repeated.
+    have a separate line. Long results that were printed `before` are cited, not repeated; of lines with
+    one reason the first has it.
     """
     printed = [_short(line, before or {}) for line in _lines(derivation)]
     for is_given, group in groupby(printed, key=_is_given):
@@ -144,8 +145,13 @@ def blocks(
         if is_given:
             end = "." if members[-1] is printed[-1] else ","
             yield Given(tuple(line.step for line in members), end)
-        else:
-            yield from members
+            continue
+        last = ""
+        for line in members:
+            step = line.step
+            again = step.reason == last and not (step.source or step.note or step.domain)
+            yield replace(line, step=replace(step, reason="")) if again else line
+            last = step.reason
 
 
 def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:

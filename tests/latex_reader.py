@@ -1,4 +1,4 @@
-r"""Parse displayed mathematics: the displayed relation must be the one that was checked.
+r"""Read printed mathematics back: it must be the expression that was printed.
 
 A parser for the small subset of LaTeX in which the derivations are written: sums, products, fractions,
 powers, roots, functions, derivatives, integrals and values at a point. Anything else is refused.
@@ -40,17 +40,6 @@ _TIME = {"s", "t", "zeta", "sigma"}
 def read(latex: str, names: Mapping[str, Meaning]) -> sp.Expr:
     """Return the expression of one side of a relation."""
     return _Reader(latex, names).whole()
-
-
-def read_chain(latex: str, names: Mapping[str, Meaning]) -> list[sp.Expr]:
-    """Return the sides of a chain of equalities."""
-    links, depth, start = [], 0, 0
-    for match in _TOKEN.finditer(latex):
-        depth += (match[0] in _OPEN) - (match[0] in _CLOSE)
-        if match[0] == "=" and depth == 0:
-            links.append(latex[start : match.start()])
-            start = match.end()
-    return [read(link, names) for link in (*links, latex[start:])]
 
 
 def names_in(*expressions: sp.Expr, tex_of: Mapping[sp.Expr, str]) -> dict[str, Meaning]:
