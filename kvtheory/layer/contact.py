@@ -14,7 +14,7 @@ are solved directly, beyond by GMRES, with convolutions by Fourier transforms th
 cosines across: nothing is periodic.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,10 @@ from scipy.sparse.linalg import LinearOperator, gmres
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-DIRECT = 900
-"""Most cells in contact for which a direct solution is faster."""
+DIRECT, LARGEST = 500, 4500
+"""Cells in contact up to which a direct solution is faster, and up to which it is tried where GMRES fails."""
+STEPS = 40
+"""Steps of GMRES between restarts; 10 to 40 in all are usual."""
 TIGHT = 1e-10
 """Relative residual of GMRES: friction at low velocity is a small difference of pressures."""
 MOST_SETS = 500
@@ -34,13 +36,28 @@ CHANCES = 10
 """Steps in a row that need not reduce the number of wrong cells; after them one cell changes at a time."""
 
 
-class Support(NamedTuple):
-    """A support: a given depth, or a load and a spring that is relaxed at a depth, per unit of pressure."""
+class Balance(NamedTuple):
+    """The balance of a support: share * sum of pressures + spring * depth = due.
 
-    depth: float | None = None
-    load: float = 0.0
-    spring: float = 0.0
-    relaxed_depth: float = 0.0
+    A given depth is the balance of a support without a load: (0, 1, depth).
+    """
+
+    share: float
+    spring: float
+    due: float
+
+    def sum(self, cells: Array, depth: float) -> float:
+        """Return its left side."""
+        return self.share * float(np.sum(cells)) + self.spring * depth
+
+    def per_depth(self, uniform: Array) -> float:
+        """Return its left side for the pressure under a depth of 1."""
+        return self.sum(uniform, 1.0)
+
+    def closed(self, cells: Array, due: float, uniform: Array) -> tuple[Array, float]:
+        """Return pressure and depth, from the pressure at no depth and that under a depth of 1."""
+        depth = (due - self.sum(cells, 0.0)) / self.per_depth(uniform)
+        return cells + depth * uniform, depth
 
 
 class Contact(NamedTuple):
@@ -72,12 +89,19 @@ class Influence:
         if self.folded:
             padded = dct(padded[:, : 2 * m + 1], type=1)[:, :-1]
         self.transformed = rfft(padded, axis=0)
+        self.fading = np.exp(-np.arange(n) / n)[:, None]
+        padded[:n] *= self.fading
+        padded[self.length - n + 1 :] /= self.fading[:0:-1]
+        self.inverse = 1.0 / rfft(padded, axis=0)
 
     def displacement(self, pressure: Array) -> Array:
         """Return the displacement of all cells under a pressure on all cells."""
+        return self._convolved(pressure, self.transformed)
+
+    def _convolved(self, cells: Array, transformed: Any) -> Array:
         n, m = self.shape
-        p = dct(pressure, type=2, n=2 * m) if self.folded else pressure
-        w = irfft(rfft(p, self.length, axis=0) * self.transformed, self.length, axis=0)[:n]
+        p = dct(cells, type=2, n=2 * m) if self.folded else cells
+        w = irfft(rfft(p, self.length, axis=0) * transformed, self.length, axis=0)[:n]
         return idct(w, type=2)[:, :m] if self.folded else w
 
     def matrix(self, active: Flags) -> Array:
@@ -87,56 +111,78 @@ class Influence:
         found = self.whole[along, np.abs(np.subtract.outer(j, j))]
         return found + self.whole[along, np.add.outer(j, j) + 1] if self.folded else found
 
-    def solve(self, active: Flags, right: Array, start: Array) -> Array:
-        """Return pressures, (k, n, m), whose displacements in contact are those of `right`, (k, n, m)."""
-        found = np.zeros_like(right)
-        if np.count_nonzero(active) <= DIRECT:
-            factors = lu_factor(self.matrix(active), overwrite_a=True, check_finite=False)
-            found[:, active] = lu_solve(factors, right[:, active].T, check_finite=False).T
-            return found
-
-        def product(p: Array) -> Array:
-            spread = np.zeros(self.shape)
-            spread[active] = p
-            return self.displacement(spread)[active]
-
+    def solve(self, active: Flags, surface: Array, balance: "Balance", start: "Contact") -> "Contact":
+        """Return the pressure that presses the cells in contact to the surface, and the depth."""
         size = np.count_nonzero(active)
-        operator = LinearOperator((size, size), product, dtype=float)
-        for k, each in enumerate(right):
-            found[k, active], failed = gmres(
-                operator, each[active], start[k, active], rtol=TIGHT, atol=0.0, restart=60, maxiter=20
-            )
-            if failed:
-                raise ArithmeticError("the pressure of the cells in contact was not found by GMRES")
-        return found
+        if size > DIRECT:
+            found = self._iterated(active, surface, balance, start)
+            if found is not None:
+                return found
+        if size > LARGEST:
+            raise ArithmeticError(f"the pressure of {size} cells in contact was not found")
+        factors = lu_factor(self.matrix(active), overwrite_a=True, check_finite=False)
+
+        def pressed(cells: Array) -> Array:
+            return lu_solve(factors, cells, check_finite=False)
+
+        uniform = pressed(np.ones(size))
+        return self._spread(active, *balance.closed(pressed(-surface[active]), balance.due, uniform))
+
+    def _iterated(
+        self, active: Flags, surface: Array, balance: "Balance", start: "Contact"
+    ) -> "Contact | None":
+        """Return the same by GMRES, or None where it does not converge."""
+        size, spread = np.count_nonzero(active), np.zeros(self.shape)
+
+        def pressed(cells: Array) -> Array:
+            spread[active] = cells
+            return (self._convolved(spread * self.fading, self.inverse) / self.fading)[active]
+
+        uniform = pressed(np.ones(size))
+        scale = balance.per_depth(uniform)
+
+        def equations(unknown: Array) -> Array:
+            spread[active], depth = unknown[:-1], unknown[-1]
+            gap = self._convolved(spread, self.transformed)[active] - depth
+            return np.append(gap, balance.sum(unknown[:-1], depth) / scale)
+
+        def nearly_solved(right: Array) -> Array:
+            return np.append(*balance.closed(pressed(right[:-1]), right[-1] * scale, uniform))
+
+        operator, inverse = (
+            LinearOperator((size + 1, size + 1), each, dtype=float)
+            for each in (equations, nearly_solved)
+        )
+        right = np.append(-surface[active], balance.due / scale)
+        begin = np.append(start.pressure[active], start.depth)
+        found, failed = gmres(
+            operator, right, begin, M=inverse, rtol=TIGHT, atol=0.0, restart=STEPS, maxiter=3
+        )
+        return None if failed else self._spread(active, found[:-1], found[-1])
+
+    def _spread(self, active: Flags, cells: Array, depth: float) -> "Contact":
+        pressure = np.zeros(self.shape)
+        pressure[active] = cells
+        return Contact(pressure, float(depth))
 
 
-def unilateral(influence: Influence, height: Array, support: Support, start: Contact) -> Contact:
+def unilateral(influence: Influence, height: Array, balance: Balance, start: Contact) -> Contact:
     """Return the contact of a rigid surface, `height` above its lowest point, from a start nearby.
 
     The height is infinite where there is no surface. Raises ArithmeticError if no set of cells is found.
     """
     surface = np.where(np.isfinite(height), height, 0.0)
-    active, depth, pressure = start.active, start.depth, start.pressure
-    both = np.stack([np.zeros_like(surface)] * 2) if support.depth is None else None
+    active, found = start.active, start
     fewest, chances = active.size + 1, CHANCES
     for _ in range(MOST_SETS):
         if not active.any():
             active = height == height.min()
-        if both is None:
-            depth = float(support.depth or 0.0)
-            pressure = influence.solve(active, (depth - surface)[None], pressure[None])[0]
-        else:
-            both = influence.solve(active, np.stack([np.ones_like(surface), surface]), both)
-            total, lost = (float(np.sum(each)) for each in both)
-            carried = support.load + support.spring * support.relaxed_depth
-            depth = (carried + lost) / (total + support.spring)
-            pressure = depth * both[0] - both[1]
-        gap = influence.displacement(pressure) - depth + height
-        wrong = np.where(active, pressure, gap) < 0.0
+        found = influence.solve(active, surface, balance, found)
+        gap = influence.displacement(found.pressure) - found.depth + height
+        wrong = np.where(active, found.pressure, gap) < 0.0
         count = np.count_nonzero(wrong)
         if count == 0:
-            return Contact(pressure, depth)
+            return found
         chances = CHANCES if count < fewest else chances - 1
         fewest = min(fewest, count)
         if chances < 0:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from kvtheory.layer import compliance, memory
-from kvtheory.layer.contact import Contact, Influence, Support, unilateral
+from kvtheory.layer.contact import Balance, Contact, Influence, unilateral
 from kvtheory.results.errors import ToleranceError
 
 Array = NDArray[np.float64]
@@ -32,6 +32,26 @@ THINNEST = 1.0 / 60.0
 """Thickness in cells below which the influence is not resolved."""
 SAFETY = 1.0
 FINELY = 4
+
+
+class Support(NamedTuple):
+    """A given depth, or a load and a spring that is relaxed at a depth, in SI."""
+
+    depth: float | None = None
+    load: float = 0.0
+    spring: float = 0.0
+    relaxed_depth: float = 0.0
+
+    @property
+    def carried(self) -> float:
+        """The load that the contact would carry at no depth."""
+        return self.load + self.spring * self.relaxed_depth
+
+    def balance(self, unit: float) -> Balance:
+        """Return its balance where a sum of pressures of 1 carries the load `unit`."""
+        if self.depth is not None:
+            return Balance(0.0, 1.0, self.depth)
+        return Balance(1.0, self.spring / unit, self.carried / unit)
 
 
 class Body(NamedTuple):
@@ -162,10 +182,9 @@ class Grid(NamedTuple):
 
     def settled(self, shape: Any, body: Body, velocity: float, support: Support, start: Contact) -> "Found":
         """Return the contact on this grid, or on one that is larger if need be."""
-        unit = self.per_pressure(body)
-        scaled = support._replace(load=support.load / unit, spring=support.spring / unit)
+        balance = support.balance(self.per_pressure(body))
         height = self.height(shape, self.shift(body, velocity))
-        contact = unilateral(self.influence(body, velocity), height, scaled, start)
+        contact = unilateral(self.influence(body, velocity), height, balance, start)
         larger = self.grown(contact)
         return Found(self, contact) if larger is None else larger[0].settled(shape, body, velocity, support, larger[1])
 
@@ -227,7 +246,7 @@ def first_grid(shape: Any, body: Body, depth: float) -> Found:
 
 def depth_under(shape: Any, body: Body, velocity: float, support: Support) -> Found:
     """Return the contact under a support on a coarse grid, from any distance: a secant in the logarithms."""
-    carried = support.load + support.spring * support.relaxed_depth
+    carried = support.carried
     log_depth, tried = math.log(_first_depth(shape, body, carried, support.spring)), []
     for _ in range(60):
         start = first_grid(shape, body, math.exp(log_depth))
