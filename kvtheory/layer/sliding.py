@@ -31,7 +31,10 @@ FINEST = {True: 1600, False: 500}
 THINNEST = 1.0 / 60.0
 """Thickness in cells below which the influence is not resolved."""
 SAFETY = 1.0
+LEVELS = 3
+CONVERGED = "depth", "load", "friction_force"
 FINELY = 4
+IN_PHASE = 0.5
 
 
 class Support(NamedTuple):
@@ -130,16 +133,16 @@ class Grid(NamedTuple):
     def shift(self, body: Body, velocity: float) -> float:
         """Return how far behind their middle the displacement of cells is compared with the surface, in cells.
 
-        Half the phase of the shortest wave of the grid, without which Kelvin-Voigt would not feel that wave.
+        The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a quarter
+        of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
         """
-        if body.creep.glassy:
-            return 0.0
-        return math.copysign(body.creep.phase(math.pi / self.length, abs(velocity)) / math.pi, velocity)
+        lag = body.creep.phase(math.pi / self.length, abs(velocity))
+        return math.copysign(lag / math.pi, velocity) if lag > IN_PHASE else 0.0
 
     def influence(self, body: Body, velocity: float) -> Influence:
         """Return the influence of its cells in sliding at a velocity."""
-        n, m, per_cell = self.last - self.first, self.rows, 1 if body.creep.glassy else FINELY
-        H, nu, shift = body.thickness / self.length, body.poisson_ratio, abs(self.shift(body, velocity))
+        n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
+        H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
         if self.width is None:
             found = compliance.of_line(n + 1, per_cell, shift, H, nu)
         else:
@@ -287,11 +290,27 @@ def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterato
         start = found.finer()
 
 
-def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float = 1e-3) -> Sliding:
-    """Return steady sliding."""
+def slide(
+    shape: Any, body: Body, velocity: float, support: Support, rtol: float = 1e-3
+) -> Sliding:
+    """Return steady sliding, with load or depth and friction to a relative error of `rtol`.
+
+    Raises `ToleranceError` if the finest grid does not reach it, and ValueError for what cannot be computed.
+    """
+    require(shape, body)
     known: list[dict[str, float]] = []
     for found in levels(shape, body, velocity, support):
         known.append(found.values(shape, body, velocity))
-        x = np.flatnonzero(found.contact.active.any(axis=1))
-        print(len(known), found.grid.last-found.grid.first, x[-1]-x[0]+1, known[-1])
-        if x[-1]-x[0]>500: break
+        if len(known) < LEVELS:
+            continue
+        errors = errors_of(known, found.grid.length)
+        if all(errors[name] <= rtol * abs(known[-1][name]) for name in CONVERGED):
+            break
+    return Sliding(**known[-1], errors=errors, x=found.grid.x[:,0], y=found.grid.y, pressure=found.contact.pressure/body.compliance/found.grid.length)
+
+
+def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
+    """Return the errors of the last of the values on three grids or more, the edges to a cell."""
+    last, before, first = (known[-k] for k in (1, 2, 3))
+    changes = {name: max(abs(last[name] - before[name]), 0.25 * abs(before[name] - first[name])) for name in last}
+    return {name: max(SAFETY * change, cell if "edge" in name else 0.0) for name, change in changes.items()}
