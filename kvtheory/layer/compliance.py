@@ -141,7 +141,7 @@ def of_cell(
     """Return the displacement at these distances along x and 0 .. m - 1 cells across from a cell."""
     x, y = _distances(n, per_cell, shift)[:, None], width * np.arange(float(m))
     found = _cell(x, width * np.arange(-0.5, m), 0.0)
-    if H == math.inf:
+    if math.inf == H:
         return _mirrored(found, shift)
     found -= _cell(x, width * np.arange(-0.5, m), 2.0 * H)
     near = np.hypot(x, y) < REACH * H
@@ -161,7 +161,7 @@ def far_away(x: Array, y: Array, H: float, poisson_ratio: float, width: float | 
     if width is None:
         return _line(x.ravel(), H, poisson_ratio, 0.0).reshape(x.shape)
     r = np.hypot(x, y)
-    if H == math.inf:
+    if math.inf == H:
         return width / (2.0 * math.pi) / r
     r = r / H
     closed = _closed_of_point(r)

@@ -50,13 +50,9 @@ class Balance(NamedTuple):
         """Return its left side."""
         return self.share * float(np.sum(cells)) + self.spring * depth
 
-    def per_depth(self, uniform: Array) -> float:
-        """Return its left side for the pressure under a depth of 1."""
-        return self.sum(uniform, 1.0)
-
     def closed(self, cells: Array, due: float, uniform: Array) -> tuple[Array, float]:
         """Return pressure and depth, from the pressure at no depth and that under a depth of 1."""
-        depth = (due - self.sum(cells, 0.0)) / self.per_depth(uniform)
+        depth = (due - self.sum(cells, 0.0)) / self.sum(uniform, 1.0)
         return cells + depth * uniform, depth
 
 
@@ -111,7 +107,9 @@ class Influence:
         found = self.whole[along, np.abs(np.subtract.outer(j, j))]
         return found + self.whole[along, np.add.outer(j, j) + 1] if self.folded else found
 
-    def solve(self, active: Flags, surface: Array, balance: "Balance", start: "Contact") -> "Contact":
+    def solve(
+        self, active: Flags, surface: Array, balance: "Balance", start: "Contact"
+    ) -> "Contact":
         """Return the pressure that presses the cells in contact to the surface, and the depth."""
         size = np.count_nonzero(active)
         if size > DIRECT:
@@ -126,7 +124,9 @@ class Influence:
             return lu_solve(factors, cells, check_finite=False)
 
         uniform = pressed(np.ones(size))
-        return self._spread(active, *balance.closed(pressed(-surface[active]), balance.due, uniform))
+        return self._spread(
+            active, *balance.closed(pressed(-surface[active]), balance.due, uniform)
+        )
 
     def _iterated(
         self, active: Flags, surface: Array, balance: "Balance", start: "Contact"
@@ -139,7 +139,7 @@ class Influence:
             return (self._convolved(spread * self.fading, self.inverse) / self.fading)[active]
 
         uniform = pressed(np.ones(size))
-        scale = balance.per_depth(uniform)
+        scale = balance.sum(uniform, 1.0)
 
         def equations(unknown: Array) -> Array:
             spread[active], depth = unknown[:-1], unknown[-1]

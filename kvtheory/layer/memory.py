@@ -29,7 +29,10 @@ from kvtheory.layer import compliance
 
 Array = NDArray[np.float64]
 
-GAUSS = 0.5 * np.polynomial.legendre.leggauss(20)[0] + 0.5, 0.5 * np.polynomial.legendre.leggauss(20)[1]
+GAUSS = (
+    0.5 * np.polynomial.legendre.leggauss(20)[0] + 0.5,
+    0.5 * np.polynomial.legendre.leggauss(20)[1],
+)
 STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
 """Cells behind the one reached between which the influence is a cubic."""
 INTERPOLATION = np.linalg.inv(np.vander(STENCIL, increasing=True).T)
@@ -65,9 +68,17 @@ class Creep(NamedTuple):
         """Return the creep of a spring beside a damper, which cannot be compressed at once."""
         return cls(np.array([time]), np.ones(1), 0.0)
 
+    def modulus(self, rate: Array) -> Array:
+        """Return E(s)/E_0 at real rates s, in 1/s."""
+        return 1.0 / (
+            self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)
+        )
+
     def phase(self, wave: float, velocity: float) -> float:
         """Return by how many radians the displacement follows the pressure of a moving wave, from 0 to pi/2."""
-        return -float(np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times))))
+        return -float(
+            np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times)))
+        )
 
 
 def moments(z: float) -> Array:
@@ -88,7 +99,9 @@ def filtered(influence: Array, ahead: Array, z: float) -> Array:
     """
     weights = INTERPOLATION @ moments(z)
     n = len(influence)
-    taken = sum(w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True))
+    taken = sum(
+        w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True)
+    )
     decay = math.exp(-z)
     return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=decay * ahead[None])[0]
 
@@ -104,7 +117,14 @@ def average_ahead(n: float, y: Array, z: float, H: float, nu: float, width: floa
 
 
 def influence(
-    elastic: Array, creep: Creep, travelled: Array, per_cell: int, shift: float, H: float, nu: float, width: float | None
+    elastic: Array,
+    creep: Creep,
+    travelled: Array,
+    per_cell: int,
+    shift: float,
+    H: float,
+    nu: float,
+    width: float | None,
 ) -> Array:
     """Return the influence of a cell in sliding, at distances of whole cells, without the first two and last two.
 
@@ -115,7 +135,7 @@ def influence(
     y = (width or 1.0) * np.arange(float(m))
     n = (rows - 1) // 2 / per_cell
     for length, share in zip(travelled, creep.shares, strict=True):
-        ahead = average_ahead(n - 1.0/per_cell - shift, y, 1.0 / length, H, nu, width)
+        ahead = average_ahead(n - 1.0 / per_cell - shift, y, 1.0 / length, H, nu, width)
         average = filtered(elastic, ahead, 1.0 / (length * per_cell))
         found += share * average[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
     return found

@@ -1,0 +1,194 @@
+"""Cells of pressure under the indenter: the contact on one grid, and grids that follow the contact."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.layer import compliance, memory
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.contact import Contact, Influence, unilateral
+from kvtheory.scene.indenters import beside
+
+Array = NDArray[np.float64]
+
+FINELY = 4
+"""Steps in a cell in which the elastic displacement is averaged where its shortest wave matters."""
+IN_PHASE = 0.5
+"""Lag in radians of the shortest wave of a grid up to which it does not matter."""
+HALVINGS = 0.5 ** np.arange(1, 100)
+
+
+class Grid(NamedTuple):
+    """Cells at (i + 1/2) `length`, first <= i < last, and as many across: `rows`, `width` lengths wide."""
+
+    length: float
+    first: int
+    last: int
+    rows: int
+    width: float | None
+
+    @property
+    def x(self) -> Array:
+        """Centres along x, (n, 1)."""
+        return (np.arange(self.first, self.last)[:, None] + 0.5) * self.length
+
+    @property
+    def y(self) -> Array:
+        """Centres across, (m,)."""
+        return (np.arange(self.rows) + 0.5) * (self.width or 0.0) * self.length
+
+    def height(self, shape: Any, shift: float = 0.0) -> Array:
+        """Return the height of a shape above its lowest point, infinite beyond its reach; `shift` in cells."""
+        x, y = np.broadcast_arrays(self.x + shift * self.length, self.y)
+        inside = np.hypot(x, y) < shape.reach
+        found = np.full(x.shape, math.inf)
+        where = (x[inside],) if self.width is None else (x[inside], y[inside])
+        found[inside] = shape.height(*where)
+        return found
+
+    def shift(self, body: Body, velocity: float) -> float:
+        """Return how far behind their middle the displacement of cells is compared with the surface, in cells.
+
+        The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a quarter
+        of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
+        """
+        lag = body.creep.phase(math.pi / self.length, abs(velocity))
+        return math.copysign(lag / math.pi, velocity) if lag > IN_PHASE else 0.0
+
+    def influence(self, body: Body, velocity: float) -> Influence:
+        """Return the influence of its cells in sliding at a velocity."""
+        n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
+        H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
+        if self.width is None:
+            found = compliance.of_line(n + 1, per_cell, shift, H, nu)
+        else:
+            found = compliance.of_cell(n + 1, 2 * m + 1, per_cell, shift, H, nu, self.width)
+        if velocity != 0.0:
+            travelled = abs(velocity) * body.creep.times / self.length
+            found = memory.influence(
+                found, body.creep, travelled, per_cell, shift, H, nu, self.width
+            )
+        return Influence(found if velocity >= 0.0 else found[::-1], n, m)
+
+    def adapted(self, contact: Contact, finer: int) -> tuple["Grid", Contact]:
+        """Return a grid with cells `finer` times shorter around a contact, and the contact on it."""
+        spread = contact.pressure
+        for axis in (0, 1)[: 1 if self.width is None else 2]:
+            spread = np.repeat(spread, finer, axis)
+        i, j = (np.flatnonzero((spread > 0.0).any(axis)) for axis in (1, 0))
+        margin = 2 + (i[-1] - i[0]) // 10
+        low, high = i[0] - margin, i[-1] + 1 + margin
+        rows = 1 if self.width is None else j[-1] + 1 + margin
+        grid = Grid(
+            self.length / finer,
+            self.first * finer + low,
+            self.first * finer + high,
+            rows,
+            self.width,
+        )
+        pressure = np.zeros((high - low, rows))
+        kept = spread[max(low, 0) : high, :rows]
+        pressure[max(-low, 0) :][: len(kept), : kept.shape[1]] = kept
+        return grid, Contact(pressure, contact.depth)
+
+    def grown(self, contact: Contact) -> tuple["Grid", Contact] | None:
+        """Return a larger grid if the contact reaches the rim of this one, and the contact on it."""
+        active = contact.active
+        if not (
+            active[0].any() or active[-1].any() or (self.width is not None and active[:, -1].any())
+        ):
+            return None
+        n, m = (2 + each // 5 for each in active.shape)
+        m = 0 if self.width is None else m
+        larger = self._replace(first=self.first - n, last=self.last + n, rows=self.rows + m)
+        return larger, contact._replace(pressure=np.pad(contact.pressure, ((n, n), (0, m))))
+
+    def per_pressure(self, body: Body) -> float:
+        """Return the load per sum of the pressures of a `Contact`: S p times the length, and half of a ball."""
+        across = 1.0 if self.width is None else 2.0 * self.width * self.length
+        return across / body.compliance
+
+    def settled(
+        self, shape: Any, body: Body, velocity: float, support: Support, start: Contact
+    ) -> "Found":
+        """Return the contact on this grid, or on one that is larger if need be."""
+        balance = support.balance(self.per_pressure(body))
+        height = self.height(shape, self.shift(body, velocity))
+        contact = unilateral(self.influence(body, velocity), height, balance, start)
+        larger = self.grown(contact)
+        return (
+            Found(self, contact)
+            if larger is None
+            else larger[0].settled(shape, body, velocity, support, larger[1])
+        )
+
+
+class Found(NamedTuple):
+    """The contact on a grid."""
+
+    grid: Grid
+    contact: Contact
+
+    def finer(self, factor: int = 2) -> "Found":
+        """Return the start on a grid with cells `factor` times shorter."""
+        return Found(*self.grid.adapted(self.contact, factor))
+
+    def values(self, shape: Any, body: Body, velocity: float) -> dict[str, float]:
+        """Return the quantities of `Sliding` that are numbers, in SI."""
+        grid, pressure = self.grid, self.contact.pressure
+        unit, x = grid.per_pressure(body), grid.x
+        touching = np.flatnonzero(self.contact.active.any(axis=1))
+        at = (x,) if grid.width is None else np.broadcast_arrays(x, grid.y)
+        inside = pressure > 0.0
+        slope = shape.slope(*(np.broadcast_to(each, pressure.shape)[inside] for each in at))
+        load = unit * float(np.sum(pressure))
+        friction = -unit * float(np.sum(pressure[inside] * slope))
+        edges = x[touching[0], 0] - 0.5 * grid.length, x[touching[-1], 0] + 0.5 * grid.length
+        leading, trailing = edges if velocity >= 0.0 else edges[::-1]
+        return {
+            "depth": self.contact.depth, "load": load, "friction_force": friction,
+            "friction_coefficient": friction / load,
+            "leading_edge": float(leading), "trailing_edge": float(trailing),
+            "peak_pressure": math.inf if self.kinked(shape) else self.peak(body, velocity),
+        }  # fmt: skip
+
+    def pressure(self, body: Body) -> Array:
+        """Return the pressure of the cells, in Pa."""
+        return self.contact.pressure / (body.compliance * self.grid.length)
+
+    def peak(self, body: Body, velocity: float) -> float:
+        """Return the highest pressure, in Pa: of the cells, or as it may rise within the first of them.
+
+        Near the leading edge p varies as E(V/x) sqrt(x), E the modulus at the rate at which the material at the
+        distance x was reached. On Kelvin-Voigt this is singular.
+        """
+        cells = self.pressure(body)
+        highest = float(cells.max())
+        if velocity == 0.0:
+            return highest
+        touching = np.flatnonzero(self.contact.active[:, 0])
+        first = cells[touching[0 if velocity > 0.0 else -1], 0]
+        if body.creep.glassy == 0.0:
+            return math.inf
+        rate = abs(velocity) / self.grid.length
+        rise = np.sqrt(HALVINGS) * body.creep.modulus(rate / HALVINGS) / body.creep.modulus(rate)
+        return max(highest, float(first * rise.max()))
+
+    def kinked(self, shape: Any) -> bool:
+        """Whether an edge of the indenter, where its slope jumps, presses on the body: there p is singular."""
+        kinks = np.array(
+            [
+                x
+                for x in shape.kinks
+                if shape.slope(beside(x, math.inf)) != shape.slope(beside(x, -math.inf))
+            ]
+        )
+        touching = self.grid.x[self.contact.active[:, 0]]
+        return bool(
+            np.any(
+                (kinks >= touching.min() - self.grid.length)
+                & (kinks <= touching.max() + self.grid.length)
+            )
+        )
