@@ -71,24 +71,35 @@ class Contact(NamedTuple):
 class Influence:
     """Displacement of n x m cells: influence at the distances -(n - 1) .. n - 1 along x, 0 .. 2 m across.
 
-    A line has one cell across (m = 1) and no mirror image: its influence has one column.
+    A line has one cell across (m = 1) and no mirror image: its influence has one column. So has the loss, the slope of the influence by memory.
     """
 
-    def __init__(self, influence: Array, n: int, m: int) -> None:
+    def __init__(self, influence: Array, loss: Array, n: int, m: int) -> None:
         middle = len(influence) // 2
-        self.shape = n, m
-        self.whole = influence[middle - n + 1 : middle + n]
-        self.folded = influence.shape[1] > 1
+        self.shape, self.folded = (n, m), influence.shape[1] > 1
         self.length = next_fast_len(2 * n - 1, real=True)
-        padded = np.zeros((self.length, self.whole.shape[1]))
-        padded[:n], padded[self.length - n + 1 :] = self.whole[n - 1 :], self.whole[: n - 1]
-        if self.folded:
-            padded = dct(padded[:, : 2 * m + 1], type=1)[:, :-1]
+        near = slice(middle - n + 1, middle + n)
+        self.whole, self.loss = influence[near], loss[near]
+        padded = self._padded(self.whole)
         self.transformed = rfft(padded, axis=0)
         self.fading = np.exp(-np.arange(n) / n)[:, None]
         padded[:n] *= self.fading
         padded[self.length - n + 1 :] /= self.fading[:0:-1]
         self.inverse = 1.0 / rfft(padded, axis=0)
+
+    def _padded(self, whole: Array) -> Array:
+        n, m = self.shape
+        padded = np.zeros((self.length, whole.shape[1]))
+        padded[:n], padded[self.length - n + 1 :] = whole[n - 1 :], whole[: n - 1]
+        return dct(padded[:, : 2 * m + 1], type=1)[:, :-1] if self.folded else padded
+
+    def lost(self, pressure: Array) -> float:
+        """Return the sum of pressure times slope of the surface, in cells: what is lost in a cell of sliding.
+
+        The elastic part of the slope does no work, and is left out: nothing cancels at low velocity.
+        """
+        slope = self._convolved(pressure, rfft(self._padded(self.loss), axis=0))
+        return float(np.sum(pressure * slope))
 
     def displacement(self, pressure: Array) -> Array:
         """Return the displacement of all cells under a pressure on all cells."""

@@ -48,6 +48,15 @@ class Grid(NamedTuple):
         found[inside] = shape.height(*where)
         return found
 
+    def slope(self, shape: Any, inside: Any) -> Array:
+        """Return the slope of a shape along x in the cells `inside`, zero in the others."""
+        x, y = np.broadcast_arrays(self.x, self.y)
+        found = np.zeros(x.shape)
+        found[inside] = shape.slope(
+            *((x[inside],) if self.width is None else (x[inside], y[inside]))
+        )
+        return found
+
     def shift(self, body: Body, velocity: float) -> float:
         """Return how far behind their middle the displacement of cells is compared with the surface, in cells.
 
@@ -65,12 +74,14 @@ class Grid(NamedTuple):
             found = compliance.of_line(n + 1, per_cell, shift, H, nu)
         else:
             found = compliance.of_cell(n + 1, 2 * m + 1, per_cell, shift, H, nu, self.width)
+        loss = np.zeros_like(found)
         if velocity != 0.0:
             travelled = abs(velocity) * body.creep.times / self.length
-            found = memory.influence(
+            found, loss = memory.influence(
                 found, body.creep, travelled, per_cell, shift, H, nu, self.width
             )
-        return Influence(found if velocity >= 0.0 else found[::-1], n, m)
+        forward = slice(None, None, -1 if velocity < 0.0 else None)
+        return Influence(found[forward], loss[forward], n, m)
 
     def adapted(self, contact: Contact, finer: int) -> tuple["Grid", Contact]:
         """Return a grid with cells `finer` times shorter around a contact, and the contact on it."""
@@ -114,22 +125,26 @@ class Grid(NamedTuple):
         self, shape: Any, body: Body, velocity: float, support: Support, start: Contact
     ) -> "Found":
         """Return the contact on this grid, or on one that is larger if need be."""
-        balance = support.balance(self.per_pressure(body))
-        height = self.height(shape, self.shift(body, velocity))
-        contact = unilateral(self.influence(body, velocity), height, balance, start)
+        unit, shift = self.per_pressure(body), self.shift(body, velocity)
+        influence = self.influence(body, velocity)
+        height = self.height(shape, shift)
+        contact = unilateral(influence, height, support.balance(unit), start)
         larger = self.grown(contact)
-        return (
-            Found(self, contact)
-            if larger is None
-            else larger[0].settled(shape, body, velocity, support, larger[1])
-        )
+        if larger is not None:
+            return larger[0].settled(shape, body, velocity, support, larger[1])
+        if shift:
+            friction = -float(np.sum(contact.pressure * self.slope(shape, contact.active)))
+        else:
+            friction = math.copysign(influence.lost(contact.pressure) / self.length, velocity)
+        return Found(self, contact, unit * friction)
 
 
 class Found(NamedTuple):
-    """The contact on a grid."""
+    """The contact on a grid, and its friction force, in SI."""
 
     grid: Grid
     contact: Contact
+    friction: float = 0.0
 
     def finer(self, factor: int = 2) -> "Found":
         """Return the start on a grid with cells `factor` times shorter."""
@@ -137,19 +152,14 @@ class Found(NamedTuple):
 
     def values(self, shape: Any, body: Body, velocity: float) -> dict[str, float]:
         """Return the quantities of `Sliding` that are numbers, in SI."""
-        grid, pressure = self.grid, self.contact.pressure
-        unit, x = grid.per_pressure(body), grid.x
+        grid, x = self.grid, self.grid.x
         touching = np.flatnonzero(self.contact.active.any(axis=1))
-        at = (x,) if grid.width is None else np.broadcast_arrays(x, grid.y)
-        inside = pressure > 0.0
-        slope = shape.slope(*(np.broadcast_to(each, pressure.shape)[inside] for each in at))
-        load = unit * float(np.sum(pressure))
-        friction = -unit * float(np.sum(pressure[inside] * slope))
+        load = grid.per_pressure(body) * float(np.sum(self.contact.pressure))
         edges = x[touching[0], 0] - 0.5 * grid.length, x[touching[-1], 0] + 0.5 * grid.length
         leading, trailing = edges if velocity >= 0.0 else edges[::-1]
         return {
-            "depth": self.contact.depth, "load": load, "friction_force": friction,
-            "friction_coefficient": friction / load,
+            "depth": self.contact.depth, "load": load, "friction_force": self.friction,
+            "friction_coefficient": self.friction / load,
             "leading_edge": float(leading), "trailing_edge": float(trailing),
             "peak_pressure": math.inf if self.kinked(shape) else self.peak(body, velocity),
         }  # fmt: skip
@@ -177,18 +187,10 @@ class Found(NamedTuple):
         return max(highest, float(first * rise.max()))
 
     def kinked(self, shape: Any) -> bool:
-        """Whether an edge of the indenter, where its slope jumps, presses on the body: there p is singular."""
-        kinks = np.array(
-            [
-                x
-                for x in shape.kinks
-                if shape.slope(beside(x, math.inf)) != shape.slope(beside(x, -math.inf))
-            ]
-        )
-        touching = self.grid.x[self.contact.active[:, 0]]
-        return bool(
-            np.any(
-                (kinks >= touching.min() - self.grid.length)
-                & (kinks <= touching.max() + self.grid.length)
-            )
+        """Whether an edge of the indenter, where its slope jumps, presses: there the pressure is singular."""
+        touching, cell = self.grid.x[self.contact.active[:, 0]], self.grid.length
+        return any(
+            touching.min() - cell <= x <= touching.max() + cell
+            and shape.slope(beside(x, math.inf)) != shape.slope(beside(x, -math.inf))
+            for x in shape.kinks
         )

@@ -125,17 +125,22 @@ def influence(
     H: float,
     nu: float,
     width: float | None,
-) -> Array:
-    """Return the influence of a cell in sliding, at distances of whole cells, without the first two and last two.
+) -> tuple[Array, Array]:
+    """Return the influence of a cell in sliding, and its loss, at distances of whole cells.
 
-    `elastic` is that at the distances -n + shift .. n + shift, `travelled` is V theta_k in cells.
+    The first two and the last two are left out. `elastic` is the influence at the distances
+    -n + shift .. n + shift, `travelled` is V theta_k in cells. The loss is the slope of the influence
+    without that of its elastic part, sum c_k (C - e_k)/l_k.
     """
     rows, m = elastic.shape
-    found = creep.glassy * elastic[2 * per_cell : -2 * per_cell : per_cell]
+    whole = elastic[2 * per_cell : -2 * per_cell : per_cell]
+    found, loss = creep.glassy * whole, np.zeros_like(whole)
     y = (width or 1.0) * np.arange(float(m))
     n = (rows - 1) // 2 / per_cell
     for length, share in zip(travelled, creep.shares, strict=True):
         ahead = average_ahead(n - 1.0 / per_cell - shift, y, 1.0 / length, H, nu, width)
         average = filtered(elastic, ahead, 1.0 / (length * per_cell))
-        found += share * average[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
-    return found
+        average = average[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
+        found += share * average
+        loss += share / length * (whole - average)
+    return found, loss

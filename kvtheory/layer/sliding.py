@@ -12,6 +12,7 @@ The errors are those of the grid, of second order in its cells: they follow from
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ Array = NDArray[np.float64]
 
 COARSE = 12
 """Cells along the contact on the first grid, at least."""
-FINEST = {True: 1200, False: 300}
+FINEST = {True: 4000, False: 300}
 """Cells along the contact from which no finer grid follows: of a line, of a ball."""
 THINNEST = 1.0 / 50.0
 """Least thickness in cells: the influence of a cell much longer than the layer is thick is not resolved."""
@@ -149,12 +150,16 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     return found
 
 
-def _unconverged(known: list[dict[str, float]], errors: dict[str, float], velocity: float, rtol: float) -> str:
+def _unconverged(
+    known: list[dict[str, float]], errors: dict[str, float], velocity: float, rtol: float
+) -> str:
     """Return which quantity has too large an error, and how large, or an empty text."""
     names = CONVERGED if velocity else CONVERGED[:-1]
     relative = {name: errors.get(name, math.inf) / (abs(known[-1][name]) or 1.0) for name in names}
     worst = max(names, key=relative.__getitem__)
-    return f"{worst} has a relative error of {relative[worst]:.1e}" if relative[worst] > rtol else ""
+    return (
+        f"{worst} has a relative error of {relative[worst]:.1e}" if relative[worst] > rtol else ""
+    )
 
 
 def _require(shape: Any, body: Body) -> None:
