@@ -37,6 +37,8 @@ REACH = 30.0
 """Thicknesses beyond which a layer does not feel a cell: the influence has fallen to 1e-17."""
 KNOTS = 3001
 """Knots of the spline of the rest under a point: 1e-10 of its largest value."""
+TINY = 1e-150
+"""Instead of zero where zero times a logarithm of it is zero."""
 SERIES = 1.0
 """Below it sinh y - y is summed: its difference would lose digits."""
 
@@ -100,12 +102,17 @@ def _line(x: Array, H: float, poisson_ratio: float, cell: float) -> Array:
 
 def _log_integral(x: Array, b: float) -> Array:
     """Return int log(x^2 + b^2) dx."""
-    return x * np.log(x * x + b * b) - 2.0 * x + (2.0 * b * np.arctan(x / b) if b else 0.0)
+    return (
+        x * np.log(np.maximum(x * x + b * b, TINY))
+        - 2.0 * x
+        + (2.0 * b * np.arctan(x / b) if b else 0.0)
+    )
 
 
 def _box_integral(x: Array, y: Array, b: float) -> Array:
     """Return a double integral of 1/sqrt(x^2 + y^2 + b^2) over x and y, odd in both (Love 1929)."""
-    found = x * np.arcsinh(y / np.hypot(x, b)) + y * np.arcsinh(x / np.hypot(y, b))
+    across, along = (np.arcsinh(v / np.maximum(np.hypot(u, b), TINY)) for u, v in ((x, y), (y, x)))
+    found = x * across + y * along
     return found - (b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b)) if b else 0.0)
 
 
