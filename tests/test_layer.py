@@ -1,6 +1,7 @@
 """The body itself: compliance, memory, contact, and steady sliding on layers and half-spaces."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -135,7 +136,7 @@ def test_memory_averages_what_the_material_has_met(length, H, width):
             np.append(edges, [s for s in x + np.array([-9, -2, -0.5, 0.5, 2]) if 0 < s < edges[-1]])
         )
         expected = 0.0
-        for low, high in zip(edges, edges[1:], strict=False):
+        for low, high in pairwise(edges):
             s = low + (high - low) * (0.5 + 0.5 * nodes)
             values = np.array([met(float(x - each)) for each in s])
             expected += 0.5 * (high - low) * np.sum(weights * np.exp(-s / length) / length * values)
@@ -217,7 +218,14 @@ def test_ball_on_a_layer_and_a_half_space(H, nu, V, W, F):
     assert found.friction_force == pytest.approx(F, rel=5e-3)
 
 
-@pytest.mark.parametrize(("shape", "tolerance"), [(Parabola(radius=R), 2e-3), (PowerLaw(length=R, exponent=4.0), 4e-3), (Circle(radius=R), 2e-3)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("shape", "tolerance"),
+    [
+        (Parabola(radius=R), 2e-3),
+        (PowerLaw(length=R, exponent=4.0), 4e-3),
+        (Circle(radius=R), 2e-3),
+    ],
+)
 def test_thin_layers_are_independent_elements(shape, tolerance):
     H, nu, depth = 2e-5, 0.25, 1e-4  # nu = 1/4: the next term of the compliance vanishes
     foundation = GeneralizedMaxwell(
@@ -349,7 +357,7 @@ def test_what_is_refused():
         slide(waves, rubber(1e-3, 0.3), 0.1, Support(depth=1e-4))
     with pytest.raises(ValueError, match="too thin for this contact"):
         slide(Sphere(radius=R), rubber(1e-8, 0.3), 0.1, Support(depth=1e-4))
-    with pytest.raises(ToleranceError, match="finest grid .* relative error .* above 1e-11"):
+    with pytest.raises(ToleranceError, match=r"finest grid .* relative error .* above 1e-11"):
         slide(Parabola(radius=R), rubber(1e-3, 0.3), 0.01, Support(depth=1e-4), rtol=1e-11)
     springpot = kv.FractionalKelvinVoigt(
         modulus=1e6, thickness=1e-3, poisson_ratio=0.3, retardation_time=0.1, order=0.5

@@ -9,7 +9,7 @@ from kvtheory.layer.memory import Creep
 
 
 class Support(NamedTuple):
-    """A given depth, or a load, and a spring that is relaxed at a depth: by default that at rest under the load.
+    """A given depth, or a load and a spring, relaxed at a depth: by default that at rest under the load.
 
     Loads are in N/m and springs in N/m^2 under a line, in N and N/m under a ball.
     """
@@ -51,7 +51,7 @@ class Body(NamedTuple):
 
     @classmethod
     def of_series(cls, modulus: float, thickness: float, poisson_ratio: float, arms: Any) -> "Body":
-        """Return the body of a Prony series: `arms` are pairs of modulus, in Pa, and relaxation time, in s."""
+        """Return the body of a Prony series: `arms` are pairs of modulus and relaxation time, in SI."""
         moduli, times = np.array(arms, dtype=float).reshape(-1, 2).T
         creep = Creep.of_series(modulus, moduli, times)
         return cls(modulus, thickness, poisson_ratio, creep)

@@ -1,7 +1,7 @@
 r"""The elastic compliance of a bonded layer or a half-space, and the influence of a cell of pressure.
 
-A pressure of wave number k compresses the surface of a layer of thickness H, bonded to a rigid base and without
-friction on its surface, by (fact F30)
+A pressure of wave number k compresses the surface of a layer of thickness H, bonded to a rigid base and
+without friction on its surface, by (fact F30)
 
     w/p = S T(kappa)/k,   S = 2 (1 - nu^2)/E,   kappa = k H,
     T = [(3 - 4 nu) sinh 2 kappa - 2 kappa]/[(3 - 4 nu) cosh 2 kappa + 2 kappa^2 + 5 - 12 nu + 8 nu^2],
@@ -11,8 +11,9 @@ and T = 1 for a half-space. T is split into what has a closed form in x and y an
     T = (1 - e^(-2 kappa)) + (T - 1 + e^(-2 kappa)):
 
 1/k is the logarithm of a line, the 1/r of a point; e^(-2 kappa)/k is the same at the depth 2 H below, an
-image that takes away the far field of the first. Both are integrated over a cell in closed form. The rest vanishes as
-kappa at small wave numbers and as kappa^2 e^(-2 kappa) at large ones; it is integrated by Gauss's rule.
+image that takes away the far field of the first. Both are integrated over a cell in closed form. The rest
+vanishes as kappa at small wave numbers and as kappa^2 e^(-2 kappa) at large ones; it is integrated by
+Gauss's rule.
 
 Cells are 1 long, along x, and `width` wide; lengths are in cells, displacements in S times a length.
 """
@@ -49,7 +50,7 @@ def transform(kappa: Any, poisson_ratio: float) -> Any:
     Without loss of digits at small kappa and Poisson's ratio 1/2, where T falls as kappa^3.
 
     >>> print(f"{transform(1e-3, 0.5):.6g} {transform(1e-3, 0.3) / 1e-3:.6g} {transform(40.0, 0.2):.6g}")
-    6.66666e-10 0.408163 1
+    6.66665e-10 0.408163 1
     """
     nu, kappa = poisson_ratio, np.asarray(kappa, dtype=float)
     y, e = 2.0 * kappa, np.exp(-2.0 * kappa)
@@ -123,7 +124,7 @@ def _cell(x: Array, sides: Array, b: float) -> Array:
 
 
 def _distances(n: int, per_cell: int, shift: float) -> Array:
-    """Return the distances -n + shift .. n + shift in steps of 1/per_cell; without a shift, one half of them."""
+    """Return -n + shift .. n + shift in steps of 1/per_cell; without a shift, one half of them."""
     return np.arange(0 if shift == 0.0 else -n * per_cell, n * per_cell + 1) / per_cell + shift
 
 
@@ -164,7 +165,7 @@ def of_cell(
 
 
 def far_away(x: Array, y: Array, H: float, poisson_ratio: float, width: float | None) -> Array:
-    """Return the displacement far from a cell, or from a strip (`width` None), as under a point or line load."""
+    """Return the displacement far from a cell or a strip (`width` None): that of a point or line load."""
     if width is None:
         return _line(x.ravel(), H, poisson_ratio, 0.0).reshape(x.shape)
     r = np.hypot(x, y)

@@ -1,17 +1,18 @@
 r"""Unilateral contact on a grid of cells: pressure p >= 0, gap >= 0, and one of them zero in each cell.
 
-The displacement is the convolution of the pressure with the influence of a cell, along x in sliding not symmetric.
-Across, a ball is symmetric: only cells at y > 0 are unknown, each with its mirror image. Newton's method on
-the set of cells in contact (semi-smooth, or primal-dual active set): the equations of the cells in contact are
-solved, cells with p < 0 leave, cells with a negative gap enter, until the set stays.
+The displacement is the convolution of the pressure with the influence of a cell, along x in sliding not
+symmetric. Across, a ball is symmetric: only cells at y > 0 are unknown, each with its mirror image.
+Newton's method on the set of cells in contact (semi-smooth, or primal-dual active set): the equations of
+the cells in contact are solved, cells with p < 0 leave, cells with a negative gap enter, until the set
+stays.
 
 The depth is either given or one more unknown, with the balance of forces
 
     sum p = load + spring (relaxed_depth - depth)
 
-as its equation; both are linear in p and the depth, so that no root is sought. Up to `DIRECT` cells the equations
-are solved directly, beyond by GMRES, with convolutions by Fourier transforms that are padded along x and are of
-cosines across: nothing is periodic.
+as its equation; both are linear in p and the depth, so that no root is sought. Up to `DIRECT` cells the
+equations are solved directly, beyond by GMRES, with convolutions by Fourier transforms that are padded
+along x and are of cosines across: nothing is periodic.
 """
 
 from typing import Any, NamedTuple
@@ -71,7 +72,8 @@ class Contact(NamedTuple):
 class Influence:
     """Displacement of n x m cells: influence at the distances -(n - 1) .. n - 1 along x, 0 .. 2 m across.
 
-    A line has one cell across (m = 1) and no mirror image: its influence has one column. So has the loss, the slope of the influence by memory.
+    A line has one cell across (m = 1) and no mirror image: its influence has one column. So has the loss,
+    the slope of the influence by memory.
     """
 
     def __init__(self, influence: Array, loss: Array, n: int, m: int) -> None:

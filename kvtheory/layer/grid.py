@@ -20,6 +20,12 @@ IN_PHASE = 0.5
 HALVINGS = 0.5 ** np.arange(1, 100)
 
 
+def rounded(size: int) -> int:
+    """Return a size with three binary digits, not below the given one, so that grids share influences."""
+    step = 1 << max(size.bit_length() - 3, 0)
+    return -(-size // step) * step
+
+
 class Grid(NamedTuple):
     """Cells at (i + 1/2) `length`, first <= i < last, and as many across: `rows`, `width` lengths wide."""
 
@@ -40,7 +46,7 @@ class Grid(NamedTuple):
         return (np.arange(self.rows) + 0.5) * (self.width or 0.0) * self.length
 
     def height(self, shape: Any, shift: float = 0.0) -> Array:
-        """Return the height of a shape above its lowest point, infinite beyond its reach; `shift` in cells."""
+        """Return the height of a shape, infinite beyond its reach; `shift` is in cells."""
         x, y = np.broadcast_arrays(self.x + shift * self.length, self.y)
         inside = np.hypot(x, y) < shape.reach
         found = np.full(x.shape, math.inf)
@@ -58,10 +64,10 @@ class Grid(NamedTuple):
         return found
 
     def shift(self, body: Body, velocity: float) -> float:
-        """Return how far behind their middle the displacement of cells is compared with the surface, in cells.
+        """Return how far behind their middle cells are compared with the indenter, in cells.
 
-        The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a quarter
-        of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
+        The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a
+        quarter of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
         """
         lag = body.creep.phase(math.pi / self.length, abs(velocity))
         return math.copysign(lag / math.pi, velocity) if lag > IN_PHASE else 0.0
@@ -71,9 +77,10 @@ class Grid(NamedTuple):
         n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
         H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
         if self.width is None:
-            found = compliance.of_line(n + 1, per_cell, shift, H, nu)
+            found = compliance.of_line(rounded(n + 1), per_cell, shift, H, nu)
         else:
-            found = compliance.of_cell(n + 1, 2 * m + 1, per_cell, shift, H, nu, self.width)
+            sizes = rounded(n + 1), rounded(2 * m + 1)
+            found = compliance.of_cell(*sizes, per_cell, shift, H, nu, self.width)
         loss = np.zeros_like(found)
         if velocity != 0.0:
             travelled = abs(velocity) * body.creep.times / self.length
@@ -89,9 +96,9 @@ class Grid(NamedTuple):
         for axis in (0, 1)[: 1 if self.width is None else 2]:
             spread = np.repeat(spread, finer, axis)
         i, j = (np.flatnonzero((spread > 0.0).any(axis)) for axis in (1, 0))
-        margin = 2 + (i[-1] - i[0]) // 10
-        low, high = i[0] - margin, i[-1] + 1 + margin
-        rows = 1 if self.width is None else j[-1] + 1 + margin
+        margin = 2 + int(i[-1] - i[0]) // 10
+        low, high = int(i[0]) - margin, int(i[-1]) + 1 + margin
+        rows = 1 if self.width is None else int(j[-1]) + 1 + margin
         grid = Grid(
             self.length / finer,
             self.first * finer + low,
@@ -117,7 +124,7 @@ class Grid(NamedTuple):
         return larger, contact._replace(pressure=np.pad(contact.pressure, ((n, n), (0, m))))
 
     def per_pressure(self, body: Body) -> float:
-        """Return the load per sum of the pressures of a `Contact`: S p times the length, and half of a ball."""
+        """Return the load for each unit of the sum of pressures of a `Contact`."""
         across = 1.0 if self.width is None else 2.0 * self.width * self.length
         return across / body.compliance
 
@@ -171,8 +178,8 @@ class Found(NamedTuple):
     def peak(self, body: Body, velocity: float) -> float:
         """Return the highest pressure, in Pa: of the cells, or as it may rise within the first of them.
 
-        Near the leading edge p varies as E(V/x) sqrt(x), E the modulus at the rate at which the material at the
-        distance x was reached. On Kelvin-Voigt this is singular.
+        Near the leading edge p varies as E(V/x) sqrt(x), E the modulus at the rate at which the material at
+        the distance x was reached. On Kelvin-Voigt this is singular.
         """
         cells = self.pressure(body)
         highest = float(cells.max())

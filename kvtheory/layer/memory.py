@@ -1,21 +1,22 @@
 r"""The memory of the body in steady sliding, as a filter along x.
 
 With Poisson's ratio constant in time, the surface is displaced by the elastic influence, with the relaxed
-modulus E_0, of the pressure filtered in time by E_0 J(t), J the creep compliance. In sliding at V, time is distance
-along x. The creep compliance of a Prony series, E(s) = E_0 + sum E_i tau_i s/(1 + tau_i s), is
+modulus E_0, of the pressure filtered in time by E_0 J(t), J the creep compliance. In sliding at V, time is
+distance along x. The creep compliance of a Prony series, E(s) = E_0 + sum E_i tau_i s/(1 + tau_i s), is
 
     E_0/E(s) = E_0/E_g + sum c_k/(1 + theta_k s),   E_0/E_g + sum c_k = 1:
 
-the retardation times theta_k, one longer than each relaxation time, and their shares c_k > 0 follow from the
-singular values and left vectors of the matrix of square roots of tau_i above a row of the roots of E_i tau_i/E_0,
+the retardation times theta_k, one longer than each relaxation time, and their shares c_k > 0 follow from
+the singular values and left vectors of the matrix of square roots of tau_i above a row of the roots of E_i
+tau_i/E_0,
 
     theta_k = sigma_k^2,   c_k = (last entry of u_k)^2,
 
 without a root that could be missed. Kelvin-Voigt has theta = tau, c = 1.
 
-Each retardation time averages what the material has met, e(x) = int_0^oo e^(-s/l) C(x - s) ds/l, l = V theta.
-From cell to cell the average decays by e^(-1/l) and takes up the integral over one cell, in which C is a cubic through
-four cells; where the cells begin, it is a quadrature over all that lies ahead.
+Each retardation time averages what the material has met, e(x) = int_0^oo e^(-s/l) C(x - s) ds/l, l = V
+theta. From cell to cell the average decays by e^(-1/l) and takes up the integral over one cell, in which C
+is a cubic through four cells; where the cells begin, it is a quadrature over all that lies ahead.
 """
 
 import math
@@ -75,7 +76,7 @@ class Creep(NamedTuple):
         )
 
     def phase(self, wave: float, velocity: float) -> float:
-        """Return by how many radians the displacement follows the pressure of a moving wave, from 0 to pi/2."""
+        """Return by how many radians the displacement lags the pressure of a moving wave, 0 to pi/2."""
         return -float(
             np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times)))
         )

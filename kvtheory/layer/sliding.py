@@ -1,12 +1,14 @@
 r"""Steady sliding of a rigid indenter on a viscoelastic layer or half-space, by boundary elements.
 
-The frame is that of the indenter; the body moves through it along +x with V > 0, so that the leading edge is at
-x < 0. The cells are centred at (i + 1/2) times their length, symmetric about the lowest point: at rest there is no
-friction, and at low velocity it is not drowned by that of the grid. Cells become shorter by factors of two, and the
-contact on each grid is the start of the next. Their lengths are powers of sqrt(2) of the thickness, so
-that velocities and scenes share grids, hence elastic influences, which are kept.
+The frame is that of the indenter; the body moves through it along +x with V > 0, so that the leading edge
+is at x < 0. The cells are centred at (i + 1/2) times their length, symmetric about the lowest point: at
+rest there is no friction, and at low velocity it is not drowned by that of the grid. Cells become shorter
+by factors of two, and the contact on each grid is the start of the next. Their lengths are powers of
+sqrt(2) of the thickness, so that velocities and scenes share grids, hence elastic influences, which are
+kept.
 
-The errors are those of the grid, of second order in its cells: they follow from the changes between the last three.
+The errors are those of the grid, of second order in its cells: they follow from the changes between the
+last three.
 """
 
 import math
@@ -46,8 +48,9 @@ CLOSE = 0.1
 class Sliding:
     """Steady sliding on the body itself: SI values, their errors by name, and the pressure (x, y) on a grid.
 
-    Forces are per width under a line. Of a ball the grid is that of y > 0; the other half is its mirror image.
-    An infinite `peak_pressure` is one: on Kelvin-Voigt where the surface enters, or under an edge of the indenter.
+    Forces are per width under a line. Of a ball the grid is that of y > 0; the other half is its mirror
+    image. The peak pressure is infinite on Kelvin-Voigt, where the surface enters, and under an edge of the
+    indenter; elsewhere it may rise within the first cell, which is allowed for.
     """
 
     depth: float
@@ -64,10 +67,10 @@ class Sliding:
 
 
 def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float = 1e-3) -> Sliding:
-    """Return steady sliding at a velocity in m/s, with depth, load and friction to a relative error of `rtol`.
+    """Return steady sliding at a velocity in m/s: depth, load and friction to a relative error `rtol`.
 
-    `shape` is a convex one of `kvtheory.scene.indenters`, a line or a ball. Raises ValueError for what the method
-    does not cover, and `ToleranceError` if the finest grid does not reach the tolerance.
+    `shape` is a convex one of `kvtheory.scene.indenters`, a line or a ball. Raises ValueError for what the
+    method does not cover, and `ToleranceError` if the finest grid does not reach the tolerance.
 
     >>> from kvtheory.scene.indenters import Parabola
     >>> rubber = Body.of_series(1e6, 1e-3, 0.49, [(4e6, 0.02)])
