@@ -26,7 +26,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-DIRECT, LARGEST = 500, 4500
+DIRECT, LARGEST = 500, 3500
 """Cells in contact up to which a direct solution is faster, and up to which it is tried where GMRES fails."""
 STEPS = 40
 """Steps of GMRES between restarts; 10 to 40 in all are usual."""
@@ -193,7 +193,7 @@ def unilateral(influence: Influence, height: Array, balance: Balance, start: Con
         found = influence.solve(active, surface, balance, found)
         gap = influence.displacement(found.pressure) - found.depth + height
         wrong = np.where(active, found.pressure, gap) < 0.0
-        count = np.count_nonzero(wrong)
+        count = int(np.count_nonzero(wrong))
         if count == 0:
             return found
         chances = CHANCES if count < fewest else chances - 1

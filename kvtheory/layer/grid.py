@@ -38,12 +38,12 @@ class Grid(NamedTuple):
     @property
     def x(self) -> Array:
         """Centres along x, (n, 1)."""
-        return (np.arange(self.first, self.last)[:, None] + 0.5) * self.length
+        return (np.arange(self.first, self.last, dtype=float)[:, None] + 0.5) * self.length
 
     @property
     def y(self) -> Array:
         """Centres across, (m,)."""
-        return (np.arange(self.rows) + 0.5) * (self.width or 0.0) * self.length
+        return (np.arange(self.rows, dtype=float) + 0.5) * (self.width or 0.0) * self.length
 
     def height(self, shape: Any, shift: float = 0.0) -> Array:
         """Return the height of a shape, infinite beyond its reach; `shift` is in cells."""

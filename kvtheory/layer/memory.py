@@ -20,7 +20,7 @@ is a cubic through four cells; where the cells begin, it is a quadrature over al
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +69,7 @@ class Creep(NamedTuple):
         """Return the creep of a spring beside a damper, which cannot be compressed at once."""
         return cls(np.array([time]), np.ones(1), 0.0)
 
-    def modulus(self, rate: Array) -> Array:
+    def modulus(self, rate: Any) -> Any:
         """Return E(s)/E_0 at real rates s, in 1/s."""
         return 1.0 / (
             self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)

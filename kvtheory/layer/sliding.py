@@ -119,7 +119,7 @@ def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterato
     while cells < FINEST[shape.per_width]:
         found = start.grid.settled(shape, body, velocity, support, start.contact)
         yield found
-        cells = np.count_nonzero(found.contact.active.any(axis=1))
+        cells = int(np.count_nonzero(found.contact.active.any(axis=1)))
         start = found.finer()
 
 
