@@ -1,0 +1,176 @@
+r"""The elastic compliance of a bonded layer or a half-space, and the influence of a cell of pressure.
+
+A pressure of wave number k compresses the surface of a layer of thickness H, bonded to a rigid base and
+without friction on its surface, by (fact F30)
+
+    w/p = S T(kappa)/k,   S = 2 (1 - nu^2)/E,   kappa = k H,
+    T = [(3 - 4 nu) sinh 2 kappa - 2 kappa]/[(3 - 4 nu) cosh 2 kappa + 2 kappa^2 + 5 - 12 nu + 8 nu^2],
+
+and T = 1 for a half-space. T is split into what has a closed form in x and y and a smooth rest,
+
+    T = (1 - e^(-2 kappa)) + (T - 1 + e^(-2 kappa)):
+
+1/k is the logarithm of a line, the 1/r of a point; e^(-2 kappa)/k is the same at the depth 2 H below, an
+image that takes away the far field of the first. Both are integrated over a cell in closed form. The rest
+vanishes as kappa at small wave numbers and as kappa^2 e^(-2 kappa) at large ones; it is integrated by
+Gauss's rule.
+
+Cells are 1 long, along x, and `width` wide; lengths are in cells, displacements in S times a length.
+"""
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.special import j0
+
+Array = NDArray[np.float64]
+
+NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(24))
+NODES = 0.5 + NODES
+KAPPA = (np.arange(24)[:, None] + NODES).ravel()
+"""Nodes over 0 < kappa < 24, where the rest has fallen to 1e-17."""
+PER_KAPPA = np.tile(WEIGHTS, 24)
+REACH = 30.0
+"""Thicknesses beyond which a layer does not feel a cell: the influence has fallen to 1e-17."""
+KNOTS = 3001
+"""Knots of the spline of the rest under a point: 1e-10 of its largest value."""
+TINY = 1e-150
+"""Instead of zero where zero times a logarithm of it is zero."""
+SERIES = 1.0
+"""Below it sinh y - y is summed: its difference would lose digits."""
+
+
+def transform(kappa: Any, poisson_ratio: float) -> Any:
+    """Return T(kappa) of a bonded layer (F30), for numbers or arrays above 0.
+
+    Without loss of digits at small kappa and Poisson's ratio 1/2, where T falls as kappa^3.
+
+    >>> print(f"{transform(1e-3, 0.5):.6g} {transform(1e-3, 0.3) / 1e-3:.6g} {transform(40.0, 0.2):.6g}")
+    6.66665e-10 0.408163 1
+    """
+    nu, kappa = poisson_ratio, np.asarray(kappa, dtype=float)
+    y, e = 2.0 * kappa, np.exp(-2.0 * kappa)
+    small = np.minimum(y, SERIES)
+    series = sum(small ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(1, 9))
+    excess = np.where(y < SERIES, series * e, 0.5 * (1.0 - e * e) - y * e)
+    top = (2.0 - 4.0 * nu) * 0.5 * -np.expm1(-2.0 * y) + excess
+    bottom = (3.0 - 4.0 * nu) * 0.5 * (1.0 + e * e)
+    return top / (bottom + (2.0 * kappa**2 + 5.0 - 12.0 * nu + 8.0 * nu**2) * e)
+
+
+def _rest(poisson_ratio: float) -> Array:
+    """Return the rest, T - 1 + e^(-2 kappa), at `KAPPA`, times the weights of the rule."""
+    return (transform(KAPPA, poisson_ratio) + np.expm1(-2.0 * KAPPA)) * PER_KAPPA
+
+
+@lru_cache(maxsize=16)
+def _spline(poisson_ratio: float) -> CubicSpline:
+    """Return 1/(2 pi) int (T - 1 + e^(-2 kappa)) J_0(kappa r) d kappa."""
+    r = np.linspace(0.0, REACH, KNOTS)
+    rest = _rest(poisson_ratio) / (2.0 * math.pi)
+    values = np.concatenate([j0(np.outer(part, KAPPA)) @ rest for part in np.array_split(r, 16)])
+    return CubicSpline(r, values)
+
+
+def _closed_of_point(r: Array) -> Array:
+    """Return the displacement at r thicknesses from a point load and its image."""
+    return (1.0 / r - 1.0 / np.hypot(r, 2.0)) / (2.0 * math.pi)
+
+
+def _rest_of_point(r: Array, poisson_ratio: float) -> Array:
+    """Return the rest at r thicknesses from a point load; far away it takes away the closed part."""
+    near = _spline(poisson_ratio)(np.minimum(r, REACH))
+    return np.where(r < REACH, near, -_closed_of_point(np.maximum(r, REACH)))
+
+
+def _line(x: Array, H: float, poisson_ratio: float, cell: float) -> Array:
+    """Return the displacement at distances x from a strip of one cell (`cell` = 1), or a line load (0)."""
+    near, k = np.abs(x) < REACH * H, KAPPA / H
+    found, at = np.zeros(x.shape), x[near]
+    spectrum = _rest(poisson_ratio) / KAPPA / math.pi * np.sinc(cell * k / (2.0 * math.pi))
+    if cell:
+        closed = sum(sign * (_log_integral(at + 0.5, b) - _log_integral(at - 0.5, b))
+                     for sign, b in ((1.0, 2.0 * H), (-1.0, 0.0)))  # fmt: skip
+    else:
+        closed = np.log1p((2.0 * H / at) ** 2)
+    found[near] = closed / (2.0 * math.pi) + np.cos(np.outer(at, k)) @ spectrum
+    return found
+
+
+def _log_integral(x: Array, b: float) -> Array:
+    """Return int log(x^2 + b^2) dx."""
+    return (
+        x * np.log(np.maximum(x * x + b * b, TINY))
+        - 2.0 * x
+        + (2.0 * b * np.arctan(x / b) if b else 0.0)
+    )
+
+
+def _box_integral(x: Array, y: Array, b: float) -> Array:
+    """Return a double integral of 1/sqrt(x^2 + y^2 + b^2) over x and y, odd in both (Love 1929)."""
+    across, along = (np.arcsinh(v / np.maximum(np.hypot(u, b), TINY)) for u, v in ((x, y), (y, x)))
+    found = x * across + y * along
+    return found - (b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b)) if b else 0.0)
+
+
+def _cell(x: Array, sides: Array, b: float) -> Array:
+    """Return the displacement at the depth b below at x, (n, 1), from the cells between `sides` across."""
+    before, after = (_box_integral(x + side, sides, b) for side in (-0.5, 0.5))
+    return np.diff(after - before, axis=1) / (2.0 * math.pi)
+
+
+def _distances(n: int, per_cell: int, shift: float) -> Array:
+    """Return -n + shift .. n + shift in steps of 1/per_cell; without a shift, one half of them."""
+    return np.arange(0 if shift == 0.0 else -n * per_cell, n * per_cell + 1) / per_cell + shift
+
+
+def _mirrored(found: Array, shift: float) -> Array:
+    return np.concatenate([found[:0:-1], found]) if shift == 0.0 else found
+
+
+@lru_cache(maxsize=32)
+def of_line(n: int, per_cell: int, shift: float, H: float, poisson_ratio: float) -> Array:
+    """Return the displacement at -n + shift .. n + shift, in steps of 1/per_cell, from a strip of one cell.
+
+    Of shape (2 n per_cell + 1, 1); H is finite: the logarithm of the half-plane has no depth.
+    """
+    x = _distances(n, per_cell, shift)
+    return _mirrored(_line(x, H, poisson_ratio, 1.0), shift)[:, None]
+
+
+@lru_cache(maxsize=8)
+def of_cell(
+    n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float
+) -> Array:
+    """Return the displacement at these distances along x and 0 .. m - 1 cells across from a cell."""
+    x, y = _distances(n, per_cell, shift)[:, None], width * np.arange(float(m))
+    found = _cell(x, width * np.arange(-0.5, m), 0.0)
+    if math.inf == H:
+        return _mirrored(found, shift)
+    found -= _cell(x, width * np.arange(-0.5, m), 2.0 * H)
+    near = np.hypot(x, y) < REACH * H
+    rows, columns = near.any(axis=1), int(np.count_nonzero(near.any(axis=0)))
+    at, rest = x[rows], np.zeros((np.count_nonzero(rows), columns))
+    points = [np.polynomial.legendre.leggauss(3 + int(3.0 * step / H)) for step in (1.0, width)]
+    for u, along in zip(*points[0], strict=True):
+        for v, across in zip(*points[1], strict=True):
+            r = np.hypot(at + 0.5 * u, y[:columns] + 0.5 * v * width) / H
+            rest += 0.25 * along * across * width / H * _rest_of_point(r, poisson_ratio)
+    found[rows, :columns] += rest
+    return _mirrored(np.where(near, found, 0.0), shift)
+
+
+def far_away(x: Array, y: Array, H: float, poisson_ratio: float, width: float | None) -> Array:
+    """Return the displacement far from a cell or a strip (`width` None): that of a point or line load."""
+    if width is None:
+        return _line(x.ravel(), H, poisson_ratio, 0.0).reshape(x.shape)
+    r = np.hypot(x, y)
+    if math.inf == H:
+        return width / (2.0 * math.pi) / r
+    r = r / H
+    closed = _closed_of_point(r)
+    return width / H * (closed + _rest_of_point(r, poisson_ratio))

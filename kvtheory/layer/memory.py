@@ -1,0 +1,147 @@
+r"""The memory of the body in steady sliding, as a filter along x.
+
+With Poisson's ratio constant in time, the surface is displaced by the elastic influence, with the relaxed
+modulus E_0, of the pressure filtered in time by E_0 J(t), J the creep compliance. In sliding at V, time is
+distance along x. The creep compliance of a Prony series, E(s) = E_0 + sum E_i tau_i s/(1 + tau_i s), is
+
+    E_0/E(s) = E_0/E_g + sum c_k/(1 + theta_k s),   E_0/E_g + sum c_k = 1:
+
+the retardation times theta_k, one longer than each relaxation time, and their shares c_k > 0 follow from
+the singular values and left vectors of the matrix of square roots of tau_i above a row of the roots of E_i
+tau_i/E_0,
+
+    theta_k = sigma_k^2,   c_k = (last entry of u_k)^2,
+
+without a root that could be missed. Kelvin-Voigt has theta = tau, c = 1.
+
+Each retardation time averages what the material has met, e(x) = int_0^oo e^(-s/l) C(x - s) ds/l, l = V
+theta. From cell to cell the average decays by e^(-1/l) and takes up the integral over one cell, in which C
+is a cubic through four cells; where the cells begin, it is a quadrature over all that lies ahead.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from kvtheory.layer import compliance
+
+Array = NDArray[np.float64]
+
+GAUSS = (
+    0.5 * np.polynomial.legendre.leggauss(20)[0] + 0.5,
+    0.5 * np.polynomial.legendre.leggauss(20)[1],
+)
+STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
+"""Cells behind the one reached between which the influence is a cubic."""
+INTERPOLATION = np.linalg.inv(np.vander(STENCIL, increasing=True).T)
+LARGE = 2.0
+"""Decay in a cell from which the moments follow by recurrence, which would lose digits below."""
+FORGOTTEN = 40.0
+"""Decay after which nothing is remembered."""
+PANELS = 2.0 ** np.arange(60) - 0.5
+
+
+class Creep(NamedTuple):
+    """Retardation times theta_k, in s, their shares c_k of the relaxed compliance, and E_0/E_g."""
+
+    times: Array
+    shares: Array
+    glassy: float
+
+    @classmethod
+    def of_series(cls, modulus: float, moduli: Array, times: Array) -> "Creep":
+        """Return the creep of a Prony series: relaxed modulus, and modulus and time of each arm.
+
+        >>> creep = Creep.of_series(1.0, np.array([4.0]), np.array([0.02]))
+        >>> [round(float(np.sum(each)), 12) for each in creep]
+        [0.1, 0.8, 0.2]
+        """
+        rows = np.vstack([np.diag(np.sqrt(times)), np.sqrt(moduli * times / modulus)])
+        left, sigma, _ = np.linalg.svd(rows, full_matrices=False)
+        shares = left[-1] ** 2
+        return cls(sigma**2, shares, modulus / (modulus + float(np.sum(moduli))))
+
+    @classmethod
+    def kelvin_voigt(cls, time: float) -> "Creep":
+        """Return the creep of a spring beside a damper, which cannot be compressed at once."""
+        return cls(np.array([time]), np.ones(1), 0.0)
+
+    def modulus(self, rate: Any) -> Any:
+        """Return E(s)/E_0 at real rates s, in 1/s."""
+        return 1.0 / (
+            self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)
+        )
+
+    def phase(self, wave: float, velocity: float) -> float:
+        """Return by how many radians the displacement lags the pressure of a moving wave, 0 to pi/2."""
+        return -float(
+            np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times)))
+        )
+
+
+def moments(z: float) -> Array:
+    """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3."""
+    if z < LARGE:
+        t, weight = GAUSS
+        return np.array([np.sum(weight * z * np.exp(-z * t) * t**n) for n in range(4)])
+    found = [-math.expm1(-z)]
+    for n in range(1, 4):
+        found.append(n / z * found[-1] - math.exp(-z))
+    return np.array(found)
+
+
+def filtered(influence: Array, ahead: Array, z: float) -> Array:
+    """Return the average e of an influence over cells along x, without the first two and the last.
+
+    `ahead` is e at the second cell, and z = 1/l the decay in a cell.
+    """
+    weights = INTERPOLATION @ moments(z)
+    n = len(influence)
+    taken = sum(
+        w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True)
+    )
+    decay = math.exp(-z)
+    return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=decay * ahead[None])[0]
+
+
+def average_ahead(n: float, y: Array, z: float, H: float, nu: float, width: float | None) -> Array:
+    """Return e at the distance n ahead of a cell, for each distance y across."""
+    edges = min(1.0 / z, n) * np.concatenate([[0.0], PANELS])
+    edges = edges[: 1 + np.searchsorted(edges * z, FORGOTTEN)]
+    t, weight = GAUSS
+    s = (edges[:-1, None] + np.diff(edges)[:, None] * t).ravel()
+    weights = np.outer(np.diff(edges), weight).ravel() * z * np.exp(-z * s)
+    return weights @ compliance.far_away(n + s[:, None], y, H, nu, width)
+
+
+def influence(
+    elastic: Array,
+    creep: Creep,
+    travelled: Array,
+    per_cell: int,
+    shift: float,
+    H: float,
+    nu: float,
+    width: float | None,
+) -> tuple[Array, Array]:
+    """Return the influence of a cell in sliding, and its loss, at distances of whole cells.
+
+    The first two and the last two are left out. `elastic` is the influence at the distances
+    -n + shift .. n + shift, `travelled` is V theta_k in cells. The loss is the slope of the influence
+    without that of its elastic part, sum c_k (C - e_k)/l_k.
+    """
+    rows, m = elastic.shape
+    whole = elastic[2 * per_cell : -2 * per_cell : per_cell]
+    found, loss = creep.glassy * whole, np.zeros_like(whole)
+    y = (width or 1.0) * np.arange(float(m))
+    n = (rows - 1) // 2 / per_cell
+    for length, share in zip(travelled, creep.shares, strict=True):
+        ahead = average_ahead(n - 1.0 / per_cell - shift, y, 1.0 / length, H, nu, width)
+        average = filtered(elastic, ahead, 1.0 / (length * per_cell))
+        average = average[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
+        found += share * average
+        loss += share / length * (whole - average)
+    return found, loss

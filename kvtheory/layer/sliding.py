@@ -1,0 +1,251 @@
+r"""Steady sliding of a rigid indenter on a viscoelastic layer or half-space, by boundary elements.
+
+The frame is that of the indenter; the body moves through it along +x with V > 0, so that the leading edge
+is at x < 0. The cells are centred at (i + 1/2) times their length, symmetric about the lowest point: at
+rest there is no friction, and at low velocity it is not drowned by that of the grid. Cells become shorter
+by factors of two, and the contact on each grid is the start of the next. Their lengths are powers of
+sqrt(2) of the thickness, so that velocities and scenes share grids, hence elastic influences, which are
+kept.
+
+The errors are those of the grid, of second order in its cells: they follow from the changes between the
+last three.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from kvtheory.layer import compliance
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.contact import Contact
+from kvtheory.layer.grid import Found, Grid
+from kvtheory.results.errors import ToleranceError
+
+Array = NDArray[np.float64]
+
+COARSE = 12
+"""Cells along the contact on the first grid, at least."""
+FINEST = {True: 4000, False: 300}
+"""Cells along the contact from which no finer grid follows: of a line, of a ball."""
+THINNEST = 1.0 / 50.0
+"""Least thickness in cells: the influence of a cell much longer than the layer is thick is not resolved."""
+LEVELS = 3
+"""Grids from which an error follows."""
+SAFETY, SLOWEST = 2.0, 0.95
+"""Safety of the errors, and largest ratio of successive changes that is taken for convergence."""
+CONVERGED = "depth", "load", "friction_force"
+CLOSE = 0.1
+"""Difference of the logarithms of loads at which a depth is close to that of a load."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Steady sliding on the body itself: SI values, their errors by name, and the pressure (x, y) on a grid.
+
+    Forces are per width under a line. Of a ball the grid is that of y > 0; the other half is its mirror
+    image. The peak pressure is infinite on Kelvin-Voigt, where the surface enters, and under an edge of the
+    indenter; elsewhere it may rise within the first cell, which is allowed for.
+    """
+
+    depth: float
+    load: float
+    friction_force: float
+    friction_coefficient: float
+    leading_edge: float
+    trailing_edge: float
+    peak_pressure: float
+    errors: dict[str, float]
+    x: Array
+    y: Array
+    pressure: Array
+
+
+def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float = 1e-3) -> Sliding:
+    """Return steady sliding at a velocity in m/s: depth, load and friction to a relative error `rtol`.
+
+    `shape` is a convex one of `kvtheory.scene.indenters`, a line or a ball. Raises ValueError for what the
+    method does not cover, and `ToleranceError` if the finest grid does not reach the tolerance.
+
+    >>> from kvtheory.scene.indenters import Parabola
+    >>> rubber = Body.of_series(1e6, 1e-3, 0.49, [(4e6, 0.02)])
+    >>> found = slide(Parabola(radius=0.01), rubber, 0.05, Support(depth=1e-4))
+    >>> print(f"{found.load:.4g} N/m, {found.friction_coefficient:.4f}")
+    2320 N/m, 0.0367
+    """
+    _require(shape, body)
+    if support.spring and support.relaxed_depth is None:
+        at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
+        support = support._replace(relaxed_depth=at_rest.depth)
+    known: list[dict[str, float]] = []
+    errors: dict[str, float] = {}
+    grids, wrong = levels(shape, body, velocity, support), "not begun"
+    while wrong and (found := _next(grids, known)):
+        known.append(found.values(shape, body, velocity))
+        finest = found
+        if len(known) >= LEVELS:
+            errors = errors_of(known, found.grid.length)
+        wrong = _unconverged(known, errors, velocity, rtol)
+    if wrong:
+        raise ToleranceError(f"on the finest grid {wrong}, above {rtol:g}")
+    grid = finest.grid
+    return Sliding(
+        **known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=finest.pressure(body)
+    )
+
+
+def slide_at(
+    shape: Any, body: Body, velocities: Iterable[float], support: Support, rtol: float = 1e-3
+) -> list[Sliding]:
+    """Return steady sliding at several velocities: elastic influences and the depth at rest are shared."""
+    if support.spring and support.relaxed_depth is None:
+        at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
+        support = support._replace(relaxed_depth=at_rest.depth)
+    return [slide(shape, body, velocity, support, rtol) for velocity in velocities]
+
+
+def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterator[Found]:
+    """Yield the contact on grids of cells that become shorter by a factor of two, up to the finest."""
+    if support.depth is None:
+        start = depth_under(shape, body, velocity, support)
+    else:
+        start = first_grid(shape, body, support.depth)
+    cells = 0
+    while cells < FINEST[shape.per_width]:
+        found = start.grid.settled(shape, body, velocity, support, start.contact)
+        yield found
+        cells = int(np.count_nonzero(found.contact.active.any(axis=1)))
+        start = found.finer()
+
+
+def _next(grids: Iterator[Found], known: list[dict[str, float]]) -> Found | None:
+    """Return the contact on the next grid, or None if there is no finer one on which it can be found."""
+    try:
+        return next(grids, None)
+    except ArithmeticError:
+        if not known:
+            raise
+        return None
+
+
+def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
+    """Return the errors of the last of values on three grids or more; that of an edge is at least a cell.
+
+    The larger of the last two changes counts, as one may be small by chance: the ends of the contact
+    jump from cell to cell. Changes that fall by a factor r from grid to grid add up to r/(1 - r) of
+    the last one; r is the smaller of the last two ratios, where there are two.
+    """
+    found = {}
+    for name, last in known[-1].items():
+        changes = [abs(late[name] - early[name]) for early, late in pairwise(known[-LEVELS - 1 :])]
+        if math.isinf(last):
+            found[name] = 0.0
+            continue
+        ratios = [late / early if early else 0.0 for early, late in pairwise(changes)]
+        ratio = min(*ratios, SLOWEST)
+        error = SAFETY * max(changes[-2:]) * max(1.0, ratio / (1.0 - ratio))
+        found[name] = max(error, cell if name.endswith("edge") else 0.0)
+    return found
+
+
+def _unconverged(
+    known: list[dict[str, float]], errors: dict[str, float], velocity: float, rtol: float
+) -> str:
+    """Return which quantity has too large an error, and how large, or an empty text."""
+    names = CONVERGED if velocity else CONVERGED[:-1]
+    relative = {name: errors.get(name, math.inf) / (abs(known[-1][name]) or 1.0) for name in names}
+    worst = max(names, key=relative.__getitem__)
+    return (
+        f"{worst} has a relative error of {relative[worst]:.1e}" if relative[worst] > rtol else ""
+    )
+
+
+def _require(shape: Any, body: Body) -> None:
+    """Raise ValueError for what boundary elements do not cover."""
+    if shape.per_width and math.isinf(body.thickness):
+        raise ValueError(
+            "a line on a half-space has no depth; expected a finite thickness, or a ball"
+        )
+    if not 0.0 <= body.poisson_ratio <= 0.5:
+        raise ValueError(f"`poisson_ratio` = {body.poisson_ratio:g}: expected from 0 to 0.5")
+
+
+def half_length(shape: Any, depth: float) -> float:
+    """Return |x| where the surface is as high as the depth, on the farther side of the lowest point."""
+    found = []
+    for side in (-1.0, 1.0):
+        far = min(depth, 0.5 * shape.reach)
+        inner = shape.reach * (1.0 - 1e-12)
+        while far < inner and shape.height(side * far) < depth:
+            far = min(2.0 * far, inner)
+        above = shape.height(side * far) - depth
+        if above > 0.0:
+            far = brentq(
+                lambda x, side=side: shape.height(side * x) - depth, 0.0, far, xtol=1e-6 * far
+            )
+        found.append(far)
+    return max(found)
+
+
+def first_grid(shape: Any, body: Body, depth: float) -> Found:
+    """Return a coarse grid for a contact at a depth, and all cells below the surface in contact."""
+    a, H = half_length(shape, depth), body.thickness
+    base = 1.0 if math.isinf(H) else H
+    length = base * 2.0 ** (math.floor(2.0 * math.log2(2.0 * a / COARSE / base)) / 2.0)
+    length = min(length, H / THINNEST)
+    n = math.ceil(a / length) + 2
+    if n > FINEST[shape.per_width]:
+        message = "is too thin for this contact; expected independent elements of its stiffness"
+        raise ValueError(f"`thickness` = {H:g} m {message}")
+    width = None if shape.per_width else float(shape.stretch)
+    grid = Grid(length, -n, n, 1 if width is None else n, width)
+    _require_convex(shape, grid.x[:, 0])
+    return Found(grid, Contact(np.where(grid.height(shape) < depth, 1.0, 0.0), depth))
+
+
+def _require_convex(shape: Any, x: Array) -> None:
+    """Raise ValueError if the slope of a shape falls somewhere: it may have more than one contact."""
+    slopes = shape.slope(x[np.abs(x) < shape.reach])
+    if np.any(np.diff(slopes) < -1e-9 * np.abs(slopes).max()):
+        raise ValueError(
+            f"{shape.words} is not convex, as it has to be here: its contact may not be one"
+        )
+
+
+def depth_under(shape: Any, body: Body, velocity: float, support: Support) -> Found:
+    """Return the contact at nearly the depth of a support on a coarse grid: a secant in the logarithms."""
+    log_depth = math.log(_first_depth(shape, body, support))
+    slope, tried = 1.5, (0.0, 0.0)
+    for _ in range(60):
+        depth = math.exp(log_depth)
+        start = first_grid(shape, body, depth)
+        found = start.grid.settled(shape, body, velocity, Support(depth), start.contact)
+        load = found.values(shape, body, velocity)["load"] + support.spring * depth
+        excess = math.log(load / support.carried)
+        if abs(excess) < CLOSE:
+            return found
+        if log_depth != tried[0] != 0.0:
+            slope = min(max((excess - tried[1]) / (log_depth - tried[0]), 0.7), 4.0)
+        tried = log_depth, excess
+        log_depth -= excess / slope
+    raise ArithmeticError("no depth was found that carries the load")
+
+
+def _first_depth(shape: Any, body: Body, support: Support) -> float:
+    """Return a depth of the order of that which carries a load: a wave of the length of the contact."""
+
+    def excess(log_depth: float) -> float:
+        depth = math.exp(log_depth)
+        a = half_length(shape, depth)
+        area = 2.0 * a if shape.per_width else math.pi * a * a * shape.stretch
+        kappa = min(body.thickness / a, 1e3)
+        T = float(compliance.transform(kappa, body.poisson_ratio))
+        load = area * depth / (body.compliance * T * a) + support.spring * depth
+        return math.log(load / support.carried)
+
+    return math.exp(brentq(excess, -60.0, 20.0, xtol=0.1))
