@@ -33,7 +33,7 @@ FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
 """Elements per m assumed if none are given: the paper's 200 /mm, within these numbers of elements per static
 half length, of which Table 1 has the larger one."""
 MARGIN = 1.4
-"""Margin on the spacing assumed, and with it on the paper's step, or read from an even sawtooth."""
+"""Margin on the spacing assumed or read from an even sawtooth; and on the error of a spring by the step."""
 UNKNOWN_STEP = 0.25
 """Longest time step assumed if none is given, in fast time constants, the sampling interval if longer; and in
 periods over 2 pi of the mass on its spring."""
@@ -84,8 +84,7 @@ def resolution(theory: Theory, series: Series, per_length: float | None) -> Reso
     half, scheme = theory.static.half_length, SCHEME_ROWS.get(series.scheme or "")
     spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
     speed, span = theory.motion.highest_speed, float(series.time[-1] - series.time[0])
-    wider = spacing if given else MARGIN * spacing
-    step = 2.0 * wider / speed if speed else span / MOST_STEPS
+    step = 2.0 * spacing / speed if speed else span / MOST_STEPS
     if series.time_step is not None:
         return Resolution(spacing, float(series.time_step), bool(given), True)
     paper = scheme is not None and scheme.papers_step and bool(given)
@@ -155,7 +154,7 @@ def allowance(
         lagging += C * _unfollowed(theory, (now, before, after), (low, high), known, order)
     smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), (drift, late), fine)
     if not theory.scene.drive.rigid:
-        step = fine.time_step if first_order else 0.0
+        step = fine.time_step * (1.0 if fine.step_known else MARGIN) if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
     few = np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL  # as driven
