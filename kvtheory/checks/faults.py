@@ -79,9 +79,9 @@ def parameters_of(scene: Scene) -> Iterator[Parameter]:
         if len(keys) > 1:
             words = " (that of the first arm, the others alike)"
             yield Parameter(f"all {symbol}_i", dict.fromkeys(keys, 1.0), words)
-    known = {key for each in PARAMETERS for key in each.powers}
+    listed = {key for each in PARAMETERS for key in each.powers}
     for name in scene.foundation.own:  # of a law that is not listed above
-        if (key := f"foundation.{name}") in values and key not in known:
+        if (key := f"foundation.{name}") in values and key not in listed:
             yield Parameter(name.replace("_", " "), {key: 1.0})
 
 
