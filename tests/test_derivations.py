@@ -87,7 +87,16 @@ PROVED = {
 }
 """Those of them that rest on nothing but what they recall."""
 LIMITS = {
-    *("F2", "F4-low", "F4-high", "F16", "F10-turn", "F10-instant-limits"),
+    *("F2", "F4-low", "F4-high", "F16", "F10-turn", "F10-instant-limits", "F19-high"),
+    *(
+        "F33",
+        "F33-low",
+        "F33-high",
+        "F33-critical",
+        "F33-critical-weight",
+        "F33-free",
+        "F33-forces",
+    ),
     *("element-mean-force", "element-fit", "element-orders", "element-arms"),
 }
 """Results that are proved, and those of leading order."""

@@ -1,4 +1,4 @@
-"""Derivations F23, F26 and F27: the proved expressions against the law of elements, and numbers."""
+"""Derivations F23, F26, F27 and F33: the proved expressions against the law of elements, and numbers."""
 
 from itertools import pairwise
 

@@ -137,8 +137,8 @@ def _peak_pressure(proof: Proof) -> None:
         n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
     )
     proof.define(P_max, form, "its height in one form")
-    for case, height in ((l < 1, 1 + l**2), (l > 1, 2 * l)):
-        proof.equal(form, height, "as it is there", cases=(case,))
+    proof.equal(form, 1 + l**2, "inside the contact", cases=(l < 1,))
+    proof.equal(form, 2 * l, "at the leading edge", cases=(l > 1,))
     proof.done(P_max, form)
 
 
