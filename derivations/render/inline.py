@@ -23,6 +23,8 @@ _STAYS = re.compile(
 )
 """What takes in all that follows it."""
 _ACCENTS = (
+    r"\mathsf",
+    r"\mathbf",
     r"\sqrt",
     r"\bar",
     r"\hat",
