@@ -219,7 +219,7 @@ def _unconditional(proof: Proof) -> None:
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
     proof.equal(
         MOTION.subs(_D, 2 * _w / (1 - _w)),
-        (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
+        sum(each / (1 - _w) ** 2 for each in (lead * _w**2, middle * _w, zeroth)),
         r"at $D = 2 w/(1 - w)$ it is $(c_2 w^2 + c_1 w + c_0)/(1 - w)^2$: the outside of the unit "
         "circle becomes a half plane",
     )

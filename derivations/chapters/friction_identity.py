@@ -60,24 +60,16 @@ def _instant(proof: Proof) -> None:
         *(-x / R * p, slope * p / K + l_r / R * p,
           r"the integrand of Eq. (15); the first term is $p\, p'/K$"),
     )  # fmt: skip
-    level = K * delta_t + C * depth_rate
-
-    def moment(power: int, place: sp.Expr) -> sp.Expr:
-        """Return the antiderivative of x**power times the pressure."""
-        terms = (level, 0), (-C * V / R, 1), (-K / (2 * R), 2)
-        return sum(
-            factor * place ** (power + order + 1) / (power + order + 1) for factor, order in terms
-        )
-
+    terms = (K * delta_t + C * depth_rate, 0), (-C * V / R, 1), (-K / (2 * R), 2)
     for force, power, factor, density, reason in (
-        (F_z, 0, sp.S.One, p, "for a dense row, a polynomial of the edges"),
-        (F_x, 1, -1 / R, -h(x).diff(x) * p, "and along the foundation"),
+        (F_z, 1, sp.S.One, p, "for a dense row, a polynomial of the edges"),
+        (F_x, 2, -1 / R, -h(x).diff(x) * p, "and along the foundation"),
     ):
         proof.recall("dense-row", force)
-        values = factor * (moment(power, x_te) - moment(power, x_le))
-        proof.integral(
-            force, density, steady.CONTACT, factor * moment(power, x), reason, value=values
-        )
+        parts = [(factor * each / (power + order), power + order) for each, order in terms]
+        primitive = sum(part * x**n for part, n in parts)
+        value = sum(part * (x_te**n - x_le**n) for part, n in parts)
+        proof.integral(force, density, steady.CONTACT, primitive, reason, value=value)
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")
     proof.define(p_te, sp.Subs(p, x, x_te), "at the trailing edge")
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)

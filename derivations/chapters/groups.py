@@ -116,8 +116,8 @@ def _lengths(proof: Proof) -> None:
     ):
         changed = sp.Subs(law, (R, x), (R * units[R], x * units[x]))
         proof.equal(changed, unit * law, reason)
-    given = [each for each in units if pressure.has(each)]
-    changed = sp.Subs(pressure, given, [each * units[each] for each in given])
+    scaled = {each: each * unit for each, unit in units.items()}
+    changed = pressure.subs(scaled, simultaneous=True)
     proof.equal(changed, _N / _X * pressure, "the pressure keeps its form")
     proof.recall("pressure-moving", p)
     proof.recall("eq22", tau)

@@ -170,7 +170,7 @@ def _leading_edge(proof: Proof) -> None:
     proof.recall("eq29")
     proof.recall("pressure")
     proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
-    proof.equal(p.subs(x, -a), C * V * a / R, "positive, so the contact begins")
+    proof.equal(sp.Subs(p, x, -a), C * V * a / R, "positive, so the contact begins")
     s = sp.Symbol("s", positive=True)
     reason = r"ahead of it, at $x = -a (1 + s)$, this is $(\delta - h)/\delta$: no contact"
     proof.sign(1 - (1 + s) ** 2, "<", 0, (s, 0, sp.oo), reason)
@@ -186,8 +186,8 @@ def _trailing_edge(proof: Proof) -> None:
     proof.recall("eq28")
     proof.recall("pressure")
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$")
-    proof.equal(p.subs(x, -a), K * l_r * a / R, "positive at the leading edge")
-    proof.equal(p.subs(x, a), -K * l_r * a / R, "negative at $x = a$")
+    proof.equal(sp.Subs(p, x, -a), K * l_r * a / R, "positive at the leading edge")
+    proof.equal(sp.Subs(p, x, a), -K * l_r * a / R, "negative at $x = a$")
     proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
                over=(x, -a, sp.oo), name=x_te)  # fmt: skip
 

@@ -186,7 +186,7 @@ def _energy(proof: Proof) -> None:
     proof.equal(
         *(sp.Derivative(moving, time), -_speed * f_normal, "kinetic energy, weight and spring"),
     )  # fmt: skip
-    balance = sp.Derivative(moving + stored + energy, time) + lost + 2 * energy
+    balance = sp.Derivative(moving + energy, time) + sp.Derivative(stored, time) + lost + 2 * energy
     proof.equal(lam * f_friction, balance, "the sum of the three contributions")
 
 

@@ -260,17 +260,12 @@ def _turning(proof: Proof) -> None:
     lost = 2 * rho * (1 + drop * zeta) * (peel - peel.subs(zeta, sigma))
     since = (zeta, sigma, _h)
     primitive = sp.integrate(sp.expand(lost), zeta)
-    value = (
-        rho
-        * c
-        * (_h - sigma) ** 2
-        * (
-            (_h + 2 * sigma) / 3
-            + bend * (_h**2 + 2 * _h * sigma + 3 * sigma**2) / 4
-            + drop * (_h + sigma) ** 2 / 4
-            + bend * drop * (2 * _h**3 + 4 * _h**2 * sigma + 6 * _h * sigma**2 + 3 * sigma**3) / 10
-        )
-    )
+    width = _h - sigma
+    value = rho * c * width**2 * (_h + 2 * sigma) / 3
+    value += rho * c * bend * width**2 * (_h**2 + 2 * _h * sigma + 3 * sigma**2) / 4
+    value += rho * c * drop * (_h**2 - sigma**2) ** 2 / 4
+    powers = 2 * _h**3 + 4 * _h**2 * sigma + 6 * _h * sigma**2 + 3 * sigma**3
+    value += rho * c * bend * drop * width**2 * powers / 10
     proof.integral(
         sp.Integral(lost, since), lost, since, primitive, "pressure since then", value=value
     )

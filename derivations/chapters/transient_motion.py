@@ -128,7 +128,7 @@ def _derivatives(proof: Proof) -> None:
                 (weight * PRESSURE).subs(xi, end) * sp.Derivative(end, variable)
                 for end in ends.values()
             )
-            slope = share * (inside + ahead - behind)
+            slope = share * inside + share * ahead - share * behind
             proof.equal(sp.Derivative(force, variable), slope, "moving ends")
     proof.recall("F10-touch")
     proof.recall("F11-edges")

@@ -23,6 +23,8 @@ _STAYS = re.compile(
 )
 """What takes in all that follows it."""
 _ACCENTS = (
+    r"\mathsf",
+    r"\mathbf",
     r"\sqrt",
     r"\bar",
     r"\hat",
@@ -142,7 +144,8 @@ def _is_sum(latex: str) -> bool:
 
 
 def _bracketed(latex: str) -> str:
-    return f"({latex})" if _is_sum(latex) else latex
+    divided = any(text == "/" for _, text in _tokens(latex))
+    return f"({latex})" if divided or _is_sum(latex) else latex
 
 
 def _factors(latex: str) -> list[str]:
