@@ -22,8 +22,8 @@ from scipy.interpolate import RectBivariateSpline
 
 Array = NDArray[np.float64]
 
-RELATIVE_ERROR = 1e-2
-"""Of a load from the table: twice the largest found between its entries, which is near H = 0.15 a."""
+RELATIVE_ERROR = 2e-3
+"""Of a load from the table: more than twice the largest found between its entries, which is near H = 0.15 a."""
 
 
 @cache
