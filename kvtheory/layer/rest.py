@@ -23,7 +23,7 @@ from scipy.interpolate import RectBivariateSpline
 Array = NDArray[np.float64]
 
 RELATIVE_ERROR = 2e-3
-"""Of a load from the table: more than twice the largest found between its entries, which is near H = 0.15 a."""
+"""Of a load from the table: more than twice the largest found between its entries, near H = 0.15 a."""
 
 
 @cache
