@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.layer import Body, Support, compliance, memory, slide, slide_at
+from kvtheory.layer import Body, Support, compliance, load_at_rest, memory, rest, slide, slide_at
 from kvtheory.layer.sliding import first_grid, levels
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.foundations import GeneralizedMaxwell
@@ -376,3 +376,22 @@ def test_an_edge_presses_without_bound_and_grids_are_shared():
         for depth in (1e-4, 1.02e-4)
     ]
     assert lengths[0] == lengths[1]
+
+
+def test_loads_at_rest_of_the_table():
+    """Between its entries, against boundary elements, in the limit of a half-space, and in arrays."""
+    rng = np.random.default_rng(3)
+    for _ in range(6):
+        per_width, nu = bool(rng.integers(2)), float(rng.choice([0.5, 0.495, rng.uniform(0, 0.5)]))
+        H = math.sqrt(2 * R * 1e-4) * 10 ** rng.uniform(-0.8, 1.5)
+        shape = Parabola(radius=R) if per_width else Sphere(radius=R)
+        found = load_at_rest(1e-4, R, 1e6, H, nu, per_width=per_width)
+        expected = slide(shape, rubber(H, nu), 0.0, Support(depth=1e-4), rtol=3e-3)
+        allowed = rest.RELATIVE_ERROR + expected.errors["load"] / expected.load
+        assert float(found) == pytest.approx(expected.load, rel=allowed)
+    thick, space = load_at_rest(1e-4, R, 1e6, [0.13, math.inf], 0.3, per_width=False)
+    assert 1.0 < thick / space < 1.02
+    depths = np.geomspace(1e-5, 1e-3, 1000)
+    assert np.all(np.diff(load_at_rest(depths, R, 1e6, 3e-3, 0.49, per_width=True)) > 0.0)
+    with pytest.raises(ValueError, match=r"from 0.1 to 100"):
+        load_at_rest(1e-4, R, 1e6, math.inf, 0.3, per_width=True)
