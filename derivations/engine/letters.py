@@ -46,6 +46,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "True circle": _CIRCLE,
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
     "Transient: theorems": {
+        "X_e": r"X_{\mathrm{e}}",
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
     },
     "A drive with a spring": {
@@ -88,7 +89,6 @@ BY_LABEL: dict[str, dict[str, str]] = {
         **_STEP,
         **_PASSED,
         "c": r"c_{\mathrm{t}}",
-        "X_e": r"X_{\mathrm{e}}",
         "k": r"\bar k",
         "y": r"\bar y",
         "k_1": r"\bar k_1",
