@@ -28,7 +28,7 @@ _TALL = sp.Integral, sp.Sum, sp.Product, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
 _CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
 _MOST_PRIMES = 3
-_MOST_TERMS, _MOST_CHARACTERS = 5, 240
+_MOST_TERMS, _MOST_CHARACTERS = 5, 160
 """Of a sum in a bracket of its own: in a longer one a line could not be broken."""
 _ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check|math[a-z]+) ?\{?")
 
