@@ -171,9 +171,11 @@ def _bent(proof: Proof) -> None:
     proof.recall("element-trapezoids", lacks)
     proof.recall("element-kink", (added, KINK + END))
     due = area - _spacing * _inside / 2 + lacks - added
-    rest = 2 * _slope * (4 * _share**3 - 6 * _share**2 + 1)
-    rest -= _spacing * _bend * (2 * _share**4 - 4 * _share**3 + 2 * _share - 1)
+    rest = (
+        2 * _slope * (4 * _share**3 - 6 * _share**2 + 1),
+        -_spacing * _bend * (2 * _share**4 - 4 * _share**3 + 2 * _share - 1),
+    )
     rises = 2 * _slope + _spacing * _bend * (1 - 2 * _share)
     proof.where(rises > 0, "the overlap grows inward")
-    result = -(_spacing**3) * _bend * rest / (24 * rises)
+    result = sum(-(_spacing**3) * _bend * each / (24 * rises) for each in rest)
     proof.equal(due, result, "the exact value less that of the scheme")

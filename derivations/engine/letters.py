@@ -47,6 +47,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "Ball": {"s": r"\hat a"},
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
     "Transient: theorems": {
+        "X_e": r"X_{\mathrm{e}}",
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
     },
     "A drive with a spring": {
@@ -89,7 +90,6 @@ BY_LABEL: dict[str, dict[str, str]] = {
         **_STEP,
         **_PASSED,
         "c": r"c_{\mathrm{t}}",
-        "X_e": r"X_{\mathrm{e}}",
         "k": r"\bar k",
         "y": r"\bar y",
         "k_1": r"\bar k_1",

@@ -28,7 +28,7 @@ _TALL = sp.Integral, sp.Sum, sp.Product, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
 _CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
 _MOST_PRIMES = 3
-_MOST_TERMS, _MOST_OPERATIONS = 5, 60
+_MOST_TERMS, _MOST_CHARACTERS = 5, 160
 """Of a sum in a bracket of its own: in a longer one a line could not be broken."""
 _ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check|math[a-z]+) ?\{?")
 
@@ -117,7 +117,7 @@ class Printer(LatexPrinter):
 
     def _print_Add(self, expr: sp.Add, order: Any = None) -> str:  # noqa: N802
         content, rest = _primitive(expr)
-        short = len(expr.args) <= _MOST_TERMS and expr.count_ops() <= _MOST_OPERATIONS
+        short = len(expr.args) <= _MOST_TERMS and len(self._sum(rest)) <= _MOST_CHARACTERS
         if abs(content) != 1 and short:
             return self._product(content, [rest])
         return self._sum(expr)
@@ -236,11 +236,11 @@ class Printer(LatexPrinter):
         ):
             return sign + self._factor(upper[0], alone=False)
         if lower or bottom > 1:
-            above, below = (
+            over, under = (
                 self._within("fraction", each, lambda part: self._line(*part))
                 for each in ((top, upper), (bottom, lower))
             )
-            line = rf"\frac{{{above or '1'}}}{{{below}}}"
+            line = rf"\frac{{{over or '1'}}}{{{under}}}"
         else:
             line = self._line(top, upper)
         return sign + (" ".join(part for part in (line, *beside) if part) or "1")
