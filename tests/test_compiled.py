@@ -93,6 +93,39 @@ def test_kernels_are_compiled_where_the_work_that_is_left_pays_for_it(
     assert kernel.later == 0.0
 
 
+@pytest.mark.parametrize(("on_arms", "step"), [(True, 12e-3), (False, 1e-3)])
+def test_a_run_asks_for_compiled_kernels_once_it_has_cost_as_much_as_to_load_them(
+    on_arms, step, monkeypatch
+):
+    """An attempted step takes so long on a slow machine; and it is said that kernels are compiled."""
+    kernel = trajectory.KERNEL if on_arms else compiled.KERNEL
+    kernels = trajectory.evaluation if on_arms else compiled.bulk
+    perform, clock = kernels.perform, [0.0]
+
+    def timed(task, *given):
+        clock[0] += step * next(attempts for attempts in given if isinstance(attempts, int))
+        return perform(task, *given)
+
+    def stop(share, words):
+        if words == COMPILING:
+            raise TimeoutError(words)
+
+    monkeypatch.setattr(kernels, "perform", timed)
+    for known in (compilation, compiled):
+        monkeypatch.setattr(known, "thread_time", lambda: clock[0])
+    for name, value in {"pace": lambda: 1.0, "available": lambda: True}.items():
+        monkeypatch.setattr(compilation, name, value)
+    for name, value in {
+        "compiled": None, "spent": 0.0, "on_disk": True, "_loaded": lambda _: None
+    }.items():  # fmt: skip
+        monkeypatch.setattr(kernel, name, value)
+    arms = {"foundation": kv.GeneralizedMaxwell("5 GN/m^3", arms=[("5 GN/m^3", "20 ms")])}
+    with pytest.raises(TimeoutError, match=COMPILING):
+        for _ in range(20):
+            kv.transient(kv.Scene(**arms if on_arms else {}), rtol=1e-9, progress=stop)
+    assert compilation.LOADING / compilation.ENOUGH <= kernel.spent < 1.15 * compilation.LOADING
+
+
 def test_interpreted_work_is_counted_and_that_of_compiled_kernels_is_not(monkeypatch):
     monkeypatch.setattr(compiled.KERNEL, "spent", 0.0)
     monkeypatch.setattr(compiled.KERNEL, "compiled", None)
