@@ -40,7 +40,7 @@ Array = NDArray[np.float64]
 
 STEP_LIMIT = 300_000
 ATTEMPTS = 100
-"""Attempted steps between two reports, interpreted: short beside loading kernels, as that is decided there."""
+"""Interpreted steps attempted between two reports: short beside loading kernels, as that is decided there."""
 REASONS = {
     r_.STUCK: "the step length went to zero",
     r_.INCONSISTENT: "no consistent state of the edges",

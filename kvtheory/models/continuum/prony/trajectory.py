@@ -47,7 +47,7 @@ Array = NDArray[np.float64]
 
 STEP_LIMIT = 30_000
 ATTEMPTS = 10
-"""Attempted steps between two reports, interpreted: short beside loading kernels, as that is decided there."""
+"""Interpreted steps attempted between two reports: short beside loading kernels, as that is decided there."""
 SECONDS = 22.0
 """Time to compile, once per installation."""
 EVALUATED = 50
