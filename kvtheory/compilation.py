@@ -51,11 +51,15 @@ def available() -> bool:
 def _imported() -> bool:
     try:
         import numba
-    except Exception as error:  # of a numba that does not fit NumPy, Python or its libraries
+
+        config: Any = numba.config
+        switched_off = bool(config.DISABLE_JIT)
+    except (
+        Exception
+    ) as error:  # it does not fit NumPy, Python or its libraries, or is another folder
         warn_unusable(f"numba cannot be imported ({_in_a_line(error)})", FITTING)
         return False
-    config: Any = numba.config
-    if config.DISABLE_JIT:
+    if switched_off:
         warn_unusable("numba is switched off by NUMBA_DISABLE_JIT", "unset this variable")
         return False
     return True
@@ -148,7 +152,7 @@ def pace() -> float:
             total += i * 0.5
         return thread_time() - begun
 
-    return min(measured() for _ in range(3)) / LOOP_TIME
+    return min(measured() for _ in range(10)) / LOOP_TIME
 
 
 class Kernel:

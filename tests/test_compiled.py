@@ -1,5 +1,6 @@
 """Compiled and interpreted kernels: one source, the same numbers to the last bit."""
 
+import collections
 import errno
 import importlib
 import os
@@ -91,6 +92,39 @@ def test_kernels_are_compiled_where_the_work_that_is_left_pays_for_it(
     with kernel.followed_by(later):
         assert kernel.worthwhile(left, most) is wanted
     assert kernel.later == 0.0
+
+
+@pytest.mark.parametrize(("on_arms", "step"), [(True, 12e-3), (False, 1e-3)])
+def test_a_run_asks_for_compiled_kernels_once_it_has_cost_as_much_as_to_load_them(
+    on_arms, step, monkeypatch
+):
+    """An attempted step takes so long on a slow machine; and it is said that kernels are compiled."""
+    kernel = trajectory.KERNEL if on_arms else compiled.KERNEL
+    kernels = trajectory.evaluation if on_arms else compiled.bulk
+    perform, clock = kernels.perform, [0.0]
+
+    def timed(task, *given):
+        clock[0] += step * next(attempts for attempts in given if isinstance(attempts, int))
+        return perform(task, *given)
+
+    def stop(share, words):
+        if words == COMPILING:
+            raise TimeoutError(words)
+
+    monkeypatch.setattr(kernels, "perform", timed)
+    for known in (compilation, compiled):
+        monkeypatch.setattr(known, "thread_time", lambda: clock[0])
+    for name, value in {"pace": lambda: 1.0, "available": lambda: True}.items():
+        monkeypatch.setattr(compilation, name, value)
+    for name, value in {
+        "compiled": None, "spent": 0.0, "on_disk": True, "_loaded": lambda _: None
+    }.items():  # fmt: skip
+        monkeypatch.setattr(kernel, name, value)
+    arms = {"foundation": kv.GeneralizedMaxwell("5 GN/m^3", arms=[("5 GN/m^3", "20 ms")])}
+    scene = kv.Scene(**arms if on_arms else {})
+    with pytest.raises(TimeoutError, match=COMPILING):
+        collections.deque((kv.transient(scene, rtol=1e-9, progress=stop) for _ in range(20)), 0)
+    assert compilation.LOADING / compilation.ENOUGH <= kernel.spent < 1.15 * compilation.LOADING
 
 
 def test_interpreted_work_is_counted_and_that_of_compiled_kernels_is_not(monkeypatch):
@@ -315,12 +349,16 @@ def test_many_scenes_whose_kernels_cannot_be_compiled_are_interpreted(short, mon
 
 
 @pytest.mark.parametrize(
-    ("variable", "why"), [("PYTHONPATH", "NumPy 2.3"), ("NUMBA_DISABLE_JIT", "unset")]
-)
-def test_an_unusable_numba_costs_the_user_of_a_command_one_line(variable, why, tmp_path):
-    package = tmp_path / "numba" / "__init__.py"
-    package.parent.mkdir()
-    package.write_text("raise ImportError('Numba needs NumPy 2.3 or less')\n")
+    ("variable", "package", "why"),
+    [("PYTHONPATH", "raise ImportError('Numba needs NumPy 2.3 or less')\n", "NumPy 2.3"),
+     ("PYTHONPATH", "raise OSError('libllvmlite.so: cannot open')\n", "OSError: libllvmlite"),
+     ("PYTHONPATH", "", "no attribute 'config'"), ("NUMBA_DISABLE_JIT", "", "unset")],
+    ids=["NumPy", "library", "folder", "disabled"],
+)  # fmt: skip
+def test_an_unusable_numba_costs_the_user_of_a_command_one_line(variable, package, why, tmp_path):
+    source = tmp_path / "numba" / "__init__.py"
+    source.parent.mkdir()
+    source.write_text(package)
     code = (
         "from kvtheory import compilation; compilation.LOADING = compilation.LOOP_TIME = 1e-9\n"
         "from kvtheory.cli import main; main(['transient', '--at', '0 ms,200 ms'])"

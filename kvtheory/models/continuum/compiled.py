@@ -42,6 +42,9 @@ INLINED = base_motion, contact, collocation, "sliding_now", "_slack", "_probe"
 SECONDS = 14.0
 """Time to compile, once per installation."""
 
+FASTER = 100
+"""How many times as many steps compiled kernels take between two reports."""
+
 
 class Arguments(NamedTuple):
     """Times, states, two states of workspace, deviations, extremes and settling, see `bulk.perform`."""
@@ -108,8 +111,8 @@ class Solver(NamedTuple):
     """How runs of one kind are followed.
 
     `begin` makes one, with arrays for compiled kernels or without; `walk` goes on for so many attempted
-    steps, `attempts` between two reports, and returns a status; `time` is the present one. `refused` has the
-    reasons of those that end a run with a `failure`.
+    steps, `attempts` between two reports if interpreted, and returns a status; `time` is the present one.
+    `refused` has the reasons of those that end a run with a `failure`.
     """
 
     kernel: Kernel
@@ -136,7 +139,8 @@ def finished(
     while status != DONE:
         interpreted = not in_use(run)
         with solver.kernel.interpreting() if interpreted else nullcontext():
-            status = solver.walk(run, min(solver.attempts, left))
+            attempts = solver.attempts * (1 if interpreted else FASTER)
+            status = solver.walk(run, min(attempts, left))
         now, s = readable(run.now[0]), solver.time(run)
         left = max_steps - now.steps - now.rejected
         if status in solver.refused:

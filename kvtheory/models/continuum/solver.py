@@ -39,8 +39,8 @@ from kvtheory.scene.base_motion import BaseMotion
 Array = NDArray[np.float64]
 
 STEP_LIMIT = 300_000
-ATTEMPTS = 1000
-"""Attempted steps between two reports of progress."""
+ATTEMPTS = 100
+"""Interpreted steps attempted between two reports: short beside loading kernels, as that is decided there."""
 REASONS = {
     r_.STUCK: "the step length went to zero",
     r_.INCONSISTENT: "no consistent state of the edges",

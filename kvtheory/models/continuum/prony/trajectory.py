@@ -46,8 +46,8 @@ from kvtheory.scene.base_motion import BaseMotion
 Array = NDArray[np.float64]
 
 STEP_LIMIT = 30_000
-ATTEMPTS = 100
-"""Attempted steps between two reports of progress."""
+ATTEMPTS = 10
+"""Interpreted steps attempted between two reports: short beside loading kernels, as that is decided there."""
 SECONDS = 22.0
 """Time to compile, once per installation."""
 EVALUATED = 50
