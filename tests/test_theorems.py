@@ -98,7 +98,7 @@ def true_circle(l_r, depth):
         (master_curve, "DRIVE_CUBED", "_master_curve"),
         (master_curve, "FRICTION_CUBED", "_master_curve"),
         (master_curve, "PEAK", "_peak"),
-        (energy, "NUMBER", "_parabola"),
+        (energy, "FRACTION", "_parabola"),
         (circle, "CORRECTION", "_fixed"),
         (circle, "RECEDES", "_shape"),
         (circle, "LOAD_COEFFICIENT", "_fixed"),

@@ -45,10 +45,10 @@ tau_1, damping_share, whole_load, whole_work, slow, fast, C_all, fades = symbols
     r_d     \breve \varrho      1/s      rate at which free ground relaxes beside a damper
 """)
 
-lam, beta, chi = springpot, arm_ratio, damping_share
 WHOLE = {
-    P: half + lam + beta * P, A: 1 + lam + beta * A, D: twelfth + beta * D,
-    E: lam / 12 + beta * E, B: lam / 2 + beta * B,
+    P: half + springpot + arm_ratio * P, A: 1 + springpot + arm_ratio * A,
+    D: twelfth + arm_ratio * D,
+    E: springpot / 12 + arm_ratio * E, B: springpot / 2 + arm_ratio * B,
 }  # fmt: skip
 """The moments of F17 of spring, damper and arm together: those of the damper are 1, 1, 0, 1/12 and 1/2."""
 LOAD, WORK = WHOLE[D] + e * WHOLE[P], WHOLE[E] + e**2 * WHOLE[P]
@@ -72,7 +72,7 @@ def _steady(proof: Proof) -> None:
     for name, of_damper in zip((edge_pressure, arm_load, arm_work), dashpots, strict=True):
         proof.asymptote("F17-limits", z * name, of_damper, "of a damper")
     edge, load, work = (
-        spring + lam * damper + beta * arm
+        spring + springpot * damper + arm_ratio * arm
         for spring, damper, arm in zip(
             springs, dashpots, (edge_pressure, arm_load, arm_work), strict=True
         )
@@ -89,7 +89,9 @@ def _over_velocity(proof: Proof) -> None:
     """Let load and friction force be functions of the velocity, by that of the arm."""
     from_moments(proof)
     proof.recall("F33", e, whole_load, whole_work)
-    proof.define(lam, chi / z, r"$C V/(K \breve c)$, as $\breve z = \breve c/(V \tau_1)$")
+    proof.define(
+        springpot, damping_share / z, r"$C V/(K \breve c)$, as $\breve z = \breve c/(V \tau_1)$"
+    )
 
 
 @result("F33-low")
@@ -101,7 +103,12 @@ def _low(proof: Proof) -> None:
     """
     _over_velocity(proof)
     proof.leading_order(
-        whole_work / whole_load, (chi + beta) / z, z, sp.oo, r"$\mu R/\breve c$", eps=1 / z
+        whole_work / whole_load,
+        (damping_share + arm_ratio) / z,
+        z,
+        sp.oo,
+        r"$\mu R/\breve c$",
+        eps=1 / z,
     )
 
 
@@ -112,11 +119,11 @@ def _high(proof: Proof) -> None:
     The damper alone is left, whatever the arms are: Eqs. (43) and (45), with $\breve c \to a$.
     """
     _over_velocity(proof)
-    edge = (1 + beta) * z / (2 * chi)
+    edge = (1 + arm_ratio) * z / (2 * damping_share)
     proof.leading_order(
         half - e, edge, z, 0, r"$x_{\mathrm{TE}}/\breve c$, so $\breve c \to a$", eps=z
     )
-    proof.leading_order(whole_load, chi / (2 * z), z, 0, r"$W R/(K \breve c^3)$", eps=z)
+    proof.leading_order(whole_load, damping_share / (2 * z), z, 0, r"$W R/(K \breve c^3)$", eps=z)
     proof.leading_order(
         whole_work / whole_load, sp.Rational(2, 3), z, 0, r"$\mu R/\breve c$", eps=z
     )
@@ -127,8 +134,8 @@ def _critical(proof: Proof, *, at_load: bool) -> None:
     proof.asymptote("F33-high", whole_work / whole_load, fast)
     proof.define(V, V_star, "at the velocity at which")
     proof.define(z, c / (V * tau_1), "the length of the contact over that of the arm")
-    proof.define(chi, C / (K * tau_1), "the damper")
-    proof.define(beta, spring_1 / K, "and the arm")
+    proof.define(damping_share, C / (K * tau_1), "the damper")
+    proof.define(arm_ratio, spring_1 / K, "and the arm")
     proof.define(C_all, C + spring_1 * tau_1, "damping at low velocity")
     proof.define(mu_low, c / R * slow, "F33-low")
     proof.equal(mu_low, C_all * V / (R * K), "Eq. (42) with this damping")

@@ -27,6 +27,9 @@ _ASSUMPTIONS = (
     "h$ vanishes."
 )
 
+FRACTION = 4 * (q**2 - q + 1) / B
+"""Share of the power that is dissipated inside the contact."""
+
 result = Chapter("Energy")
 
 
@@ -92,7 +95,6 @@ def _parabola(proof: Proof) -> None:
     The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola is 1 in both
     limits and never below 4/5, which is reached at $l_{\mathrm{r}} = \frac{3}{4} a$.
     """
-    fraction = 4 * (q**2 - q + 1) / B
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
     proof.recall("eq28", delta)
@@ -110,7 +112,7 @@ def _parabola(proof: Proof) -> None:
         r"behind: $K u_{\mathrm{TE}}^2/2$",
     )
     proof.define(eta, F_viscous / F, "by definition")
-    proof.equal(eta, fraction, "fraction inside")
+    proof.equal(eta, FRACTION, "fraction inside")
     proof.sign(eta, ">=", sp.Rational(4, 5), UNIT, "never less than four fifths")
     proof.equal(
         eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), r"least at $q = \frac{1}{2}$"
@@ -118,4 +120,4 @@ def _parabola(proof: Proof) -> None:
     there = sp.Subs(l, q, sp.Rational(1, 2))
     proof.equal(there, sp.Rational(3, 4), "the retardation length there")
     proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")
-    proof.done(eta, fraction)
+    proof.done(eta, FRACTION)
