@@ -81,7 +81,7 @@ def test_commands_print_a_table_and_json():
         "layer", None, None,
     )  # fmt: skip
     assert found["load"] == pytest.approx(980.665)
-    assert "kvtheory steady --method layer" in run("steady", *SET).stdout
+    assert "method `layer` of `steady`" in run("steady", *SET).stdout
 
 
 def test_stability_on_a_spring_is_not_claimed():

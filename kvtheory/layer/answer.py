@@ -47,7 +47,7 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
     names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
     table = np.array(rows, dtype=float).reshape(len(scenes), len(names)).T
     columns = [column.reshape(shape) if shape else float(column[0]) for column in table]
-    values = dict(zip(names, columns[: -len(WITH_ERROR)], strict=False))
+    values: dict[str, Any] = dict(zip(names, columns[: -len(WITH_ERROR)], strict=False))
     errors = dict(zip(WITH_ERROR, columns[-len(WITH_ERROR) :], strict=True))
     return SteadyState(
         **values,
