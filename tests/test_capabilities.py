@@ -1,6 +1,7 @@
 """Every cell of what works with what: it answers with a certificate, or refuses in the words of the table."""
 
 import math
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -45,6 +46,8 @@ def asked(question, shape, law, support, drive):
     if question in ("quadrature", "maxima", "sweep"):
         plain = not shape.startswith("revolved") or law == LAWS[0]  # others take seconds
         return (support, drive) == ("fixed", "rigid") and plain
+    if question == "layer":
+        return shape in ("parabola", "revolved") and (support, drive) == ("fixed", "rigid")
     if question in ("elements", "explorer"):
         return (support, drive) == ("dead-weight", "spring")
     return True
@@ -74,6 +77,17 @@ def steady(each, method):
     return np.isfinite(found.friction_force) and certified(found)
 
 
+def on_body(each):
+    """The same on the body of the law, a layer; a law without one is refused as it is."""
+    if not QUESTIONS["layer"].needs(each):
+        layer = {"modulus": 1e6, "thickness": 1e-3, "poisson_ratio": 0.45}
+        law = {"arms": [(4e6, 0.02)]} if each.foundation.arms else {"retardation_time": 0.01}
+        each = replace(
+            each, foundation=type(each.foundation)(**layer, **law), support=kv.Fixed(1e-4)
+        )
+    return steady(each, method="layer")
+
+
 def swept(each, **over_time):
     names = ["friction_force"]
     found = kv.sweep(each, over={"drive.velocity": [0.1, 0.11]}, quantities=names, **over_time)
@@ -98,6 +112,7 @@ ASK = {
     "exact": partial(steady, method="exact"),
     "quadrature": partial(steady, method="quadrature"),
     "asymptote": partial(steady, method="asymptote"),
+    "layer": on_body,
     "maxima": lambda each: np.all(np.isfinite(np.array(kv.asymptotes(each).maxima))),
     "stability": lambda each: np.all(np.isfinite(kv.stability(each, quantity="rates").rates)),
     "transient": transient,

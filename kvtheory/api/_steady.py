@@ -10,11 +10,13 @@ from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of
 from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
+from kvtheory.progress import Progress, silent
 from kvtheory.results import SteadyState
-from kvtheory.scene.arguments import a_scene, checked, choice, replacements
+from kvtheory.scene.arguments import a_scene, callback, checked, choice, replacements
 from kvtheory.scene.capabilities import (
     lacks_asymptotes,
     lacks_ball,
+    lacks_body,
     lacks_closed_form,
     lacks_quadrature,
     require,
@@ -22,16 +24,22 @@ from kvtheory.scene.capabilities import (
 from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
 
-LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
+BODY = "layer"
+"""The method that solves the body itself, not its foundation."""
+LACKS = {
+    "exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes,
+    BODY: lacks_body,
+}  # fmt: skip
 """By method, why it does not apply to a scene."""
 
 
-@checked(scene=a_scene, over=replacements, method=choice(LACKS))
+@checked(scene=a_scene, over=replacements, method=choice(LACKS), progress=callback)
 def steady(
     scene: Scene | None = None,
     *,
     over: Mapping[str, Any] | None = None,
     method: str | None = None,
+    progress: Progress | None = None,
 ) -> SteadyState:
     """Return the state of steady sliding.
 
@@ -51,7 +59,12 @@ def steady(
         ``"exact"`` (parabola and ball on any foundation, power law and wedge on Kelvin-Voigt; the default for
         them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it shapes that are convex where they
         touch, also revolved, which takes seconds, of functions with kinks minutes; the default for the
-        others) or ``"asymptote"`` (of the regime of the velocity; shapes as ``"exact"``, on Kelvin-Voigt).
+        others), ``"asymptote"`` (of the regime of the velocity; shapes as ``"exact"``, on Kelvin-Voigt) or
+        ``"layer"``: the body itself instead of independent elements, a bonded layer of any thickness, by
+        boundary elements (convex shapes; a foundation given by modulus, thickness and Poisson's ratio, with a
+        damper or arms). It takes up to a second for a line contact and some seconds for a ball.
+    progress
+        Called with the share done and a text by ``"layer"``: `kvtheory.progress.progress_bar` provides one.
 
     Returns
     -------
@@ -59,7 +72,9 @@ def steady(
         Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
         whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, if a foundation
         given as a layer is not thin for its contact, and if V/c is outside the frequencies, or the
-        temperature outside the temperatures, at which the foundation was measured.
+        temperature outside the temperatures, at which the foundation was measured. By ``"layer"`` the half
+        length is that of the body at rest at this depth, stability on a spring is not known, and
+        `dissipated_in_contact` is NaN.
 
     Raises
     ------
@@ -69,6 +84,8 @@ def steady(
         If the method does not exist or does not cover the shape of the indenter.
     QuadratureError
         If a quadrature or a root finder does not reach its tolerance.
+    ToleranceError
+        If the finest cells of ``"layer"`` leave an error above 0.1 %, of a ball 2 %.
 
     Examples
     --------
@@ -83,12 +100,12 @@ def steady(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 26-49.
     """
     scene = scene_of(scene).replace(over or {})
-    solve = METHODS[method_for(scene, method)]
+    method = method_for(scene, method)
     with double_precision(scene):
-        state = solve(scene)
+        state = _on_body(scene, progress) if method == BODY else METHODS[method](scene)
         if not scene.drive.rigid:
-            state = replace(state, stable=lasts(scene))
-            state = replace(state, notes=tuple(filter(None, [state.unstable])))
+            state = replace(state, stable=None if method == BODY else lasts(scene))
+            state = replace(state, notes=(*state.notes, *filter(None, [state.unstable])))
         if scene.shape:
             specs, arrays = scene.replaceable, scene.arrays()
             units = {**state.units, **{key: specs[key].unit for key in arrays}}
@@ -97,7 +114,7 @@ def steady(
         length = state.trailing_edge - state.leading_edge
         notes = [
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
-            layer_note(scene, state.half_length),
+            "" if method == BODY else layer_note(scene, state.half_length),
             beyond(scene.foundation),
         ]
         return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
@@ -142,6 +159,13 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
         half_length=state.half_length, half_width=state.half_length * scene.indenter.stretch,
         retardation_length=state.retardation_length * sign,
     )  # fmt: skip
+
+
+def _on_body(scene: Scene, progress: Progress | None) -> SteadyState:
+    """Solve the body itself."""
+    from kvtheory.layer.answer import solve  # SciPy takes a while to import
+
+    return solve(scene, progress or silent)
 
 
 def method_for(scene: Scene, method: str | None) -> str:

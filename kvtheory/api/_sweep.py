@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
-from kvtheory.api._steady import LACKS, method_for
+from kvtheory.api._steady import method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
+from kvtheory.models.steady.methods import METHODS
 from kvtheory.progress import Progress
 from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene import arguments as argument
@@ -132,7 +133,7 @@ def sweep(
 
 @argument.checked(
     scene=argument.a_scene, at=argument.times, over=argument.replacements, quantities=argument.names,
-    method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
+    method=argument.choice(METHODS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
     scene: Scene | None = None, *, over: Mapping[Any, Any] | None = None, quantities: Any = None,

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 @console.scene_command('kvtheory steady --set drive.velocity="50 mm/s" --json')
 @click.option(
-    "--method", metavar="exact|quadrature|asymptote",
-    help="Default: exact for parabola, power law, wedge and ball, quadrature for others.",
+    "--method", metavar="exact|quadrature|asymptote|layer",
+    help="Default: exact for parabola, power law, wedge and ball, quadrature for others; "
+    "layer: the body itself, not its foundation.",
 )  # fmt: skip
 @console.result_options
 def steady(scene: "Scene", progress: Any, method: str | None) -> Iterator[Any]:
@@ -23,7 +24,7 @@ def steady(scene: "Scene", progress: Any, method: str | None) -> Iterator[Any]:
     from kvtheory.api import steady as solve
     from kvtheory.results import STEADY_UNITS
 
-    state = solve(scene, method=method)
+    state = solve(scene, method=method, progress=progress)
     yield state
     _print_final_velocity(scene)
     click.echo(f"Steady sliding, {scene.support.kind} support, model: {state.model}\n")

@@ -21,7 +21,7 @@ function show_layer(scene, state) {
   place.hidden = number <= MODEL.thin;
   place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
     + "that it does not act as independent elements. Reduce its thickness h or Poisson\u2019s ratio \u03bd, or enlarge the half "
-    + "length a of the contact; otherwise use a boundary-element code.";
+    + "length a of the contact; otherwise solve the body itself: <code>kvtheory steady --method layer</code>.";
 }
 
 /** What leaves the range in which the foundation was measured, as kvtheory.scene.foundations says it. */

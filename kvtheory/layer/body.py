@@ -69,7 +69,8 @@ class Body(NamedTuple):
         given = foundation.modulus, foundation.thickness, foundation.poisson_ratio
         if None in given:
             raise ValueError(
-                "`foundation` has a stiffness; expected modulus, thickness and poisson_ratio"
+                "foundation.stiffness is that of independent elements, not of a body; expected modulus, "
+                "thickness and poisson_ratio of `foundation` instead, and arms with moduli"
             )
         if foundation.arms:
             arms = [(arm.modulus, arm.relaxation_time) for arm in foundation.arms]

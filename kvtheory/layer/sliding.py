@@ -79,9 +79,7 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
     2320 N/m, 0.0367
     """
     _require(shape, body)
-    if support.spring and support.relaxed_depth is None:
-        at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
-        support = support._replace(relaxed_depth=at_rest.depth)
+    support = relaxed(shape, body, support, rtol)
     known: list[dict[str, float]] = []
     errors: dict[str, float] = {}
     grids, wrong = levels(shape, body, velocity, support), "not begun"
@@ -101,12 +99,19 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
 
 def slide_at(
     shape: Any, body: Body, velocities: Iterable[float], support: Support, rtol: float = 1e-3
-) -> list[Sliding]:
-    """Return steady sliding at several velocities: elastic influences and the depth at rest are shared."""
-    if support.spring and support.relaxed_depth is None:
-        at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
-        support = support._replace(relaxed_depth=at_rest.depth)
-    return [slide(shape, body, velocity, support, rtol) for velocity in velocities]
+) -> Iterator[Sliding]:
+    """Yield steady sliding at several velocities: elastic influences and the depth at rest are shared."""
+    support = relaxed(shape, body, support, rtol)
+    for velocity in velocities:
+        yield slide(shape, body, velocity, support, rtol)
+
+
+def relaxed(shape: Any, body: Body, support: Support, rtol: float) -> Support:
+    """Return a support whose spring is relaxed at a depth: unless one is given, that at rest."""
+    if not support.spring or support.relaxed_depth is not None:
+        return support
+    at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
+    return support._replace(relaxed_depth=at_rest.depth)
 
 
 def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterator[Found]:

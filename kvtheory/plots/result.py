@@ -177,7 +177,9 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
     peak = 1.0 + l * l if l < 1.0 else 2.0 * l  # theorem F7
     p = state.peak_pressure / peak * (1.0 - (x / a) ** 2 - 2.0 * l * forward * x / a)
     sphere = state.units["load"] == "N"
-    if not sphere:
+    if state.model == "layer":
+        off = math.inf
+    elif not sphere:
         off = abs(simpson(p, x) / state.load - 1.0)
     elif l == 0.0:  # there is no friction, and only a ball is exact
         off = 0.0 if state.model == "exact" else math.inf
@@ -187,7 +189,7 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
         off = abs(abs(state.friction_coefficient) / (2.0 * state.depth / a * m) - 1.0)
     if off > MISMATCH:
         raise ValueError(
-            "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt only; give several "
+            "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt elements only; give several "
             'velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
         )
     ax.plot(x * 1e3, p * 1e-6, **style)

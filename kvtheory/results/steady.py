@@ -23,7 +23,7 @@ UNSTABLE = (
 )
 UNKNOWN = (
     "Whether steady sliding is stable on this spring is known only for a parabola and a ball on "
-    "Kelvin-Voigt or a Prony series."
+    "independent elements, of Kelvin-Voigt or a Prony series."
 )
 
 

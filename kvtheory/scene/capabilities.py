@@ -110,6 +110,7 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
+lacks_body = Needs(Scenes(laws=ONE_OF_BOTH))
 lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
 
 
@@ -138,6 +139,11 @@ QUESTIONS = {
     "asymptote": Question(
         "steady sliding by asymptotes", 'steady(scene, method="asymptote")', lacks_asymptotes,
         "Other laws have other limits, which `asymptotes` gives without proved errors.",
+    ),
+    "layer": Question(
+        "steady sliding on the body itself", 'steady(scene, method="layer")', lacks_body,
+        "The foundation has to be given by modulus, thickness and Poisson's ratio, and functions have to be "
+        "convex. A springpot has no retardation times, and a damper beside arms has no modulus.",
     ),
     "limits": Question(
         "limits of steady sliding", "asymptotes(scene)", lacks_limits,

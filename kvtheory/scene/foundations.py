@@ -112,7 +112,8 @@ def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
         f"The layer is not thin for its contact{where}: (thickness/half_length)^2/(1 - 2 poisson_ratio) "
         f"{value}, above {THIN:g}, so that it does not act as independent elements of stiffness K. Reduce "
         "foundation.thickness or foundation.poisson_ratio (no K describes an incompressible layer, "
-        "poisson_ratio = 0.5), or enlarge the contact; otherwise use a boundary-element code."
+        "poisson_ratio = 0.5), or enlarge the contact; otherwise solve the body itself, by the "
+        "method `layer` of `steady`."
     )
 
 

@@ -1,0 +1,99 @@
+"""Steady sliding of scenes on the body itself, as a result with its errors."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.sliding import Sliding, slide, slide_at
+from kvtheory.progress import Progress
+from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
+from kvtheory.scene.model import Scene
+
+RTOL = {True: 1e-3, False: 2e-2}
+"""Largest relative error of depth, load and friction: of a line, of a ball."""
+AT_REST = 1e-2
+"""The same of the contact at rest, of which only the length is used."""
+FOUND = (
+    "depth", "load", "friction_force", "friction_coefficient", "leading_edge", "trailing_edge",
+    "peak_pressure",
+)  # fmt: skip
+WITH_ERROR = (*FOUND, "half_length")
+STATEMENT = (
+    "boundary elements of the body, on cells that become shorter by factors of two; the errors follow from "
+    "the changes between the last grids"
+)
+RELATIVE_TO = "the true value, of edges the length of the contact"
+SINGULAR = (
+    "The peak pressure is infinite: the body enters the contact on a damper without arms, or an edge of the "
+    "indenter presses."
+)
+
+
+def solve(scene: Scene, report: Progress) -> SteadyState:
+    """Return steady sliding of a scene, or of each of its arrays, on the body of its foundation.
+
+    The half length is that of the body at rest at the depth of sliding. Where in a body power is dissipated
+    is not known: `dissipated_in_contact` is NaN.
+    """
+    shape, flat = scene.shape, scene.flat()
+    scenes = [flat.rows(i) for i in range(math.prod(shape))] if shape else [scene]
+    rows = []
+    for each, found in zip(scenes, _slidings(scene, scenes), strict=True):
+        rows.append(_row(each, found))
+        report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")
+    names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
+    table = np.array(rows, dtype=float).reshape(len(scenes), len(names)).T
+    columns = [column.reshape(shape) if shape else float(column[0]) for column in table]
+    values: dict[str, Any] = dict(zip(names, columns[: -len(WITH_ERROR)], strict=False))
+    errors = dict(zip(WITH_ERROR, columns[-len(WITH_ERROR) :], strict=True))
+    return SteadyState(
+        **values,
+        dissipated_in_contact=np.full(shape, math.nan) if shape else math.nan,
+        model="layer",
+        certificate=Certificate("estimated", STATEMENT, errors, RELATIVE_TO),
+        units=units_for(scene.indenter, STEADY_UNITS),
+        notes=(SINGULAR,) if np.isinf(values["peak_pressure"]).any() else (),
+    )
+
+
+def given(scene: Scene) -> tuple[Any, Body, Support]:
+    """Return shape, body and support of one scene."""
+    return scene.indenter, Body.of_foundation(scene.foundation), Support.of_scene(scene.support)
+
+
+def _slidings(scene: Scene, scenes: list[Scene]) -> Iterable[Sliding]:
+    """Yield steady sliding of each scene; scenes at several velocities share what is at rest."""
+    if not scenes:
+        return ()
+    rtol, V = RTOL[scene.indenter.per_width], [float(each.drive.final_velocity) for each in scenes]
+    if scene.arrays().keys() <= {"drive.velocity"}:
+        shape, body, support = given(scenes[0])
+        return slide_at(shape, body, V, support, rtol)
+    return (
+        slide(shape, body, v, support, rtol)
+        for v, (shape, body, support) in zip(V, map(given, scenes), strict=True)
+    )
+
+
+def _row(scene: Scene, found: Sliding) -> list[float]:
+    """Return the quantities of one scene, and then the relative errors of those `WITH_ERROR`."""
+    shape, body, _ = given(scene)
+    at_rest = slide(shape, body, 0.0, Support(found.depth), AT_REST)
+    length = found.trailing_edge - found.leading_edge
+    half_length = 0.5 * (at_rest.trailing_edge - at_rest.leading_edge)
+    half_error = 0.5 * (at_rest.errors["leading_edge"] + at_rest.errors["trailing_edge"])
+    values = [getattr(found, name) for name in FOUND]
+    errors = [
+        _relative(found.errors[name], length if name.endswith("edge") else value)
+        for name, value in zip(FOUND, values, strict=True)
+    ]
+    retardation_length = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    return [*values, half_length, retardation_length, *errors, half_error / half_length]
+
+
+def _relative(error: float, value: float) -> float:
+    """Return a relative error; what is known exactly, zero or infinite, has none."""
+    return error / abs(value) if error else 0.0

@@ -1,0 +1,125 @@
+"""Steady sliding by the method "layer": scenes, arrays, commands and refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.layer import Body, Support, slide
+from kvtheory.layer.answer import RTOL
+from tests.commands import printed, run
+
+LAYER = {"modulus": "1 MPa", "thickness": "1 mm", "poisson_ratio": 0.49}
+RUBBER = kv.GeneralizedMaxwell(**LAYER, arms=[("4 MPa", "20 ms")])
+LINE = kv.Scene(kv.Parabola("10 mm"), RUBBER, kv.Fixed("0.1 mm"), kv.Drive("50 mm/s"))
+BALL = kv.Scene(kv.Sphere("10 mm"), RUBBER, kv.DeadWeight(load="1 N"), kv.Drive("50 mm/s"))
+KEYS = [
+    "foundation.modulus=1 MPa", "foundation.thickness=1 mm", "foundation.poisson_ratio=0.49",
+    "foundation.retardation_time=20 ms", "support.mass=100 kg/m",
+]  # fmt: skip
+SET = [part for key in KEYS for part in ("--set", key)]
+NAMES = "depth", "load", "friction_force", "friction_coefficient", "leading_edge", "trailing_edge"
+
+
+@pytest.mark.parametrize("scene", [LINE, BALL])
+def test_the_method_is_boundary_elements_of_the_body(scene):
+    state = kv.steady(scene, method="layer")
+    found = slide(
+        scene.indenter, Body.of_foundation(RUBBER), 0.05, Support.of_scene(scene.support),
+        RTOL[scene.indenter.per_width],
+    )  # fmt: skip
+    for name in (*NAMES, "peak_pressure"):
+        assert getattr(state, name) == getattr(found, name)
+    errors, length = state.certificate.relative_error, found.trailing_edge - found.leading_edge
+    assert errors["friction_force"] == found.errors["friction_force"] / found.friction_force
+    assert errors["trailing_edge"] == found.errors["trailing_edge"] / length
+    assert (state.model, state.certificate.kind, state.notes) == ("layer", "estimated", ())
+    assert state.units["load"] == ("N/m" if scene is LINE else "N")
+    assert state.retardation_length == pytest.approx(0.05 * 0.08)
+    at_rest = kv.steady(
+        scene.replace({"drive.velocity": 0.0}), method="layer",
+        over={"support.depth": state.depth} if scene is LINE else {},
+    )  # fmt: skip
+    if scene is LINE:
+        assert state.half_length == pytest.approx(at_rest.trailing_edge, rel=0.02)
+    assert at_rest.friction_force == 0.0
+    assert at_rest.certificate.relative_error["friction_force"] == 0.0
+
+
+def test_arrays_are_scenes_one_by_one():
+    told = []
+    velocities = [[0.0, 0.02], [-0.02, 0.3]]
+    held = kv.Scene(
+        LINE.indenter, RUBBER, kv.Suspended(load=500.0, stiffness=5e6), kv.Drive(velocities)
+    )
+    state = kv.steady(held, method="layer", progress=lambda share, words: told.append(share))
+    assert told == [0.25, 0.5, 0.75, 1.0]
+    assert state.friction_force.shape == (2, 2) == state.certificate.relative_error["load"].shape
+    one = kv.steady(held.replace({"drive.velocity": 0.3}), method="layer")
+    for name in NAMES:
+        assert getattr(state, name)[1, 1] == getattr(one, name)
+    assert state.friction_force[1, 0] == pytest.approx(-state.friction_force[0, 1], rel=1e-9)
+    assert state.leading_edge[1, 0] > 0.0 > state.trailing_edge[1, 0]
+
+    over = {"foundation.thickness": [1e-3, 2e-3], "drive.velocity": 0.02}
+    both = kv.steady(LINE, over=over, method="layer")
+    thick = kv.steady(LINE, over={**over, "foundation.thickness": 2e-3}, method="layer")
+    assert both.load[1] == thick.load < both.load[0]
+    assert both.over["foundation.thickness"].tolist() == [1e-3, 2e-3]
+    assert kv.steady(LINE, over={"drive.velocity": []}, method="layer").load.shape == (0,)
+
+
+def test_commands_print_a_table_and_json():
+    table = run("steady", "--method", "layer", *SET).stdout
+    assert "model: layer" in table
+    assert "boundary elements of the body" in table
+    assert "peak pressure is infinite" in table
+    assert "not thin" not in table
+    found = printed("steady", "--method", "layer", *SET)
+    assert (found["model"], found["peak_pressure"], found["dissipated_in_contact"]) == (
+        "layer", None, None,
+    )  # fmt: skip
+    assert found["load"] == pytest.approx(980.665)
+    assert "method `layer` of `steady`" in run("steady", *SET).stdout
+
+
+def test_stability_on_a_spring_is_not_claimed():
+    state = kv.steady(
+        kv.Scene(LINE.indenter, RUBBER, LINE.support, kv.Drive(0.05, stiffness=1e6, mass=1.0)),
+        method="layer",
+    )
+    assert state.stable is None
+    assert "independent elements" in state.notes[0]
+    with pytest.raises(ValueError, match="Kelvin-Voigt elements only"):
+        state.plot()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ([], "expected modulus, thickness and poisson_ratio"),
+        (["--set", "foundation.thickness=inf", *SET[:2], *SET[4:]], "foundation.thickness"),
+        (["--set", "foundation.poisson_ratio=0.6", *SET[:4], *SET[6:]], "below 0.5"),
+        (
+            [*SET, "--set", "foundation.kind=fractional-kelvin-voigt", "--set", "foundation.order=0.5"],
+            'only, not for "fractional-kelvin-voigt"',
+        ),
+    ],
+)  # fmt: skip
+def test_refusals(options, message):
+    refused = run("steady", "--method", "layer", *options, status=2).output
+    assert message in refused
+    assert refused.count("error") == 1
+
+
+def test_sweeps_know_the_foundation_alone():
+    with pytest.raises(ValueError, match="method"):
+        kv.sweep(LINE, over={"drive.velocity": [0.1]}, method="layer")
+
+
+def test_the_peak_on_a_damper_is_infinite_and_the_rest_is_not():
+    voigt = kv.Foundation(**LAYER, retardation_time="20 ms")
+    state = kv.steady(kv.Scene(LINE.indenter, voigt, LINE.support, LINE.drive), method="layer")
+    assert state.peak_pressure == math.inf
+    assert np.isfinite(list(state.certificate.relative_error.values())).all()
