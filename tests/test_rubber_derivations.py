@@ -182,8 +182,8 @@ DAMPING, ARMS, RADIUS, DEPTH = 0.5e9, ((20e9, 5e-3), (10e9, 0.2)), 0.01, 3e-4
 _moments = damped_arms.A, damped_arms.B, damped_arms.D, damped_arms.E, damped_arms.P
 _excess = damped_arms.WHOLE[damped_arms.B] / damped_arms.WHOLE[damped_arms.A]
 _TOGETHER = sp.lambdify(
-    (*_moments, damped_arms.lam, damped_arms.e),
-    [form.subs(damped_arms.beta, 1) for form in (_excess, damped_arms.LOAD, damped_arms.WORK)],
+    (*_moments, damped_arms.springpot, damped_arms.e),
+    [form.subs(damped_arms.arm_ratio, 1) for form in (_excess, damped_arms.LOAD, damped_arms.WORK)],
     "mpmath",
 )
 """The excess over half of the contact, load and friction force, with the moments of all arms added up."""
