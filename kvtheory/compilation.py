@@ -54,9 +54,7 @@ def _imported() -> bool:
 
         config: Any = numba.config
         switched_off = bool(config.DISABLE_JIT)
-    except (
-        Exception
-    ) as error:  # it does not fit NumPy, Python or its libraries, or is another folder
+    except Exception as error:  # it does not fit Python or its libraries, or is another folder
         warn_unusable(f"numba cannot be imported ({_in_a_line(error)})", FITTING)
         return False
     if switched_off:
