@@ -15,7 +15,7 @@ from kvtheory.explorer import save_explorer
 from kvtheory.explorer.controls import controls
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.foundations import THIN, layer_number
+from kvtheory.scene.layer import THIN, layer_number
 from kvtheory.scene.model import SECTIONS
 from kvtheory.scene.quantities import quantities
 from kvtheory.scene.static_state import StaticState

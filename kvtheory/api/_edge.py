@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, require
-from kvtheory.scene.foundations import beyond, extrapolates, thick_layer
+from kvtheory.scene.foundations import beyond, extrapolates
+from kvtheory.scene.layer import THIN_WAY, thick_layer
 from kvtheory.scene.mistakes import mistake
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -41,7 +42,7 @@ def times_of(scene: Scene, at: list[float] | None) -> Any:
 def layer_note(scene: Scene, half_length: Any) -> str:
     """Return a note if the layer is thick for its contact, or an empty text."""
     foundation, stretch = scene.foundation, getattr(scene.indenter, "stretch", 1.0)
-    if foundation.modulus is None:
+    if foundation.stiffness_from != THIN_WAY:
         return ""
     shortest = half_length * np.minimum(1.0, stretch)
     return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)

@@ -142,6 +142,7 @@ def fit_foundation(
     whole = None
     if per_area or thickness is not None:
         layer = {"modulus": relaxed, "thickness": thickness, "poisson_ratio": poisson_ratio}
+        layer["stiffness_from"] = scene.foundation.stiffness_from
         own |= {"stiffness": relaxed} if per_area else layer
         whole = replace(scene, foundation=GeneralizedMaxwell(**own))
     source = (

@@ -8,8 +8,9 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
-from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
+from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, Arm
 from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.layer import THIN
 from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
 
