@@ -203,3 +203,54 @@ def test_moduli_make_a_foundation_of_any_thickness():
     assert 'thickness = "inf"' in found.to_toml()
     with pytest.raises(kv.SceneError, match="half-plane"):
         kv.fit_foundation(data, thickness="inf", poisson_ratio=0.5)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "support"), [(1e-3, HELD), (3e-3, kv.Suspended(load=500.0, stiffness=1e7))]
+)
+def test_the_limits_of_the_layer_are_those_of_boundary_elements(thickness, support):
+    arm = [("4 MPa", "20 ms")]
+    rubber = kv.GeneralizedMaxwell(modulus=1e6, thickness=thickness, poisson_ratio=0.49, arms=arm)
+    scene = kv.Scene(SHAPES["line"], rubber, support)
+    report = kv.asymptotes(scene)
+    found = report.layer
+    assert found.low == pytest.approx(0.08 / 0.01)
+    assert found.critical_velocity == pytest.approx(math.sqrt(found.high / found.low))
+    V = found.critical_velocity * np.array([1e-2, 200.0])
+    mu = kv.steady(scene, over={"drive.velocity": V}, method="layer").friction_coefficient
+    assert mu == pytest.approx([found.low * V[0], found.high / V[1]], rel=0.025)
+    words = str(report)
+    assert f"mu -> {found.low:.6g} s/m V at low velocity" in words
+    assert report.as_dict()["layer"]["high"] == found.high
+    many = kv.asymptotes(scene, over={"foundation.modulus": [1e6, 2e6]}).layer
+    assert many.high[0] == pytest.approx(found.high)
+    assert many.low.shape == (2,)
+
+
+def test_the_limit_of_a_ball_on_a_half_space_is_in_closed_form():
+    rubber = kv.GeneralizedMaxwell(modulus=1e6, thickness="inf", poisson_ratio=0.5, arms=ARMS)
+    found = kv.asymptotes(kv.Scene(SHAPES["ball"], rubber, LOADED["ball"])).layer
+    depth = (0.75 * 1.0 * 0.75 / 7e6 / math.sqrt(0.01)) ** (2 / 3)  # of the glassy modulus
+    rate = (4e6 / 0.02 + 2e6 / 0.5) / 7e6
+    assert found.high == pytest.approx(rate * 0.8 * depth, rel=1e-6)
+    assert found.low == pytest.approx((4.0 * 0.02 + 2.0 * 0.5) / 0.01)
+
+
+def test_limits_of_the_layer_that_do_not_exist():
+    keys = {
+        "modulus": "1 MPa",
+        "thickness": "1 mm",
+        "poisson_ratio": "0.4",
+        "retardation_time": "20 ms",
+    }
+    words = [word for key, value in keys.items() for word in ("--set", f"foundation.{key}={value}")]
+    found = printed("asymptotes", *words)["layer"]
+    assert found == {"low": 2.0, "high": None, "critical_velocity": None}
+    assert "on the layer itself, mu -> 2 s/m V at low velocity" in run("asymptotes", *words).stdout
+    assert kv.asymptotes().layer is None
+    pot = kv.FractionalKelvinVoigt(1e9, 0.02, 0.5).changed(
+        stiffness=None, modulus=1e6, thickness=1e-3, poisson_ratio=0.3
+    )
+    assert kv.asymptotes(kv.Scene(foundation=pot)).layer is None
+    thin = layer("1 mm", 0.4, stiffness_from="thin")
+    assert kv.asymptotes(kv.Scene(foundation=thin)).layer.low == pytest.approx(2.0)
