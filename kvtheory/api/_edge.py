@@ -40,12 +40,16 @@ def times_of(scene: Scene, at: list[float] | None) -> Any:
 
 
 def layer_note(scene: Scene, half_length: Any) -> str:
-    """Return a note if the layer is thick for its contact, or an empty text."""
+    """Return a note if the foundation is not the layer that gives it, or an empty text."""
     foundation, stretch = scene.foundation, getattr(scene.indenter, "stretch", 1.0)
-    if foundation.stiffness_from != THIN_WAY:
+    if foundation.stiffness_from == THIN_WAY:
+        shortest = half_length * np.minimum(1.0, stretch)
+        return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+    if foundation.modulus is None:
         return ""
-    shortest = half_length * np.minimum(1.0, stretch)
-    return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+    from kvtheory.layer.foundation_error import model_note  # SciPy takes a while to import
+
+    return model_note(scene)
 
 
 def noted(scene: Scene, series: Any) -> Any:
@@ -54,7 +58,8 @@ def noted(scene: Scene, series: Any) -> Any:
     length = np.where(length > 0.0, length, np.nan)
     if np.isnan(length).all():
         return series
-    notes = [layer_note(scene, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
+    there = scene.at(np.asarray(series.velocity))
+    notes = [layer_note(there, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)
         notes.append(extrapolates(scene.foundation, passing.max(), 1.0))

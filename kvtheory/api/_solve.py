@@ -109,7 +109,13 @@ def solve(
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
-        rungs = climbing.rungs(steady)
+        from kvtheory.layer.foundation_error import errors_of
+
+        own = partial(steady, progress=progress)
+        rungs = climbing.rungs(own)
+        if (error := errors_of(scene)) is not None:
+            rungs = climbing.beside_layer(rungs, error, own)
+            names = names if quantity is not None else tuple(error)
     with double_precision(scene):
         return climbing.climb(scene, climbing.Request(names, rtol, at, units), rungs)
 

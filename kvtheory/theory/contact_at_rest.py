@@ -51,6 +51,13 @@ def _splines() -> dict[str, Any]:
     return splines | {"range": axes[0][[0, -1]]}
 
 
+def coefficients() -> dict[str, Any]:
+    """Return the knots and coefficients of the splines by name, for programs of other languages."""
+    splines = _splines()
+    parts = {name: splines[name].tck for name in ("line", "ball")}
+    return {name: [part.tolist() for part in tck] for name, tck in parts.items()}
+
+
 def _log_thin(thickness: Any, poisson_ratio: Any) -> Any:
     """Return log[(1 - 2 nu + c)/(1 - nu)^2], which takes most of nu out of the load of a thin layer."""
     c = _c(thickness)
