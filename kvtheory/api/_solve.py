@@ -44,7 +44,8 @@ def solve(
         What is modelled; without it, the paper's Table 1 with a dead weight.
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
-        in `Transient` or `SprungTransient`; without it, all of them.
+        in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
+        load and depth.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
@@ -60,7 +61,8 @@ def solve(
     -------
     Solution
         The values, the model, its certificate, and the models tried: asymptote, exact, quadrature for steady
-        sliding; exact (where nothing moves), slow manifold, continuum, elements for a series.
+        sliding, where a layer gives the foundation with its error against the layer, and then the layer
+        itself; exact (where nothing moves), slow manifold, continuum, elements for a series.
 
     Raises
     ------

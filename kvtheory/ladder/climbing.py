@@ -152,12 +152,9 @@ def beside_layer(rungs: Sequence[Rung], error: Mapping[str, float], steady: Stea
     def judge(rung: Rung, scene: Scene, request: Request) -> Offer:
         known = {name: error.get(name, math.inf) for name in request.quantities}
         name = max(known, key=known.__getitem__)
-        far = f"within {known[name]:.2g} of" if known[name] < math.inf else "not known from"
-        need(
-            ""
-            if known[name] <= request.rtol
-            else f"{name} on the foundation is {far} that on the layer"
-        )
+        far = f"within {known[name]:.2g}" if known[name] < math.inf else "not known how far off"
+        reason = f"{name} on independent elements is {far}, against the layer"
+        need(reason if known[name] > request.rtol else "")
         offer = rung.judge(scene, request)
         return Offer(offer.error + known[name], lambda: _added(offer.run(), known))
 

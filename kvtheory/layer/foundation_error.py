@@ -48,7 +48,8 @@ def static_depth(scene: Scene) -> Any:
 def _relative_error(kind: str, h: Any, nu: Any, ratio: Any, width: Any) -> tuple[Any, Any]:
     bounds = np.searchsorted([2.0, 6.0], h)
     table = {"ball": ([0.06, 0.08, 0.18], [0.13, 0.25, 0.30]), "line": ([0.2] * 3, [0.35] * 3)}
-    mu, depth = (np.array(row)[bounds] for row in table[kind])
+    thin = h * h <= 0.1 * (1.0 - 2.0 * nu)
+    mu, depth = (np.where(thin, 0.01, np.array(row)[bounds]) for row in table[kind])
     return mu, depth
 
 
