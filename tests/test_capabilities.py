@@ -82,9 +82,8 @@ def on_body(each):
     if not QUESTIONS["layer"].needs(each):
         layer = {"modulus": 1e6, "thickness": 1e-3, "poisson_ratio": 0.45}
         law = {"arms": [(4e6, 0.02)]} if each.foundation.arms else {"retardation_time": 0.01}
-        each = replace(
-            each, foundation=type(each.foundation)(**layer, **law), support=kv.Fixed(1e-4)
-        )
+        own = type(each.foundation)(**layer, **law, stiffness_from="thin")
+        each = replace(each, foundation=own, support=kv.Fixed(1e-4))
     return steady(each, method="layer")
 
 

@@ -12,13 +12,14 @@ import pytest
 import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
-from kvtheory.scene.foundations import THIN, layer_stiffness
+from kvtheory.scene.layer import THIN, layer_stiffness
 from tests.commands import printed, run
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
 KINDS = {"dead-weight": kv.DeadWeight, "suspended": kv.Suspended}
 LAYER = kv.Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+THINNED = replace(LAYER, stiffness_from="thin")
 LAYER_KEYS = [
     "foundation.modulus=5 MPa", "foundation.thickness=2 mm", "foundation.poisson_ratio=0.45",
 ]  # fmt: skip
@@ -86,7 +87,7 @@ def test_the_layer_is_its_confined_modulus_over_its_thickness():
     lame, shear = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     assert layer_stiffness(E, h, nu) == pytest.approx((lame + 2 * shear) / h, rel=1e-14)
     assert layer_stiffness(E, h, 0.0) == E / h
-    assert LAYER.stiffness == layer_stiffness(5e6, 2e-3, 0.45)
+    assert THINNED.stiffness == layer_stiffness(5e6, 2e-3, 0.45)
 
 
 def compressed_layer(nu, thickness):
@@ -127,7 +128,7 @@ def test_a_thin_layer_is_as_independent_as_its_limit_says(nu):
 
 
 def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
-    thick = kv.Scene(foundation=LAYER)
+    thick = kv.Scene(foundation=THINNED)
     state = kv.steady(thick)
     (note,) = state.notes
     assert f"= {(2e-3 / state.half_length) ** 2 / 0.1:.3g}, above 0.1" in note
@@ -148,7 +149,7 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
 
 @pytest.mark.parametrize("shape", ["parabola", "circle"])
 def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
-    given = [*LAYER_KEYS, f"indenter.shape={shape}"]
+    given = [*LAYER_KEYS, "foundation.stiffness_from=thin", f"indenter.shape={shape}"]
     command = ["scene", *(f"--set={each}" for each in given)]
     told = run(*command).stdout
     (note,) = printed(*command)["notes"]
@@ -157,7 +158,7 @@ def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
 
 
 def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
-    by_layer = kv.Scene(foundation=LAYER)
+    by_layer = kv.Scene(foundation=THINNED)
     over = {"foundation.thickness": [1e-3, 2e-3, 4e-3], "foundation.modulus": [5e6, 6e6, 7e6]}
     zipped = {tuple(over): tuple(over.values())}
     swept = kv.sweep(by_layer, over=zipped, quantities=["depth", "depth.end"])
@@ -184,6 +185,8 @@ def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
         kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (5e9, 1.0)])),
         kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)),
         kv.Scene(foundation=LAYER),
+        kv.Scene(foundation=THINNED),
+        kv.Scene(kv.Sphere("10 mm"), replace(LAYER, thickness="inf"), kv.DeadWeight("1 kg")),
         kv.Scene(foundation=replace(SOFT, **LAW, temperature="60 degC")),
         kv.Scene(foundation=kv.FractionalKelvinVoigt(1e9, 0.1, 0.5, **ROOM, **LAWS["arrhenius"])),
         kv.Scene(foundation=kv.Foundation(1e9, [0.1, 0.2], temperature=[[280.0], [300.0]], **LAW)),
@@ -210,7 +213,7 @@ def test_the_template_tells_of_both(support):
 
 def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
     read = kv.load_scene(overrides=LAYER_KEYS)
-    assert read.foundation == replace(LAYER)
+    assert read == kv.Scene(foundation=replace(LAYER))
     path = tmp_path / "layer.toml"
     path.write_text(kv.to_toml(read))
     assert kv.load_scene(path, ["foundation.stiffness=1 GN/m^3"]).foundation.stiffness == 1e9
@@ -232,11 +235,16 @@ def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
 
 
 def test_the_arms_of_a_layer_are_moduli_and_follow_it():
-    arms = [(arm.stiffness * 1.0, arm.relaxation_time) for arm in SOFT.arms]
+    thin = replace(SOFT, stiffness_from="thin")
     per_modulus = layer_stiffness(1.0, 2e-4, 0.3)
-    assert [K for K, _ in arms] == pytest.approx([3e7 * per_modulus, 5e6 * per_modulus])
-    plain = kv.GeneralizedMaxwell(float(SOFT.stiffness), arms=arms)
-    by_layer, by_stiffness = kv.Scene(foundation=SOFT), kv.Scene(foundation=plain)
+    assert [arm.stiffness for arm in thin.arms] == pytest.approx(
+        [3e7 * per_modulus, 5e6 * per_modulus]
+    )
+    by_layer = kv.Scene(foundation=SOFT)
+    layer = by_layer.foundation
+    arms = [(arm.stiffness * 1.0, arm.relaxation_time) for arm in layer.arms]
+    assert [K / layer.stiffness for K, _ in arms] == pytest.approx([6.0, 1.0])
+    by_stiffness = kv.Scene(foundation=kv.GeneralizedMaxwell(float(layer.stiffness), arms=arms))
     assert kv.steady(by_layer) == kv.steady(by_stiffness)
     assert kv.asymptotes(by_layer).maxima == kv.asymptotes(by_stiffness).maxima
     over = {"foundation.thickness": np.array([1e-4, 2e-4, 4e-4])}

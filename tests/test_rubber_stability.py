@@ -159,7 +159,7 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
 def test_a_rate_is_not_lost_among_the_resonances_of_the_strips_of_a_ball():
     """Against zeros of `residue` in 48 strips."""
     layer = kv.GeneralizedMaxwell(
-        thickness="2 mm", poisson_ratio=0.3, modulus="2 MPa",
+        thickness="2 mm", poisson_ratio=0.3, modulus="2 MPa", stiffness_from="thin",
         arms=[["1 MPa", "10 ms"], ["0.5 MPa", "0.1 s"]],
     )  # fmt: skip
     drive = kv.Drive(velocity=0.01, stiffness=1e3, mass=0.3)

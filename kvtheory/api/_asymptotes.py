@@ -42,7 +42,9 @@ def asymptotes(
     -------
     AsymptoteReport
         The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, a line for
-        each asymptote, and all maxima of friction over velocity, with their errors.
+        each asymptote, and all maxima of friction over velocity, with their errors; of a parabola or a ball
+        on a foundation given by a layer also the limits on the layer itself, in `layer`: mu -> tau_bar V/R
+        and mu -> (r/V) 2 U_g/W, with the elastic energy U_g of the glassy contact.
 
     Raises
     ------
@@ -72,6 +74,7 @@ def asymptotes(
     """
     scene = scene_of(scene).replace(over or {})
     method = method_for(scene, None)
+    from kvtheory.layer.limits import limits
     from kvtheory.models.steady import maxima, regimes  # SciPy takes a while to import
 
     with double_precision(scene):
@@ -80,7 +83,7 @@ def asymptotes(
         notes = [*report.notes, *_extrapolated(scene, report, method), beyond(scene.foundation)]
         if scene.foundation.modulus is not None:  # else no state need be solved again
             notes.append(layer_note(scene, METHODS[method](scene).half_length))
-        return replace(report, notes=tuple(filter(None, notes)))
+        return replace(report, layer=limits(scene), notes=tuple(filter(None, notes)))
 
 
 def _extrapolated(scene: Scene, report: AsymptoteReport, method: str) -> list[str]:

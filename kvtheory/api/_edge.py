@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.api._model_error import model_note
 from kvtheory.scene.capabilities import lacks_one_scene, require
-from kvtheory.scene.foundations import beyond, extrapolates, thick_layer
+from kvtheory.scene.foundations import beyond, extrapolates
+from kvtheory.scene.layer import THIN_WAY, thick_layer
 from kvtheory.scene.mistakes import mistake
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -39,12 +41,12 @@ def times_of(scene: Scene, at: list[float] | None) -> Any:
 
 
 def layer_note(scene: Scene, half_length: Any) -> str:
-    """Return a note if the layer is thick for its contact, or an empty text."""
+    """Return a note if the foundation is not the layer that gives it, or an empty text."""
     foundation, stretch = scene.foundation, getattr(scene.indenter, "stretch", 1.0)
-    if foundation.modulus is None:
-        return ""
-    shortest = half_length * np.minimum(1.0, stretch)
-    return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+    if foundation.stiffness_from == THIN_WAY:
+        shortest = half_length * np.minimum(1.0, stretch)
+        return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+    return model_note(scene)
 
 
 def noted(scene: Scene, series: Any) -> Any:
@@ -53,7 +55,8 @@ def noted(scene: Scene, series: Any) -> Any:
     length = np.where(length > 0.0, length, np.nan)
     if np.isnan(length).all():
         return series
-    notes = [layer_note(scene, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
+    there = scene.at(np.asarray(series.velocity))
+    notes = [layer_note(there, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)
         notes.append(extrapolates(scene.foundation, passing.max(), 1.0))

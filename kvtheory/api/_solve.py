@@ -7,6 +7,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.api._elements import elements
 from kvtheory.api._fewer_arms import fewer_arms
+from kvtheory.api._model_error import errors_of
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
@@ -44,7 +45,8 @@ def solve(
         What is modelled; without it, the paper's Table 1 with a dead weight.
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
-        in `Transient` or `SprungTransient`; without it, all of them.
+        in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
+        load and depth.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
@@ -60,7 +62,8 @@ def solve(
     -------
     Solution
         The values, the model, its certificate, and the models tried: asymptote, exact, quadrature for steady
-        sliding; exact (where nothing moves), slow manifold, continuum, elements for a series.
+        sliding, where a layer gives the foundation with its error against the layer, and then the layer
+        itself; exact (where nothing moves), slow manifold, continuum, elements for a series.
 
     Raises
     ------
@@ -109,7 +112,11 @@ def solve(
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
-        rungs = climbing.rungs(steady)
+        own = partial(steady, progress=progress)
+        rungs = climbing.rungs(own)
+        if (error := errors_of(scene)) is not None:
+            rungs = climbing.beside_layer(rungs, error, own)
+            names = names if quantity is not None else tuple(error)
     with double_precision(scene):
         return climbing.climb(scene, climbing.Request(names, rtol, at, units), rungs)
 

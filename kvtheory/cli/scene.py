@@ -45,6 +45,7 @@ def scene(
     import numpy as np  # not needed for help texts
 
     from kvtheory.api import steady
+    from kvtheory.api._edge import layer_note
     from kvtheory.reference_problems import problem_text, problems
     from kvtheory.results import record
     from kvtheory.results.presented import value_range
@@ -92,8 +93,10 @@ def scene(
     numbers = {} if lacks_quadratic(checked) else _dimensionless(checked)
     quantities |= numbers
     notes: tuple[str, ...] = ()
-    if foundation.modulus is not None:  # whether the layer is thin for the contact at rest
-        notes = steady(replace(checked, drive=Drive(velocity=0.0))).notes
+    if foundation.modulus is not None:  # how far the foundation is from the layer
+        still = replace(checked, drive=Drive(velocity=0.0))
+        there = checked if checked.drive.ends else still
+        notes = tuple(filter(None, [layer_note(there, steady(still).half_length)]))
     kinds = {
         "shape": checked.indenter.shape, "foundation": foundation.kind,
         "support": checked.support.kind,

@@ -11,17 +11,22 @@ const WITHIN = 0.05;
 /** Size of letters in pixels below which a formula is not legible. */
 const SMALLEST = 11;
 
-/** The number that says whether a layer is thin for its contact; 0 where no layer is given. */
+/** The number that says whether a layer is thin for its contact; 0 where it is not taken as such. */
 function layer_number({ layer, stretch }, { half_length }) {
-  return layer ? (layer.thickness / (half_length * Math.min(1, stretch))) ** 2 / (1 - 2 * layer.poisson_ratio) : 0;
+  return layer?.way === "thin" ? (layer.H / (half_length * Math.min(1, stretch))) ** 2 / (1 - 2 * layer.nu) : 0;
 }
 
 function show_layer(scene, state) {
-  const place = document.getElementById("layer"), number = layer_number(scene, state);
+  const place = document.getElementById("layer"), number = layer_number(scene, state), body = document.getElementById("body");
   place.hidden = number <= MODEL.thin;
   place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
-    + "that it does not act as independent elements. Reduce its thickness h or Poisson\u2019s ratio \u03bd, or enlarge the half "
-    + "length a of the contact; otherwise solve the body itself: <code>kvtheory steady --method layer</code>.";
+    + "that it does not act as independent elements of the stiffness of a thin layer. Leave out <code>stiffness_from</code>, or solve the "
+    + "body itself: <code>kvtheory steady --method layer</code>.";
+  const { low, high, critical } = layer_limits(scene);
+  body.hidden = !low;
+  body.innerHTML = low ? `On the layer itself \u03bc \u2192 <b>${short(low(1))}</b> s/m V at low velocity`
+    + (high ? `, \u03bc \u2192 <b>${short(high(1))}</b> m/s / V at high velocity; they cross at V* = <b>${short(critical * 1e3)}</b> mm/s.` : ".")
+    + " The curve is that of independent elements with the same contact at rest; <code>kvtheory scene</code> says how far it is from the layer." : "";
 }
 
 /** What leaves the range in which the foundation was measured, as kvtheory.scene.foundations says it. */

@@ -87,7 +87,7 @@ function curve_data(scene) {
   const speeds = Array.from({ length: POINTS + 1 }, (_, k) => centre * 10 ** (decades * (2 * k / POINTS - 1)));
   const drawn = { ...scene, rough: true }, states = speeds.map((V) => slide({ ...drawn, V }));
   const exact = states.map((state, k) => [speeds[k], state.friction_coefficient]);
-  const data = { known, centre, decades, tops: rising ? [] : maxima(drawn, exact), exact, unstable: speeds.map(() => false) };
+  const data = { known, layer: layer_limits(scene), centre, decades, tops: rising ? [] : maxima(drawn, exact), exact, unstable: speeds.map(() => false) };
   return Object.assign(data, { looking: true, search: find_unstable(scene, speeds, states, data) });
 }
 
@@ -98,7 +98,7 @@ function look(data, until) {
 
 function draw_curve(scene, state, data) {
   const speed = Math.abs(scene.V), friction = Math.abs(state.friction_coefficient);
-  const { known, centre, decades, tops, exact, unstable, from, looking } = data;
+  const { known, layer, centre, decades, tops, exact, unstable, from, looking } = data;
   const ends = [centre * 10 ** -decades, centre * 10 ** decades];
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
   // A scene far from the curve that was found: up to it a few points are enough, near a limit.
@@ -113,6 +113,7 @@ function draw_curve(scene, state, data) {
     let drawn = "";
     for (const kind of ["low", "high"]) {
       if (known[kind]) drawn += line([low, high].map((V) => at([V, known[kind](V)])), kind);
+      if (layer[kind]) drawn += line([low, high].map((V) => at([V, layer[kind](V)])), "layer");
     }
     drawn += line(exact.map((point, k) => (unstable[k] ? at(point) : [NaN, NaN])), "unstable") + line(whole.map(at), "exact");
     let marks = "";
@@ -129,6 +130,7 @@ function draw_curve(scene, state, data) {
   const onset = looking ? ": looking for it \u2026" : from && `, from ${short(from * 1e3)} mm/s`;
   if (unstable.some(Boolean) || (looking && scene.drive)) parts.push(swatch("unstable", `unstable on this spring${onset || ""}`));
   if (known.low) parts.push(swatch("low", "limit at low velocity"), swatch("high", "limit at high velocity"));
+  if (layer.low) parts.push(swatch("layer", "limits on the layer itself"));
   if (known.critical) parts.push(swatch("critical", `V* = ${short(known.critical * 1e3)} mm/s`));
   tops.forEach((top, k) => parts.push(dot("top", `${k ? "another" : "maximum"} ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`)));
   parts.push(dot("present", "this scene"));

@@ -8,10 +8,13 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
-from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
+from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, Arm
 from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.layer import SHAPES as REST_SHAPES
+from kvtheory.scene.layer import THIN, THIN_WAY
 from kvtheory.scene.model import SECTIONS, Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
+from kvtheory.theory.contact_at_rest import splines
 
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
@@ -28,12 +31,14 @@ STIFFNESSES = {"suspended": 3e7, "drive": 1e6, "arm": 3e10}
 """Start values of the stiffnesses other than that of a foundation."""
 CELSIUS = (173.15, 473.15)
 LINEAR = {
-    "exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49),
+    "exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.5),
     "temperature": CELSIUS, "reference_temperature": CELSIUS,
     "lowest_temperature": CELSIUS, "highest_temperature": CELSIUS,
     "activation_energy": (10.0, 400.0), "wlf.c_1": (1.0, 50.0), "wlf.c_2": (10.0, 500.0),
 }  # fmt: skip
 """Ranges of the sliders that are not logarithmic, in the units shown; the value of the scene widens them."""
+HALF_SPACE = 1e6
+"""Thickness (m) that stands for a half-space."""
 DECADES = 3
 """Range of the other sliders, in decades to either side of their start value."""
 ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
@@ -102,10 +107,12 @@ def controls(scene: Scene) -> dict[str, Any]:
         },
         "values": values, "arms": _arms(scene.foundation),
         "note": "" if scene.drive.constant else VARIES,
+        "thin": scene.foundation.stiffness_from == THIN_WAY,
     }  # fmt: skip
     return {
         "sections": sections, "allowed": _allowed(), "scene": shown,
         "arm": {name: _slider("arm", s, name, None, True) for name, s in quantities(Arm).items()},
+        "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
     }  # fmt: skip
@@ -214,7 +221,8 @@ def _exponent(unit: str) -> int:
 
 def _text(value: float, unit: str) -> str:
     """Return an SI value in the displayed unit, with the same digits."""
-    number = Decimal(repr(float(value))).scaleb(-_exponent(unit)).normalize()
+    value = min(float(value), HALF_SPACE) if unit == "m" else float(value)
+    number = Decimal(repr(value)).scaleb(-_exponent(unit)).normalize()
     return f"{number:f}" if -5 < number.adjusted() < 8 else f"{number:e}"
 
 

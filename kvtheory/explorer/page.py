@@ -13,7 +13,7 @@ from kvtheory.scene.model import Scene
 
 SCRIPTS = (
     "closed_forms", "steady", "ball", "circle", "stability", "rubber", "motion", "scene",
-    "charts", "contact", "answers", "playing", "explorer",
+    "layer", "charts", "contact", "answers", "playing", "explorer",
 )  # fmt: skip
 """In order: each uses only earlier ones."""
 QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")

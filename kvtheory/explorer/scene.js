@@ -123,6 +123,9 @@ function wrong_in(state) {
     }
     if (new Set(times).size < times.length) return "foundation.arms: two arms have the same relaxation time";
   }
+  if (measure_of(state) === "modulus" && way_of(state) === "thin" && Number(text_of(state, "foundation.poisson_ratio", MODEL.sections.foundation.choices[state.choices.foundation].poisson_ratio)) === 0.5) {
+    return "foundation.poisson_ratio: no K describes a thin incompressible layer; expected below 0.5 for this indenter";
+  }
   return wrong_in_measured(state.values);
 }
 
@@ -143,6 +146,14 @@ function shift_factor(v) {
   return Math.exp(v["foundation.activation_energy"] / MODEL.gas_constant * (T_ref - T) / T / T_ref);
 }
 
+/** Where the stiffness of a layer is taken from: its contact at rest, where that is known. */
+function way_of(state) {
+  const { indenter } = state.choices, own = sliders(state).filter(([key]) => key.startsWith("indenter.radius"));
+  const [radius, across] = own.map(([key, slider]) => si(text_of(state, key, slider), slider));
+  const known = MODEL.rest.shapes.includes(indenter) && (across === undefined || across === radius);
+  return MODEL.scene.thin || !known ? "thin" : "rest";
+}
+
 /** The scene in SI, as the solvers take it. */
 function scene_of(state) {
   const v = {};
@@ -152,14 +163,20 @@ function scene_of(state) {
     "power-law": [1, v["indenter.length"], v["indenter.exponent"]], wedge: [v["indenter.inclination"], 1, 1],
   }[indenter] || [1, radius, 2];
   const nu = v["foundation.poisson_ratio"], h = v["foundation.thickness"], a_T = shift_factor(v);
-  const stiffness = (x) => (h === undefined ? x : x * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h);
+  const load = v["support.load"], mass = v["support.mass"] ?? load / v["support.gravity"];
+  const stretch = across === undefined ? 1 : Math.sqrt(across / radius), E = v["foundation.modulus"];
+  const layer = h === undefined ? undefined : { line: !is_whole(state), R: radius, E, H: h, nu, way: way_of(state) };
+  if (layer) layer.known = indenter === "parabola" || (indenter === "sphere" && stretch === 1);
+  const K = !layer ? v["foundation.stiffness"]
+    : layer.way === "rest" ? rest_stiffness(layer, support === "fixed" ? v["support.depth"] : undefined, load ?? mass * v["support.gravity"])
+      : E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h;
+  const stiffness = (x) => (layer ? x * (K / E) : x);
   const scene = {
-    indenter, shape, stretch: across === undefined ? 1 : Math.sqrt(across / radius),
-    K: stiffness(v[`foundation.${measure_of(state)}`]), tau: v["foundation.retardation_time"] * a_T, a_T,
+    indenter, shape, stretch, K, tau: v["foundation.retardation_time"] * a_T, a_T,
     measured: Object.fromEntries(Object.entries(v).filter(([key]) => key.startsWith("foundation.")).map(([key, x]) => [parted(key)[1], x])),
     kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"], support,
   };
-  if (h !== undefined) scene.layer = { thickness: h, poisson_ratio: nu };
+  if (layer) scene.layer = layer;
   if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
   if (has_arms(state)) {
     const [size, time] = arm_sliders(state);
@@ -168,8 +185,7 @@ function scene_of(state) {
   }
   if (support === "fixed") scene.depth = v["support.depth"];
   else {
-    const load = v["support.load"];
-    scene.mass = v["support.mass"] ?? load / v["support.gravity"];
+    scene.mass = mass;
     scene.weight = load ?? scene.mass * v["support.gravity"];
     scene.spring = v["support.stiffness"] ?? 0;
   }
@@ -193,6 +209,7 @@ function written(state) {
     const own = (tables[section] ||= {});
     if (inner) (own[outer] ||= []).push(text); else own[name] = text;
   }
+  if (measure_of(state) === "modulus" && way_of(state) === "thin") tables.foundation.stiffness_from = '"thin"';
   const units = arm_sliders(state).map((slider) => slider.unit);
   if (has_arms(state)) tables.foundation.arms = state.arms.map((arm) => listed(arm.map((text, k) => quoted(text, units[k]))));
   return Object.entries(tables).map(([section, own]) => [

@@ -15,6 +15,7 @@ from kvtheory.results import STEADY_UNITS, Certificate, ClimbStep, Solution, Ste
 from kvtheory.results.errors import ToleranceError, Value
 from kvtheory.scene.capabilities import (
     lacks_asymptotes,
+    lacks_body,
     lacks_closed_form,
     lacks_kelvin_voigt,
     lacks_quadratic,
@@ -142,6 +143,48 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
     )
 
 
+def beside_layer(rungs: Sequence[Rung], error: Mapping[str, float], steady: Steady) -> list[Rung]:
+    """Return rungs for a scene by a layer: those of its foundation, and then the layer itself.
+
+    `error` is that of the foundation, by quantity; others are not known on the layer.
+    """
+
+    def judge(rung: Rung, scene: Scene, request: Request) -> Offer:
+        known = {name: error.get(name, math.inf) for name in request.quantities}
+        name = max(known, key=known.__getitem__)
+        far = f"within {known[name]:.2g}" if known[name] < math.inf else "not known how far off"
+        reason = f"{name} on independent elements is {far}, against the layer"
+        need(reason if known[name] > request.rtol else "")
+        offer = rung.judge(scene, request)
+        return Offer(offer.error + known[name], lambda: _added(offer.run(), known))
+
+    own = [
+        replace(
+            rung, assumed=f"{rung.assumed}, of independent elements", judge=partial(judge, rung)
+        )
+        for rung in rungs
+    ]
+    return [*own, Rung("layer", "steady sliding on the layer itself", partial(_on_layer, steady))]
+
+
+def _added(answer: Answer, error: Mapping[str, float]) -> Answer:
+    """Return the answer of a foundation with the error of the model added to its own."""
+    own = answer.certificate
+    errors = {name: value + error[name] for name, value in own.relative_error.items()}
+    statement = f"{own.statement}; and the error of independent elements against the layer"
+    certificate = replace(own, kind="estimated", statement=statement, relative_error=errors)
+    return answer._replace(certificate=certificate)
+
+
+def _on_layer(steady: Steady, scene: Scene, request: Request) -> Offer:
+    from kvtheory.layer.answer import RTOL, WITH_ERROR
+
+    need(lacks_body(scene))
+    unknown = [name for name in request.quantities if name not in WITH_ERROR]
+    need(f"{unknown[0]} on the layer is not known" if unknown else "")
+    return Offer(RTOL[scene.indenter.per_width], partial(_run, steady, "layer", scene, request))
+
+
 def _asymptote(scene: Scene, request: Request) -> Offer:
     need(lacks_asymptotes(scene))
     bounds, names = asymptote_bounds.enclosure_of(scene), request.quantities
@@ -163,10 +206,11 @@ def _steady(steady: Steady, method: str, scene: Scene, request: Request) -> Offe
     elif method == "exact" and lacks_quadratic(scene):
         known = "exact, power law"
 
-    def run() -> Answer:
-        state, names = steady(scene, method=method), request.quantities
-        errors = {name: state.certificate.relative_error[name] for name in names}
-        own = replace(state.certificate, relative_error=errors)
-        return Answer({name: getattr(state, name) for name in names}, own, state)
+    return Offer(BEST[known], partial(_run, steady, method, scene, request))
 
-    return Offer(BEST[known], run)
+
+def _run(steady: Steady, method: str, scene: Scene, request: Request) -> Answer:
+    state, names = steady(scene, method=method), request.quantities
+    errors = {name: state.certificate.relative_error[name] for name in names}
+    own = replace(state.certificate, relative_error=errors)
+    return Answer({name: getattr(state, name) for name in names}, own, state)

@@ -33,8 +33,10 @@ SAFETY, LEAST = 0.5, 2e-2
 TABLE = Path(__file__).parent / "model_error.json"
 
 
-def spectrum(arms: Any) -> tuple[float, float]:
+def spectrum(arms: Any) -> tuple[Any, Any]:
     """Return width, in decades, and stiffening E_g/E_0 of arms: pairs of E_i/E_0, or K_i/K, and tau_i.
+
+    These are numbers, or arrays that broadcast.
 
     No arms are the damper of Kelvin-Voigt.
 
@@ -43,9 +45,9 @@ def spectrum(arms: Any) -> tuple[float, float]:
     """
     if not len(arms):
         return 0.0, np.inf
-    E, tau = np.array(arms, dtype=float).T
-    product = np.sum(E * tau) * np.sum(E / tau) / np.sum(E) ** 2
-    return float(np.log10(max(product, 1.0))), float(1.0 + np.sum(E))
+    size = sum(E for E, _ in arms)
+    product = sum(E * tau for E, tau in arms) * sum(E / tau for E, tau in arms) / size**2
+    return np.log10(np.maximum(product, 1.0)), 1.0 + size
 
 
 def half_width(spectrum_width: Any, stiffening: Any) -> Any:
@@ -136,4 +138,5 @@ def _at(interpolator: Any, *point: Any) -> Array:
     inside = [
         np.clip(x, axis[0], axis[-1]) for x, axis in zip(point, interpolator.grid, strict=True)
     ]
-    return interpolator(np.stack(np.broadcast_arrays(*inside), axis=-1))
+    places = np.stack(np.broadcast_arrays(*inside), axis=-1)
+    return interpolator(places).reshape(*places.shape[:-1], -1)  # one point would be a row

@@ -11,7 +11,13 @@ from kvtheory.results.errors import (
 )
 from kvtheory.results.fits import FewerArms, FoundationFit, FrictionFit
 from kvtheory.results.presented import ClimbStep, Solution, record
-from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, Stability, SteadyState
+from kvtheory.results.steady import (
+    AsymptoteLine,
+    AsymptoteReport,
+    BodyLimits,
+    Stability,
+    SteadyState,
+)
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import (
     QUANTITIES,
@@ -34,7 +40,7 @@ from kvtheory.results.transient import (
 __all__ = [
     "AT_REST", "QUANTITIES", "SERIES_UNITS", "SHOWN_UNITS", "SPRING_UNITS", "STABILITY_UNITS",
     "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis",
-    "Certificate", "Check", "ClimbStep", "Comparison", "DivergenceError", "Event",
+    "BodyLimits", "Certificate", "Check", "ClimbStep", "Comparison", "DivergenceError", "Event",
     "Explanation", "Failure", "FewerArms", "FoundationFit", "FrictionFit", "QuadratureError",
     "Simulation", "Solution", "SprungSimulation", "SprungTransient", "Stability", "SteadyState",
     "Sweep", "ToleranceError", "Transient", "TransientError", "record", "units_for",

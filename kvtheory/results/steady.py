@@ -123,6 +123,18 @@ class AsymptoteLine:
     velocity_proved: Value
 
 
+@dataclass(frozen=True)
+class BodyLimits:
+    """The limits of friction on the body itself, a layer: mu -> `low` V (s/m), mu -> `high`/V (m/s).
+
+    They cross at `critical_velocity`, in m/s. What does not exist, as on a damper alone, is NaN.
+    """
+
+    low: Value
+    high: Value
+    critical_velocity: Value
+
+
 @dataclass(frozen=True, repr=False)
 class AsymptoteReport(Recorded):
     """Which asymptote of the friction coefficient holds.
@@ -140,6 +152,8 @@ class AsymptoteReport(Recorded):
     scenes they are arrays, padded with NaN. Their relative errors have the same names and form in
     `maxima_certificate`.
 
+    `layer` are the limits on the body itself, of a scene that is given by a layer, else None.
+
     Where the limits of friction are not known there are no `lines`, no V* (NaN) and no regime (None), and
     `notes` say so.
     """
@@ -156,6 +170,7 @@ class AsymptoteReport(Recorded):
     model: str
     certificate: Certificate
     maxima_certificate: Certificate
+    layer: BodyLimits | None = None
     notes: tuple[str, ...] = field(default=(), compare=False)
     units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
 
@@ -176,8 +191,9 @@ class AsymptoteReport(Recorded):
         places = (f"mu = {with_unit(mu, '1')} at V = {with_unit(V, 'm/s')}" for V, mu in pairs)
         name = "highest friction maximum" if several else "friction maximum"
         maxima = f"{name}: {'; '.join(places)}" if self.maxima else "no friction maximum"
+        body = [_on_body(self.layer)] if self.layer else []
         if not self.lines:
-            return [f"V = {velocity}", maxima, *self.notes]
+            return [f"V = {velocity}", maxima, *body, *self.notes]
         regimes = " or ".join(REGIMES[each] for each in np.unique(self.regime))
         use = " or ".join(np.unique(self.use)).replace("exact", "the exact solution")
         ratio = with_unit(np.abs(self.velocity) / self.critical_velocity, "1")
@@ -186,6 +202,7 @@ class AsymptoteReport(Recorded):
             f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes}",
             maxima,
             f"for the friction coefficient to within {self.tolerance:g}, use {use}",
+            *body,
             *self.notes,
         ]
 
@@ -209,6 +226,18 @@ class AsymptoteReport(Recorded):
                 )
             )  # fmt: skip
         return heads, rows
+
+
+def _on_body(limits: BodyLimits) -> str:
+    """Return the limits of friction on the body itself, in words."""
+    low = f"mu -> {value_range(limits.low)} s/m V at low velocity"
+    if np.isnan(limits.high).all():
+        return f"on the layer itself, {low}"
+    high = f"mu -> {value_range(limits.high)} m/s / V at high velocity"
+    return (
+        f"on the layer itself, {low}, {high}; they cross at V* = "
+        f"{with_unit(limits.critical_velocity, 'm/s')}"
+    )
 
 
 def _velocities(low: Value, high: Value) -> str:

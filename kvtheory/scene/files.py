@@ -1,6 +1,7 @@
 """Scene files: TOML in and out, overrides, and the commented template."""
 
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -16,6 +17,7 @@ from kvtheory.scene.columns import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.layer import THIN_WAY
 from kvtheory.scene.mistakes import (
     ELSE,
     MEANT,
@@ -177,6 +179,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         ]
     if foundation.wlf is not None:
         tables["foundation"]["wlf"] = [foundation.wlf.c_1, _text(foundation.wlf.c_2, "K")]
+    if foundation.stiffness_from == THIN_WAY:
+        tables["foundation"]["stiffness_from"] = THIN_WAY
     if drive.history is not None:
         tables["drive"]["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in drive.history]
     elif (wave := drive.waveform) is not None:
@@ -190,7 +194,7 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
 def _text(value: Any, unit: str) -> Any:
     if isinstance(value, np.ndarray):
         return [_text(each, unit) for each in (value.tolist() if value.ndim == 1 else value)]
-    return value if unit == "1" else f"{value!r} {unit}"
+    return value if unit == "1" else "inf" if value == math.inf else f"{value!r} {unit}"
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -404,7 +408,7 @@ def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
     if cls in FOUNDATIONS.values():
-        lists = ("arms", "wlf") if cls is GeneralizedMaxwell else ("wlf",)
+        lists = ("wlf", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))

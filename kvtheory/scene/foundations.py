@@ -15,7 +15,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.mistakes import Problems, SceneError, mistake
+from kvtheory.scene.layer import REST, THIN_WAY, WAYS, layer_stiffness, rest_stiffness
+from kvtheory.scene.mistakes import Problems, SceneError, mistake, nearest
 from kvtheory.scene.quantities import (
     Derived,
     Part,
@@ -33,9 +34,6 @@ from kvtheory.scene.quantities import (
 from kvtheory.scene.units import to_si
 
 LAYER = ("modulus", "thickness", "poisson_ratio")
-THIN = 0.1
-"""Largest `layer_number` of a thin layer. Up to it K predicts the load at a depth to 5 % for a parabola and
-11 % for a ball, and the length of the contact to 15 % (by the exact compliance, nu from 0 to nearly 1/2)."""
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
 OF_LAYER = 'pairs of modulus and relaxation time, such as ["30 MPa", "10 ms"]'
@@ -71,50 +69,6 @@ NO_DAMPER = (
     "instead of modulus, thickness and poisson_ratio, or an arm with a short relaxation time"
 )
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
-
-
-def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
-    """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
-
-    The modulus is E (Pa), the thickness h (m), numbers or arrays. A layer that is thin for its contact (see
-    `layer_number`) is compressed without lateral strain: K is its confined modulus over its thickness
-    (Johnson, Contact Mechanics, 1985, section 5.8).
-
-    >>> round(layer_stiffness(5e6, 2e-3, 0.45) / 1e9, 4)
-    9.4828
-    """
-    nu = poisson_ratio
-    return modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / thickness
-
-
-def layer_number(thickness: Any, half_length: Any, poisson_ratio: Any) -> Any:
-    """Return (h/a)^2/(1 - 2 nu): a layer is thin for a contact of half length a if it is below `THIN`.
-
-    Under a pressure of wave number k a bonded layer without friction on its surface is compressed by
-    u = (p/K) [1 + c (k h)^2 + ...], c = nu (4 nu - 1)/(3 (1 - nu)(1 - 2 nu)). The first term is the
-    foundation; the second is (k h)^2/(3 (1 - 2 nu)) near nu = 1/2, where the layer flows sideways instead of
-    being compressed. With L^2 = c h^2 a parabola at a given depth carries (1 - L^2/a^2)^(3/2) + L^3/a^3 of
-    the load that K predicts. Chandler and Vella (2020), Proc. R. Soc. A 476, arXiv:2010.11133, find the same
-    parameter.
-    """
-    return (thickness / half_length) ** 2 / (1 - 2 * poisson_ratio)
-
-
-def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
-    """Return a note if a layer is not thin for its contact, or an empty text; numbers or arrays."""
-    number = np.asarray(layer_number(thickness, half_length, poisson_ratio))
-    thick = np.count_nonzero(number > THIN)
-    if not thick:
-        return ""
-    value = f"= {number:.3g}" if number.ndim == 0 else f"is up to {number.max():.3g}"
-    where = f" in {thick} of {number.size} scenes" if number.ndim else ""
-    return (
-        f"The layer is not thin for its contact{where}: (thickness/half_length)^2/(1 - 2 poisson_ratio) "
-        f"{value}, above {THIN:g}, so that it does not act as independent elements of stiffness K. Reduce "
-        "foundation.thickness or foundation.poisson_ratio (no K describes an incompressible layer, "
-        "poisson_ratio = 0.5), or enlarge the contact; otherwise solve the body itself, by the "
-        "method `layer` of `steady`."
-    )
 
 
 def extrapolates(foundation: "AnyFoundation", velocity: Any, contact_length: Any) -> str:
@@ -160,6 +114,9 @@ class WLF(Part):
 class _Relaxed(Part):
     """What all foundations have in common: a stiffness, or the layer it follows from; and temperature.
 
+    The stiffness of a layer is, by `stiffness_from`, that of a "thin" one, or by default that of its contact
+    at "rest", which depends on indenter and support: only the foundation of a scene has it.
+
     At a `temperature` every time of the foundation is a_T times that at the `reference_temperature`
     (`shift_factor`); the moduli stay (fact F25). Times are given at the reference temperature; the attributes
     are those at the temperature.
@@ -167,19 +124,19 @@ class _Relaxed(Part):
 
     stiffness: Value = quantity(
         "N/m^3", "K, stiffness of the foundation per unit area",
-        default=None, needed=True, instead="modulus", excludes=LAYER,
+        default=None, needed=True, instead="modulus", excludes=(*LAYER, "stiffness_from"),
     )  # fmt: skip
     _: KW_ONLY
     modulus: Value = quantity(
-        "N/m^2", "E, Young's modulus of a thin bonded layer, instead of the stiffness",
+        "N/m^2", "E, Young's modulus of a bonded layer, instead of the stiffness",
         default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
     thickness: Value = quantity(
-        "m", "h, thickness of the layer, small compared with the contact",
-        default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
+        "m", "h, thickness of the layer; inf is a half-space, under a ball", default=None, infinite=True,
+        beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
     poisson_ratio: Value = quantity(
-        "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
+        "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, maximum=0.5,
         beside=("modulus", "thickness"), excludes=("stiffness",),
     )  # fmt: skip
     temperature: Value = quantity(
@@ -211,6 +168,7 @@ class _Relaxed(Part):
         default=None, beside=("lowest_temperature",),
     )  # fmt: skip
     wlf: WLF | None = None
+    stiffness_from: str | None = None
     kind: ClassVar[str]
     arms: ClassVar[Any] = ()
     damping: ClassVar[Any] = 0.0
@@ -233,12 +191,11 @@ class _Relaxed(Part):
             if self.modulus is not None and np.any(damping := vars(self).get("damping")):
                 raise mistake("foundation.damping", damping, NO_DAMPER)
         self._read_law(problems)
+        self._read_way(problems)
         problems.report()
         self._order_ranges()
-        for i, part in enumerate(held if self.modulus is not None else ()):
-            stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
-            section = f"foundation.arms[{i - 1}]" if i else "foundation"
-            derive(part, section, "stiffness", stiffness, "the layer")
+        if self.stiffness_from == THIN_WAY:
+            self._stiffen(layer_stiffness(self.modulus, self.thickness, self.poisson_ratio))
         if not lawless:
             self._shift((part, name) for part, name in times if getattr(part, name) is not None)
         if vars(self).get("damping", 0.0) is None:
@@ -262,6 +219,40 @@ class _Relaxed(Part):
         elif self.wlf is None and self.activation_energy is None and given:
             message = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {message}, or foundation.activation_energy")
+
+    def _read_way(self, problems: Problems) -> None:
+        """Take the way to the stiffness of a layer, at rest if none is given, and report a wrong one."""
+        key, way, nu = "foundation.stiffness_from", self.stiffness_from, self.poisson_ratio
+        if self.modulus is None:
+            if way is not None:
+                problems.add(key, way, f"needs a layer; expected {', '.join(LAYER)} beside it")
+            return
+        object.__setattr__(self, "stiffness_from", way := REST if way is None else way)
+        if way not in WAYS:
+            problems.add(key, way, nearest(str(way), WAYS))
+        elif way == THIN_WAY and not problems and np.any(np.isinf(self.thickness)):
+            problems.add(key, way, f'a half-space is not thin; expected "{REST}"')
+        elif way == THIN_WAY and not problems and np.any(np.equal(nu, 0.5)):
+            message = f'no K describes a thin incompressible layer; expected "{REST}"'
+            problems.add(key, way, f"{message} beside foundation.poisson_ratio = 0.5")
+
+    def _stiffen(self, stiffness: Any) -> None:
+        """Derive the stiffness of a layer, and those of its arms, which are as their moduli."""
+        derive(self, "foundation", "stiffness", stiffness, "the layer")
+        for i, arm in enumerate(vars(self).get("arms", ())):
+            own = stiffness * (arm.modulus / self.modulus)
+            derive(arm, f"foundation.arms[{i}]", "stiffness", own, "the layer")
+
+    def under(self, indenter: Any, support: Any) -> Any:
+        """Return the foundation under an indenter: of a layer, with the K of its contact at rest."""
+        if self.stiffness_from != REST:
+            return self
+        found = copy.copy(self)
+        if "arms" in vars(self):
+            object.__setattr__(found, "arms", tuple(map(copy.copy, self.arms)))
+        found._stiffen(rest_stiffness(self, indenter, support))
+        found.mark(part for _, part in found.nested())
+        return found
 
     def _order_ranges(self) -> None:
         """Raise `SceneError` if a measured range is empty."""
@@ -289,12 +280,14 @@ class _Relaxed(Part):
     @property
     def slow_damping(self) -> Value:
         """C + sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
+        if self.stiffness is None:
+            return None
         return sum((arm.stiffness * arm.relaxation_time for arm in self.arms), +self.damping)
 
     @property
     def retardation_time(self) -> Value:
         """(C + sum K_i tau_i)/K, in s."""
-        return self.slow_damping / self.stiffness
+        return None if self.stiffness is None else self.slow_damping / self.stiffness
 
     @property
     def shift_factor(self) -> Value:
@@ -358,13 +351,13 @@ def _is_pair(value: Any) -> bool:
 class Foundation(_Relaxed):
     """Independent Kelvin-Voigt elements: G = K + C delta(t), C = K tau, all per unit area.
 
-    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`, which
-    then follows from them. A `temperature` shifts the retardation time from that at the
-    `reference_temperature`, by `wlf` or an `activation_energy`.
+    A bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`, which then
+    follows from its contact at rest, in a scene, or, by `stiffness_from`, from a thin layer. A `temperature`
+    shifts the retardation time from that at the `reference_temperature`, by `wlf` or an `activation_energy`.
 
-    >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
-    >>> round(layer.stiffness / 1e9, 4)
-    9.4828
+    >>> layer = {"modulus": "5 MPa", "thickness": "2 mm", "poisson_ratio": 0.45, "retardation_time": 0.1}
+    >>> Foundation(**layer).stiffness, round(Foundation(**layer, stiffness_from="thin").stiffness / 1e9, 4)
+    (None, 9.4828)
     >>> warm = Foundation("10 GN/m^3", "100 ms", temperature="60 degC",
     ...                   reference_temperature="23 degC", wlf=["17.44", "51.6 K"])
     >>> print(f"{warm.shift_factor:.4g} {warm.retardation_time:.4g}")
@@ -379,7 +372,7 @@ class Foundation(_Relaxed):
     @property
     def damping(self) -> Value:
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
-        return self.stiffness * self.retardation_time
+        return None if self.stiffness is None else self.stiffness * self.retardation_time
 
 
 @dataclass(frozen=True, eq=False)
@@ -462,6 +455,8 @@ class FractionalKelvinVoigt(_Relaxed):
     @property
     def slow_damping(self) -> Value:
         """Int (G - K) dt, in N s/m^3."""
+        if self.stiffness is None:
+            return None
         finite = self.stiffness * self.retardation_time
         if np.ndim(self.order) == 0:
             return finite if self.order == 1.0 else math.inf

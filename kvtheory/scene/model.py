@@ -15,6 +15,7 @@ import numpy as np
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Profile, Revolved
+from kvtheory.scene.layer import unfit
 from kvtheory.scene.mistakes import Problems, SceneError, nearest
 from kvtheory.scene.quantities import (
     Part,
@@ -167,6 +168,8 @@ class Scene(Part):
                 problems.add(f"`{name}`", parts[name], f"expected {message}")
         problems.report()
         inconsistencies(parts).report()
+        found = self.foundation.under(self.indenter, self.support)
+        object.__setattr__(self, "foundation", found)
         for name in PARTS:
             if parts[name].arrayed:
                 object.__setattr__(self, "arrayed", True)
@@ -349,9 +352,11 @@ PARTS: dict[str, tuple[Any, ...]] = {
 
 
 def inconsistencies(parts: Mapping[str, Any]) -> Problems:
-    """Report parts that do not fit: totals with a line contact, or no mass for a spring in the drive."""
+    """Report parts that do not fit: totals with a line contact, no mass for a spring, an unknown layer."""
     found = Problems()
     indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
+    if indenter is not None:
+        found += unfit(parts.get("foundation"), indenter)
     per_width = indenter is None or indenter.per_width
     for section, part in (("support", support), ("drive", drive)):
         for name, (value, given_per_width) in getattr(part, "written", {}).items():

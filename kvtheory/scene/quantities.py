@@ -150,6 +150,7 @@ class Quantity:
     excludes: tuple[str, ...] = ()  # those with which it must not
     per_width: bool = False  # a total for a ball
     difference: bool = False  # of temperatures
+    infinite: bool = False  # whether it may be
 
     def fitting(self, per_width: bool) -> "Quantity":
         """Return this quantity per unit width, for a line contact, or as a total, for a ball."""
@@ -168,10 +169,11 @@ class Quantity:
         return f"{self.doc} per unit width" if self.per_width else self.doc
 
     def admits(self, value: ArrayLike) -> bool:
-        """Whether every `value` (in SI) is finite and in range."""
+        """Whether every `value` (in SI) is in range, and finite unless it may be infinite."""
         value = value if isinstance(value, float) else np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
-        inside = above & (abs(value) < math.inf) & (value < self.below) & (value <= self.maximum)
+        under = (abs(value) < math.inf) & (value < self.below) & (value <= self.maximum)
+        inside = above & (under | (self.infinite & (value == math.inf)))
         return bool(inside if isinstance(value, float) else inside.all())
 
     @property
@@ -182,7 +184,8 @@ class Quantity:
         below = f" and below {self.below:g}" if math.isfinite(self.below) else ""
         below += f" and of at most {self.maximum:g}" if math.isfinite(self.maximum) else ""
         above = "above" if self.exclusive else "of at least"
-        return f"a finite value {above} {self.minimum:g}{below}"
+        finite = "a value" if self.infinite else "a finite value"
+        return f"{finite} {above} {self.minimum:g}{below}"
 
 
 def quantity(
