@@ -292,6 +292,24 @@ def test_low_velocity_friction_follows_from_the_contact_at_rest():
         assert 2 * slower - faster == pytest.approx(1.0, abs=8e-3)
 
 
+def test_dimensionality_reduction_is_not_for_sliding():
+    """Elements that are exact in normal contact of a ball have twice its friction, and then a wrong load."""
+    E = 1e6 / (1 - 0.5**2)
+    arms = [(4 * E, 0.02)]
+    reduced = kv.Scene(
+        kv.Parabola(R / 2),
+        GeneralizedMaxwell(stiffness=E, arms=arms),
+        kv.Fixed(1e-4),
+        kv.Drive(0.05),
+    )
+    slow = kv.steady(reduced, over={"drive.velocity": 1e-6})
+    assert slow.friction_coefficient == pytest.approx(2 * 1e-6 * 0.08 / R, rel=1e-3)
+    ball = slide(Sphere(radius=R), rubber(math.inf, 0.5), 0.05, Support(depth=1e-4), rtol=1e-2)
+    fast = kv.steady(reduced)
+    assert fast.load / ball.load == pytest.approx(1.340, abs=4e-3)
+    assert fast.friction_coefficient / ball.friction_coefficient == pytest.approx(1.531, abs=8e-3)
+
+
 def test_high_velocity_friction_follows_from_the_elastic_energy():
     """F29: mu V -> r 2 U_g/W, with 2 U_g = int p (depth - h) of the glassy contact at rest."""
     r = 4e6 / 0.02 / 5e6
