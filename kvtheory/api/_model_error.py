@@ -45,14 +45,14 @@ def model_error(scene: Scene) -> tuple[Any, Any] | None:
     width, stiffening = spectrum(arms)
     kind = "line" if scene.indenter.per_width else "ball"
     layer, law = (foundation.thickness / half_length, foundation.poisson_ratio), (width, stiffening)
-    here = relative_error(kind, *layer, ratio, *law)
+    friction, second = relative_error(kind, *layer, ratio, *law)
     if scene.held or np.any(scene.support.spring):
         places = PLACES.reshape(-1, *(1,) * len(scene.shape))
         ratios = 10.0 ** (places * half_width(*law))
         largest = (np.max(each, axis=0) for each in relative_error(kind, *layer, ratios, *law))
-        pairs = zip(here, largest, strict=True)
-        here = tuple(np.where(np.isinf(own), own, ELSEWHERE * most) for own, most in pairs)
-    return here[0] + none, here[1] + none
+        pairs = zip((friction, second), largest, strict=True)
+        friction, second = (np.where(np.isinf(a), a, ELSEWHERE * most) for a, most in pairs)
+    return friction + none, second + none
 
 
 def model_note(scene: Scene) -> str:
