@@ -260,7 +260,7 @@ def test_ball_on_a_layer_and_a_half_space(H, nu, V, W, F):
 def test_thin_layers_are_independent_elements(shape, tolerance):
     H, nu, depth = 2e-5, 0.25, 1e-4  # nu = 1/4: the next term of the compliance vanishes
     foundation = GeneralizedMaxwell(
-        modulus=1e6, thickness=H, poisson_ratio=nu, arms=[("4 MPa", "20 ms")]
+        modulus=1e6, thickness=H, poisson_ratio=nu, arms=[("4 MPa", "20 ms")], stiffness_from="thin"
     )
     for V in (0.02, 1.0):
         scene = kv.Scene(

@@ -72,7 +72,8 @@ def relative_error(
     `kind` is "line" or "ball", for a parabola; the error is that of the elements over the layer. It is
     interpolated in the map, and half of the errors at the entries nearby and 2 % are added: of 276 errors
     of random scenes at dead weight, of one to eight arms or a damper, 272 are below their bound, the others
-    below 1.7 times it; of 88 at a given depth 84, the others below 2.3 times it. Below H = 0.1 a the bound is that at 0.1 a, and so with velocity and stiffening.
+    below 1.7 times it; of 88 at a given depth 84, the others below 2.3 times it. Below H = 0.1 a the
+    bound is that at 0.1 a, and so with velocity and stiffening.
 
     It is inf where no bound is known: a line on more than 100 a, a stiffening above that of the map but not
     infinite, Kelvin-Voigt above 150 V*. Raises ValueError for another kind, or a Poisson's ratio that is
