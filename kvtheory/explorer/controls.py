@@ -10,7 +10,8 @@ from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
 from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, THIN, Arm
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SECTIONS, Scene
+from kvtheory.scene.model import SECTIONS as ALL_SECTIONS
+from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
 
 START = {
@@ -57,6 +58,9 @@ UNITS = SHOWN_UNITS | {
     "N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3), "K": ("K", 1.0), "1/s": ("Hz", 1.0),
     "J/mol": ("kJ/mol", 1e-3), "N*s/m^3": ("N*s/mm^3", 1e-9),
 }  # fmt: skip
+
+SECTIONS = {name: each for name, each in ALL_SECTIONS.items() if name != "start"}
+"""The sections that steady sliding depends on."""
 
 
 def controls(scene: Scene) -> dict[str, Any]:
