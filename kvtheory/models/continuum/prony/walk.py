@@ -80,7 +80,8 @@ def walk(run: Run, attempts: int) -> int:
     now, end = run.now, run.given.end
     if now.steps == 0 and now.span == math.inf:
         now.span = _first(run)
-        _jump(run)
+        if not h_.flies(run):
+            _jump(run)
     for _ in range(attempts):
         until = min(run.pieces[now.piece, b_.END], end)
         if now.s >= end:
