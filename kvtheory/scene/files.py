@@ -45,7 +45,9 @@ from kvtheory.scene.waveforms import WAVEFORMS
 CHOOSERS = {section: chooser for section, (chooser, _) in SECTIONS.items() if chooser}
 """The key of each section that selects a model, on which the other keys depend."""
 MODELS = {section: models for section, (_, models) in SECTIONS.items()}
-DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run"}
+DEFAULTS = {
+    "indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run", "start": "start",
+}  # fmt: skip
 LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
@@ -94,7 +96,7 @@ def load_scene(
     tables, problems = _overridden(path, overrides)
     unknown = [name for name in tables if name not in SECTIONS]
     problems += [f"[{name}]: unknown section; {nearest(name, SECTIONS)}" for name in unknown]
-    optional = ("run",) if foundation else ("run", "foundation")
+    optional = ("run", "start") if foundation else ("run", "start", "foundation")
     needed = [name for name in absent(SECTIONS, tables) if name not in optional]
     problems += [f"[{name}]: this section is missing" for name in needed]
     parts: dict[str, Any] = {} if "foundation" in tables else {"foundation": Scene().foundation}
@@ -129,7 +131,10 @@ def to_toml(scene: Scene) -> str:
     shape = "parabola"
     """
     lines = []
-    for section, table in _tables(scene).items():
+    tables = _tables(scene)
+    if scene.start.at_rest:
+        del tables["start"]
+    for section, table in tables.items():
         lines.append(f"[{section}]")
         lines += [
             f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in table.items()

@@ -20,8 +20,14 @@ from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.deviation import DEVIATION
 from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import trajectory
-from kvtheory.models.continuum.run import DONE, ROOM, begin, with_more_room
-from kvtheory.models.continuum.solved_scene import SERIES, certified, method_of, scaled_drive
+from kvtheory.models.continuum.run import DONE, ROOM, Beginning, begin, with_more_room
+from kvtheory.models.continuum.solved_scene import (
+    SERIES,
+    beginning,
+    certified,
+    method_of,
+    scaled_drive,
+)
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.records import readable
 from kvtheory.results.errors import AT_REST
@@ -139,7 +145,9 @@ class _Motions:
         numbers = float(units[0].inertia_number), float(units[0].support_number)
         runs = []
         for rtol, control in estimate.methods(self.plan.rtol):
-            run = begin(drives[0], numbers, None, drives[0].end, rtol, control, arrays=True)
+            run = begin(
+                drives[0], numbers, None, drives[0].end, rtol, control, Beginning(), arrays=True
+            )
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)
@@ -151,6 +159,7 @@ class _Motions:
             np.array([0.0 if u.fixed else float(u.support_number) for u in units]),
             ends,
             self.friction[indices],
+            np.array([beginning(*each)[:2] for each in kept]),
             np.cumsum([0, *(len(drive.pieces) for drive in drives)]),
             np.concatenate([drive.rows for drive in drives]),
         )

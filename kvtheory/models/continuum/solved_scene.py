@@ -21,7 +21,7 @@ from kvtheory.models.continuum.error_estimate import (
     methods,
 )
 from kvtheory.models.continuum.evaluation import SERIES
-from kvtheory.models.continuum.run import STATE_NAMES, Spring, StepControl
+from kvtheory.models.continuum.run import STATE_NAMES, Beginning, Spring, StepControl
 from kvtheory.models.continuum.solver import STEP_LIMIT, solve
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
@@ -61,13 +61,14 @@ class SolvedScene:
     """A solved motion and its scales; evaluates every quantity of a transient in SI.
 
     `motion` is a `Trajectory`, on a Prony series one of `prony.trajectory`. `end` is that of the run in
-    scaled time; the motion may extend slightly beyond it.
+    scaled time; the motion may extend slightly beyond it. `at_rest` tells whether it starts at rest.
     """
 
     motion: Any
     drive: BaseMotion
     units: StaticState
     end: float
+    at_rest: bool = True
 
     @property
     def natural_times(self) -> Array:
@@ -88,7 +89,7 @@ class SolvedScene:
     def events(self) -> tuple[Event, ...]:
         """The events of the contact, and the force maxima, in order of time (s)."""
         found: list[tuple[float, str]] = [*self.motion.events]
-        if self.drive.highest_speed > 0.0:  # else nothing moves
+        if self.drive.highest_speed > 0.0 or not self.at_rest:  # else nothing moves
             times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
             found += [(s, f"{force} force maximum") for s, force in times]
         found.sort(key=lambda event: event[0])
@@ -152,6 +153,12 @@ def spring_of(units: StaticState) -> Spring | None:
     return Spring(
         units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
     )
+
+
+def beginning(scene: Scene, units: StaticState, drive: BaseMotion) -> Beginning:
+    """Return the scaled state just after t = 0."""
+    depth, rate, along = scene.start.at(units.depth, drive.velocity(0.0) * units.velocity)
+    return Beginning(depth / units.depth, rate / units.depth_rate, along / units.velocity)
 
 
 def force_maxima(motion: Any) -> tuple[float, float]:
@@ -242,6 +249,7 @@ def certified(
     method = method_of(scene, rtol)
     units = method.units
     drive, spring = scaled_drive(scene, units), spring_of(units)
+    start = beginning(scene, units, drive)
     limit = max_steps or method.steps + STEPS_A_PIECE * len(drive.pieces)
 
     def solved(part: int, tolerance: float, control: StepControl) -> Any:
@@ -251,7 +259,7 @@ def certified(
 
         return method.solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,
-            spring=spring, control=control, progress=report, max_steps=limit,
+            spring=spring, start=start, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     try:
@@ -260,7 +268,7 @@ def certified(
         lasts = drive.end * (units.time / scene.foundation.retardation_time)
         reason = f"{error.reason}, in a run of {lasts:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
-    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time)
+    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time, scene.start.at_rest)
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     other = None
     for each in method.others if certify else ():
