@@ -501,7 +501,7 @@ BAD = {
     "misspelt column": (MU.replace("mu", "mu,indenter.radus [mm]"), 'did you mean "indenter.radius"'),
     "nan": (MU + "5,nan\n", 'line 6, column "mu": nan is not a finite number'),
     "text": (MU + "5,high\n", 'line 6, column "mu": "high" is not a number'),
-    "unit of mu": (MU.replace("mu", "mu [%]"), 'has the unit "%"'),
+    "unit of mu": (MU.replace("mu", "mu [mm]"), 'has the unit "mm"'),
     "no unit": (MU.replace(" [mm/s]", ""), "has no unit"),
     "wrong unit": (MU.replace("mm/s", "mm"), "wrong dimension"),
     "zero": ("V [mm/s],mu\n1,0\n2,0\n3,0\n", "friction_coefficient is zero throughout"),

@@ -136,7 +136,7 @@ def fit_foundation(
         )
         raise ValueError(f"`temperature`: {message}")
     x, residuals = found.data.x, series.residuals(found.data)
-    ends = x[[0, -1]] / math.tau if found.data.dynamic else 1.0 / x[[-1, 0]]
+    ends = 1.0 / np.array(found.data.times)[::-1] / (math.tau if found.data.dynamic else 1.0)
     frequencies = _rounded(ends[0]), _rounded(ends[1])
     own = {"arms": pairs, **thermal, **dict(zip(MEASURED_RANGES[0], frequencies, strict=True))}
     whole = None

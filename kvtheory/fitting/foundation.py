@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.stats import chi2
 
-from kvtheory.fitting import moduli, shifting
+from kvtheory.fitting import creep, moduli, shifting
 from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
 
@@ -72,7 +72,7 @@ def fit(
     start, target = clustered(thin, spectrum), 0.0
     if arms is None:
         start = refined(thin, start)
-        target = _target(thin, start, least, rtol)
+        target = max(_target(thin, start, least, rtol), 0.0 if rtol else measured.scatter)
     series = arms_of(thin, start, arms, target)
     if series.modulus.sum() <= UNRELAXED * series.relaxed:
         message = "the moduli do not relax: no series with arms above 0 is closer than a constant"
@@ -83,6 +83,11 @@ def fit(
     if arms is not None and series.time.size < arms:
         notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
     notes += _inconsistent(thin, spectrum, least)
+    if measured.creep is not None:
+        off = creep.misfit(series, *measured.creep)
+        notes.append(
+            f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
+        )
     return Fitted(measured, thin, series, least, master, law, tuple(notes))
 
 

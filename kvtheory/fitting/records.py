@@ -137,11 +137,14 @@ def read(data: Any, scene: Scene) -> Data:
     names |= {name: SPELLINGS[name] for name in (*FRICTION, "time", "-depth")}
     table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
     for head in table.ignored:
-        if head.partition(".")[0] in SECTIONS:
+        if "." in head and head.partition(".")[0] in SECTIONS:
             raise ValueError(f'{table.source}: column "{head}": {nearest(parts(head)[0], keys)}')
-    notes = [f"Column {head} is not used." for head in table.ignored]
+    notes = [*table.notes, *(f"Column {head} is not used." for head in table.ignored)]
     conditions, measured = _columns(table, scene)
     for name, values in measured.items():
+        if name == "normal_force" and values.max() < 0.0:
+            measured[name] = -values
+            notes.append("The normal force is below 0 throughout, and was read as pressing.")
         if not np.any(values):
             raise ValueError(f"{table.source}: {name} is zero throughout; there is nothing to fit")
     if len(measured.keys() & {"friction_coefficient", "friction_force"}) > 1:

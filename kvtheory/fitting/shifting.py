@@ -150,8 +150,8 @@ def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, flo
     """Return the changes of log10 a_T and b_T to the next warmer sweep, and the variance of the first."""
     sign = 1.0 if cold.dynamic else -1.0  # towards the stiff end
     one, two = (
-        (sign * np.log10(each.x), np.log10(np.maximum(each.values, FLOOR * each.scale)))
-        for each in (cold, warm)
+        (sign * np.log10(x[x > 0.0]), np.log10(np.maximum(values, FLOOR * scale))[:, x > 0.0])
+        for x, values, scale in ((each.x, each.values, each.scale) for each in (cold, warm))
     )
     one, two = ((x[np.argsort(x)], y[:, np.argsort(x)]) for x, y in (one, two))
     scatter = np.hypot(_scatter(*one), _scatter(*two))[:, None]

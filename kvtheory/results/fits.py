@@ -186,7 +186,7 @@ class FrictionFit(_Fit):
         """What should be known about the fit, a line each."""
         rows = sum(each.size for each in self.data["sets"])
         lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
-        for keys in self.not_identifiable:
+        for keys in dict.fromkeys(self.not_identifiable):
             apart = " apart: a combination of them" if len(keys) > 1 else ": it"
             doubt = "is uncertain by more than a factor of two"
             lines.append(f"The data cannot tell {', '.join(keys)}{apart} {doubt}.")
