@@ -207,9 +207,9 @@ def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
     known[coupling] = (known[S_z] - known[rise]) / known[S_c]
     known[uncoupled] = 1 - known[coupling]
     known[bias] = (uncoupled - T_z * coupling * S_c).subs(known)
-    shown = [f"{float(each):.4g}" for each in (state, known[rise])]
+    shown = [f"${float(each):.4g}$" for each in (state, known[rise])]
     if known[rise] > 0:
-        return *shown, "-", "-"
+        return *shown, "--", "--"
     known[onset_sum] = (bias - 2 * T_z * rise).subs(known)
     square = (sp.sqrt(SQUARE) - onset_sum).subs(known) / (2 * known[T_z] ** 2)
     stiffness = ((T_z + T_x) * square - rise).subs(known) * damping / along

@@ -117,7 +117,9 @@ def _derivatives(proof: Proof) -> None:
     touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to
     $\partial f_z/\partial d$.
     """
-    ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
+    ends = {
+        end: sp.Function(name, real=True)(d, d_s) for end, name in ((right, "r"), (left, "ell"))
+    }
     proof.recall("F11", f_normal, f_friction)
     for end, moves in ends.items():
         proof.define(end, moves, "an edge that moves")
