@@ -13,29 +13,10 @@ from ..engine.step import Proof
 from .model import F_x, F_z, K, R
 from .steady import W, a, x_te
 from .viscoelastic import (
-    FALL,
-    MOMENTS,
-    SECTION,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    arm_lost,
-    arm_work,
-    b,
-    contact_length,
-    edge_pressure,
-    excess_share,
-    from_moments,
-    from_trailing,
-    spring_share,
-    springs,
-    under_pressure,
+    FALL, MOMENTS, SECTION, UNIT, A, B, D, E, P, Q, arm_lost, arm_work, b, contact_length,
+    edge_pressure, excess_share, from_moments, from_trailing, spring_share, springs, under_pressure,
     z,
-)
+)  # fmt: skip
 
 arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
 memory = function(

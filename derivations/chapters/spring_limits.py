@@ -13,32 +13,10 @@ from .master_curve import PEAK, state_at
 from .model import K, M, R, V, g, tau
 from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x, quartic
 from .spring_stability import (
-    DEAD_WEIGHT_RISE,
-    HURWITZ,
-    PEELED,
-    REST,
-    RISE,
-    SQUARE,
-    B_x,
-    B_z,
-    Omega_minus,
-    S_c,
-    S_x,
-    S_z,
-    T_x,
-    T_z,
-    bias,
-    coupling,
-    damper_share,
-    hurwitz,
-    onset_sum,
-    own_rise,
-    rise,
-    soft,
-    spread,
-    support_rate,
-    uncoupled,
-)
+    DEAD_WEIGHT_RISE, HURWITZ, PEELED, REST, RISE, SQUARE, B_x, B_z, Omega_minus, S_c, S_x, S_z,
+    T_x, T_z, bias, coupling, damper_share, hurwitz, onset_sum, own_rise, rise, soft, spread,
+    support_rate, uncoupled,
+)  # fmt: skip
 from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
 from .transient_edges import left, rho, right

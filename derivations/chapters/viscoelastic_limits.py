@@ -13,43 +13,17 @@ from ..engine.step import Proof, tex
 from .asymptote_errors import e_l2_fixed, e_l2_weight
 from .model import F_x, F_z, K, R
 from .relaxation import (
-    FALLS,
-    WEIGHTS,
-    by_fall,
-    fading,
-    memory,
-    other_trailing,
-    spare_1,
-    spare_2,
-    spring_1,
-    spring_2,
-)
+    FALLS, WEIGHTS, by_fall, fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2,
+)  # fmt: skip
 from .relaxation import y as back
 from .steady import a, l, q
 from .theorems import UNIT as RATIOS
 from .theorems import m
 from .theorems import w as w_steady
 from .viscoelastic import (
-    OF_ARM,
-    SECTION,
-    SPRINGPOT,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    contact_length,
-    excess_share,
-    half,
-    half_share,
-    spring_share,
-    springpot,
-    twelfth,
-    w,
-    z,
-)
+    OF_ARM, SECTION, SPRINGPOT, UNIT, A, B, D, E, P, Q, contact_length, excess_share, half,
+    half_share, spring_share, springpot, twelfth, w, z,
+)  # fmt: skip
 
 spare_3, spare_4, reach, delay = symbols(r"""
     omega_v3   \breve \omega_3   1  remainder of a third bound  nonnegative

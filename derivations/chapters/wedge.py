@@ -11,20 +11,9 @@ from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, delta, h, x
 from .power_law import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
-    SECTION,
-    Q,
-    eta_n,
-    m_n,
-    n,
-    phi_n,
-    w_ahead,
-    w_behind,
-    w_n,
-    y,
-)
+    FRICTION_COEFFICIENT, FRICTION_FORCE, LOAD, SECTION, Q, eta_n, m_n, n, phi_n, w_ahead, w_behind,
+    w_n, y,
+)  # fmt: skip
 from .power_law_weight import scaled_n
 from .steady import a, any_pressure, l, l_r, p, q
 from .theorems import P, kappa, lam, s
