@@ -125,6 +125,8 @@ def told(block) -> str:
         (r"\frac{a + b}{c d} - \frac{1}{2}", "(a + b)/(c d) - 1/2"),
         (r"\frac{K}{3 R} \left(1 + \frac{l}{a}\right)", "K (1 + l/a)/(3 R)"),
         (r"\frac{a}{b} \frac{1}{c}", "a/(b c)"),
+        (r"\frac{a}{R} \frac{b}{4 - c}", "a b/(R (4 - c))"),
+        (r"\frac{G_2(c)}{G_1(c)} + \frac{1}{\sqrt[3]{z}}", r"G_2(c)/G_1(c) + 1/\sqrt[3]{z}"),
         (r"\frac{a/b}{c/d}", "(a/b)/(c/d)"),
         (r"\frac{W}{l_{\mathrm{r}}}", r"W/l_{\mathrm{r}}"),
         (r"\alpha \sqrt{\frac{\delta}{R}}", r"\alpha \sqrt{\delta/R}"),

@@ -15,20 +15,8 @@ from .asymptotics import F_high, F_low, W_high, W_low, mu_high, mu_low
 from .model import V, delta
 from .steady import F, W, l, l_r, mu, q
 from .theorems import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
-    NUMBER,
-    UNIT,
-    A,
-    B,
-    f,
-    kappa,
-    m,
-    phi,
-    s,
-    w,
-)
+    FRICTION_COEFFICIENT, FRICTION_FORCE, LOAD, NUMBER, UNIT, A, B, f, kappa, m, phi, s, w,
+)  # fmt: skip
 
 (
     gap, e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high,

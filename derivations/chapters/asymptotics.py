@@ -16,8 +16,8 @@ from .steady import F, W, a, l, l_r, mu, q
 load_excess, V_star, mu_low, mu_high, mu_high_weight, W_low, W_high, F_low, F_high = symbols(r"""
     W_e      W_{\mathrm{e}}     N/m  elastic part of the load  real
     V_star   V^{*}              m/s  crossing velocity, where the two asymptotes meet  from critical-fixed
-    mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity
-    mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity
+    mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity  from eq42
+    mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity  from eq45
     mu_high_weight  \mu_{\mathrm{L2\text{-}MI}}  1  asymptote for high velocity, dead weight
     W_low       W_{\mathrm{L1}}   N/m  asymptote of the load for low velocity
     W_high      W_{\mathrm{L2}}   N/m  asymptote of the load for high velocity

@@ -33,7 +33,7 @@ from .theorems import kappa, lam, s
     g_b         \tilde g          1  $(\pi + \tilde T)/4$
     K_b         \tilde K          1  $\frac{2}{15} - l^2 \tilde D$
     M_b         \tilde M          1  $\tilde D - \tilde N$
-    N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
+    N_b         \tilde N          1  half of $-l\, d \tilde D/d l$
     T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
     D_b         \tilde D          1  integral by which a ball leaves energy behind
     a_b         \tilde a          m  half length of a strip of a ball

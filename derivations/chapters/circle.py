@@ -14,19 +14,8 @@ from ..engine.step import Proof
 from .model import R, delta, x
 from .steady import a, l, q
 from .theorems import (
-    FRICTION_COEFFICIENT,
-    NUMBER,
-    UNIT,
-    A,
-    B,
-    f,
-    f_s,
-    m,
-    phi,
-    s,
-    w,
-    xi,
-)
+    FRICTION_COEFFICIENT, NUMBER, UNIT, A, B, f, f_s, m, phi, s, w, xi,
+)  # fmt: skip
 
 (
     eps, steeper, recedes, W_1, F_1, c_w, c_f, c_mu, deeper, c_delta_load, c_mu_load, tilt, circle_number,

@@ -12,15 +12,8 @@ from ..engine.step import Proof
 from .model import R
 from .power_law import L, excess
 from .transient_memory import (
-    SECTION,
-    compression,
-    contact_condition,
-    earlier,
-    indenter,
-    sigma,
-    time,
-    zeta,
-)
+    SECTION, compression, contact_condition, earlier, indenter, sigma, time, zeta,
+)  # fmt: skip
 from .wedge import inclination
 
 letter(r"\bar k", r"relaxed depth less the present one, $E \bar d_1 - d$")

@@ -14,25 +14,9 @@ from .model import C, K, R, V, delta
 from .relaxation import arm_ratio, spring_1
 from .steady import W, a
 from .viscoelastic import (
-    SECTION,
-    A,
-    B,
-    D,
-    E,
-    P,
-    arm_load,
-    arm_work,
-    c,
-    dashpots,
-    e,
-    edge_pressure,
-    from_moments,
-    half,
-    springpot,
-    springs,
-    twelfth,
-    z,
-)
+    SECTION, A, B, D, E, P, arm_load, arm_work, c, dashpots, e, edge_pressure, from_moments, half,
+    springpot, springs, twelfth, z,
+)  # fmt: skip
 
 tau_1, damping_share, whole_load, whole_work, slow, fast, C_all, fades = symbols(r"""
     tau_1   -                   s        relaxation time of an arm  from scene

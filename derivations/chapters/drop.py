@@ -11,25 +11,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import (
-    C,
-    F_z,
-    K,
-    M,
-    N,
-    R,
-    c,
-    compression_rate,
-    delta_t,
-    depth_rate,
-    f_z,
-    h,
-    k,
-    t,
-    tau,
-    u_i,
-    x,
-    x_i,
-)
+    C, F_z, K, M, N, R, c, compression_rate, delta_t, depth_rate, f_z, h, k, t, tau, u_i, x, x_i,
+)  # fmt: skip
 from .steady import CONTACT, p, x_le, x_te
 
 height_there = symbol("h_i", "height of the indenter at a free element over its lowest point", "m")

@@ -43,7 +43,7 @@ def _split(proof: Proof) -> None:
     whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
     proof.recall("eq29", C)
     proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
-    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
+    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over $V$")
     proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
     proof.define(F, F_elastic + F_viscous, "the friction force")
 

@@ -12,21 +12,9 @@ from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import F_x, F_z, R
 from .relaxation import (
-    FALLS,
-    LOADED,
-    WORKED,
-    G,
-    a,
-    arm_ratio,
-    by_fall,
-    c,
-    fading,
-    name_integrals,
-    spare_1,
-    spare_2,
-    weighted,
-    y,
-)
+    FALLS, LOADED, WORKED, G, a, arm_ratio, by_fall, c, fading, name_integrals, spare_1, spare_2,
+    weighted, y,
+)  # fmt: skip
 from .viscoelastic import SECTION, A, B, D, E, P, e, w
 from .viscoelastic_limits import slowing, spare_3, weight_at
 

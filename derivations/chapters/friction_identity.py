@@ -83,10 +83,7 @@ def _recall_pressure(proof: Proof) -> None:
 
 @result("F21-load")
 def _load(proof: Proof) -> None:
-    r"""Load of steady sliding in one line.
-
-    With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$.
-    """
+    """Load of steady sliding in one line."""
     for label in ("eq26", "eq27", "pressure"):
         proof.recall(label)
     proof.recall("eq28", delta)
@@ -104,7 +101,7 @@ def _load(proof: Proof) -> None:
 def _steady(proof: Proof) -> None:
     r"""Friction force of steady sliding in one line.
 
-    With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding.
+    With the load of F21-load this is all of steady sliding.
     """
     proof.recall("F21", at={delta_t: delta})
     proof.recall("eq26")

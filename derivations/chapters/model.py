@@ -37,7 +37,7 @@ theta, f_n, f_c, f_z, f_x, F_z, F_x, delta = symbols(r"""
 """)
 delta_t = function("delta", positive=True)(t)
 letter("e", "base of natural logarithms", source="constant")
-letter(r"\pi", "ratio of a circle", source="constant")
+letter(r"\pi", "circumference of a circle over its diameter", source="constant")
 z_a = function("z_A", real=True)(t)
 
 slope = h(x_i).diff(x_i)

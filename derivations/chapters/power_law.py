@@ -117,8 +117,11 @@ def _load(proof: Proof) -> None:
     """
     in_q(proof)
     primitive = y - y ** (n + 1) / (n + 1)
-    proof.integral(w_ahead, AHEAD, (y, 0, 1), primitive + l * y**n, "ahead of the tip")
-    proof.integral(w_behind, BEHIND, (y, 0, q), primitive - l * y**n, "behind it")
+    for name, pressure, side, end, where in (
+        (w_ahead, AHEAD, 1, sp.S.One, "ahead of the tip"), (w_behind, BEHIND, -1, q, "behind it"),
+    ):  # fmt: skip
+        whole = primitive + side * l * y**n
+        proof.integral(name, pressure, (y, 0, end), whole, where, value=whole.subs(y, end))
     proof.define(w_n, w_ahead + w_behind, r"$W/(K \delta a)$")
     explicit = n / (n + 1) + q - q ** (n + 1) / (n + 1) + (1 - q**n) ** 2 / (n * q ** (n - 1))
     proof.equal(w_n, explicit, "as a function of $q$")
@@ -141,7 +144,8 @@ def _friction(proof: Proof) -> None:
         where = (
             "a backward force ahead of the tip" if side == 1 else "and a forward force behind it"
         )
-        proof.integral(name, integrand, (y, 0, end), primitive + side * damper, where)
+        whole = primitive + side * damper
+        proof.integral(name, integrand, (y, 0, end), whole, where, value=whole.subs(y, end))
     proof.define(phi_n, phi_ahead - phi_behind, r"$F/(K \delta^2)$")
     explicit = (1 - q**n) ** 2 / 2
     explicit += n * (1 - q**n) * (1 + q ** (2 * n - 1)) / ((2 * n - 1) * q ** (n - 1))

@@ -13,16 +13,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
-    SECTION,
-    Q,
-    excess,
-    in_q,
-    n,
-    phi_n,
-    w_n,
-    y,
-    z,
-)
+    SECTION, Q, excess, in_q, n, phi_n, w_n, y, z,
+)  # fmt: skip
 from .power_law_limits import m_high, m_low, w_rest
 from .steady import l, q
 

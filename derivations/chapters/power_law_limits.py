@@ -6,19 +6,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
-    HIGH_COEFFICIENT,
-    LOW_SLOPE,
-    SECTION,
-    SQUARES,
-    Q,
-    excess,
-    in_q,
-    m_n,
-    n,
-    phi_n,
-    w_n,
-    z,
-)
+    HIGH_COEFFICIENT, LOW_SLOPE, SECTION, SQUARES, Q, excess, in_q, m_n, n, phi_n, w_n, z,
+)  # fmt: skip
 from .steady import l, q
 
 w_rest, w_l, phi_l, m_low, m_high, l_cross, more_load, more_work = symbols(r"""

@@ -10,21 +10,9 @@ from ..engine.nomenclature import symbol
 from ..engine.step import Proof
 from .model import C, K, V, delta
 from .power_law import (
-    HIGH_COEFFICIENT,
-    LOW_SLOPE,
-    NUMBER,
-    SECTION,
-    SLOPE_POWER,
-    L,
-    Q,
-    excess,
-    in_q,
-    m_n,
-    n,
-    phi_n,
-    w_n,
-    z,
-)
+    HIGH_COEFFICIENT, LOW_SLOPE, NUMBER, SECTION, SLOPE_POWER, L, Q, excess, in_q, m_n, n, phi_n,
+    w_n, z,
+)  # fmt: skip
 from .power_law_limits import AT_REST, m_high, phi_l, w_l
 from .steady import W, a, l, l_r, mu, q
 from .tables import delta_0

@@ -13,29 +13,10 @@ from ..engine.step import Proof
 from .model import F_x, F_z, K, R
 from .steady import W, a, x_te
 from .viscoelastic import (
-    FALL,
-    MOMENTS,
-    SECTION,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    arm_lost,
-    arm_work,
-    b,
-    contact_length,
-    edge_pressure,
-    excess_share,
-    from_moments,
-    from_trailing,
-    spring_share,
-    springs,
-    under_pressure,
+    FALL, MOMENTS, SECTION, UNIT, A, B, D, E, P, Q, arm_lost, arm_work, b, contact_length,
+    edge_pressure, excess_share, from_moments, from_trailing, spring_share, springs, under_pressure,
     z,
-)
+)  # fmt: skip
 
 arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
 memory = function(
@@ -78,7 +59,7 @@ fading = function(
     gamma_v1  \breve \gamma_1  1     share of an arm in the glassy stiffness  nonnegative
     gamma_v2  \breve \gamma_2  1     share of another arm  nonnegative
     theta_v   \breve \theta    1     weight of the indenter relative to the free surface  nonnegative
-    omega_v1  \breve \omega_1  1     remainder of a bound, not negative  nonnegative
+    omega_v1  \breve \omega_1  1     remainder of a bound  nonnegative
     omega_v2  \breve \omega_2  1     remainder of another bound  nonnegative
 """)  # fmt: skip
 
@@ -270,8 +251,8 @@ def _positive(proof: Proof) -> None:
 def _stored(proof: Proof) -> None:
     r"""Any relaxation function: energy behind the contact.
 
-    Half of the square of this stress is the energy stored in the spring of an arm, $\frac{1}{2} \int \int
-    e^{-\breve z (\breve w + \breve w')} u' u'$.
+    Half of the square of the stress of an arm at the trailing edge is the energy stored in its spring,
+    $\frac{1}{2} \int \int e^{-\breve z (\breve w + \breve w')} u' u'$.
 
     Argued: Added up over arms it is $\frac{1}{2} \int \int G(\breve w + \breve w')\, u'(\breve w)\,
     u'(\breve w')$ for every $G$ that is a sum or an integral of arms (Bernstein: that is completely

@@ -11,10 +11,10 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .groups import k_s
-from .model import F_x, F_z, M, R, V, delta, t, x
+from .model import C, F_x, F_z, M, R, V, delta, t, x
 from .relaxation import behind, edge_distance
 from .spring_drive import C_x, M_x, k_x, small, x_a
-from .steady import F, W
+from .steady import F, W, a, x_le
 from .theorems import lam
 from .transient_edges import left, rho, right
 from .transient_motion import f_friction
@@ -214,14 +214,61 @@ def _forces(proof: Proof) -> None:
                        value=FORCES[name])  # fmt: skip
 
 
+DAMPED = {
+    normal_per_depth: 1 + sigma, rubbing_per_depth: HALF + e + e * sigma,
+    normal_per_drag: -e * sigma, rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
+}  # fmt: skip
+"""The same of a damper, in units of C V/c for K_i c and so on."""
+
+
+@result("F24-damper")
+def _damper(proof: Proof) -> None:
+    r"""Rubber: forces of a damper in small motions.
+
+    The pressure $C \dot u$ of a damper beside the arms jumps at the leading edge, which touches undisturbed
+    ground and moves with the depth; at the trailing edge, $\breve c - a$, the pressures of spring, damper and
+    arms add up to zero, so that its motion has no effect to first order. With $C V/\breve c$ for $K_i \breve
+    z$ the damper changes the forces as a fast arm does (F24-kelvin-voigt).
+    """
+    swing = sp.exp(s * t)
+    depth = delta + small * delta_swing * swing
+    proof.where(sp.Gt(depth, 0), "the change is small")
+    proof.define(x_le, -sp.sqrt(2 * R * depth), "Eq. (32) at this depth")
+    proof.recall("F24-compression")
+    rate = s * (delta_swing + x_swing * x / R) * swing
+    proof.equal(sp.Subs(-sp.Derivative(swing_u, time_back), time_back, 0), rate,
+                r"change of $\dot u$, which is $-V x/R$ in steady sliding")  # fmt: skip
+    for force, power, factor, reason in (
+        (F_z, 1, C, "the pressure"), (F_x, 2, -C / R, "the pressure times the slope"),
+    ):  # fmt: skip
+        density = factor * x ** (power - 1) * (small * rate - V * x / R)
+        first, second = (((c - a) ** n - x_le**n) / n for n in (power, power + 1))
+        value = factor * (
+            small * s * (delta_swing * first + x_swing * second / R) * swing - V * second / R
+        )
+        proof.integral(
+            force, density, (x, x_le, c - a), antiderivative(density, x), reason, value=value
+        )
+    proof.recall("eq28", delta)
+    proof.define(a, c * (HALF + e), "F17-edge")
+    proof.define(s, sigma * V / c)
+    for force, depth, drag, arm in (
+        (F_z, normal_per_depth, normal_per_drag, 1), (F_x, rubbing_per_depth, rubbing_per_drag, c / R),
+    ):  # fmt: skip
+        change = sp.Subs(sp.Derivative(force, small), small, 0)
+        both = DAMPED[depth] * delta_swing + DAMPED[drag] * x_swing * c / R
+        proof.equal(change, C * V * arm * both * swing, "to first order, the leading edge included")
+
+
 @result("F24")
 def _rates(proof: Proof) -> None:
     r"""Rates and critical stiffness on rubber.
 
-    With the sums of (F24-forces) over the spring and all arms the forces change by $F_{z\delta} \tilde \delta
-    + F_{zX} \tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$. On the imaginary axis $k_x$ is
-    explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} F_{x\delta}/(M \tilde s^2 + k_s +
-    F_{z\delta})$, and the critical stiffness is the largest real value that it takes there.
+    With the sums of (F24-forces) over the spring and all arms, and with (F24-damper) beside them, the forces
+    change by $F_{z\delta} \tilde \delta + F_{zX} \tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$.
+    On the imaginary axis $k_x$ is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX}
+    F_{x\delta}/(M \tilde s^2 + k_s + F_{z\delta})$, and the critical stiffness is the largest real value that
+    it takes there.
     """
     A, B, C, D = (
         total_normal_per_depth, total_normal_per_drag, total_rubbing_per_depth, total_rubbing_per_drag,
@@ -268,13 +315,7 @@ def _kelvin_voigt(proof: Proof) -> None:
     _recalled(proof)
     proof.recall("F24-forces", *FORCES)
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
-    limits = {
-        normal_per_depth: 1 + sigma,
-        rubbing_per_depth: HALF + e + e * sigma,
-        normal_per_drag: -e * sigma,
-        rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
-    }
-    for name, limit in limits.items():
+    for name, limit in DAMPED.items():
         proof.leading_order(
             name, limit / z, **far, reason=r"times $K_i \breve z = C V/\breve c$: a damper"
         )

@@ -13,32 +13,10 @@ from .master_curve import PEAK, state_at
 from .model import K, M, R, V, g, tau
 from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x, quartic
 from .spring_stability import (
-    DEAD_WEIGHT_RISE,
-    HURWITZ,
-    PEELED,
-    REST,
-    RISE,
-    SQUARE,
-    B_x,
-    B_z,
-    Omega_minus,
-    S_c,
-    S_x,
-    S_z,
-    T_x,
-    T_z,
-    bias,
-    coupling,
-    damper_share,
-    hurwitz,
-    onset_sum,
-    own_rise,
-    rise,
-    soft,
-    spread,
-    support_rate,
-    uncoupled,
-)
+    DEAD_WEIGHT_RISE, HURWITZ, PEELED, REST, RISE, SQUARE, B_x, B_z, Omega_minus, S_c, S_x, S_z,
+    T_x, T_z, bias, coupling, damper_share, hurwitz, onset_sum, own_rise, rise, soft, spread,
+    support_rate, uncoupled,
+)  # fmt: skip
 from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
 from .transient_edges import left, rho, right
@@ -207,9 +185,9 @@ def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
     known[coupling] = (known[S_z] - known[rise]) / known[S_c]
     known[uncoupled] = 1 - known[coupling]
     known[bias] = (uncoupled - T_z * coupling * S_c).subs(known)
-    shown = [f"{float(each):.4g}" for each in (state, known[rise])]
+    shown = [f"${float(each):.4g}$" for each in (state, known[rise])]
     if known[rise] > 0:
-        return *shown, "-", "-"
+        return *shown, "--", "--"
     known[onset_sum] = (bias - 2 * T_z * rise).subs(known)
     square = (sp.sqrt(SQUARE) - onset_sum).subs(known) / (2 * known[T_z] ** 2)
     stiffness = ((T_z + T_x) * square - rise).subs(known) * damping / along

@@ -6,30 +6,9 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import (
-    C,
-    F_x,
-    F_z,
-    K,
-    N,
-    R,
-    V,
-    c,
-    compression_rate,
-    delta,
-    delta_t,
-    depth_rate,
-    f_x,
-    f_z,
-    h,
-    k,
-    slope,
-    t,
-    t_0,
-    tau,
-    u_i,
-    x,
-    x_i,
-)
+    C, F_x, F_z, K, N, R, V, c, compression_rate, delta, delta_t, depth_rate, f_x, f_z, h, k, slope,
+    t, t_0, tau, u_i, x, x_i,
+)  # fmt: skip
 
 a, l_r, x_le, x_te, W, F, mu, l, q, Lambda = symbols(r"""
     a       -                m        half length of the stationary contact, $\sqrt{2 R \delta}$

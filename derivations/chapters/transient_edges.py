@@ -14,22 +14,9 @@ from .model import u_i
 from .tables import delta_0
 from .theorems import lam
 from .transient_memory import (
-    CLEAR,
-    OF_TIME,
-    SECTION,
-    compression,
-    depth,
-    earlier,
-    eta,
-    indenter,
-    margin_of,
-    material,
-    pushed_by,
-    sigma,
-    time,
-    travel,
-    zeta,
-)
+    CLEAR, OF_TIME, SECTION, compression, depth, earlier, eta, indenter, margin_of, material,
+    pushed_by, sigma, time, travel, zeta,
+)  # fmt: skip
 from .transient_scaling import PRESSURE, P, d, d_s, xi
 
 start, left, right, b, rho, drift, lift, c = symbols(r"""

@@ -27,7 +27,7 @@ eps_critical, quadratic, f, change, per_depth, per_rate, sigma, drive_excess, be
     d_hat      \hat d            1  amplitude of the change of depth  real
     A          -                 1  stiffness of the contact, scaled
     B          -                 1  damping of the contact, scaled
-    sigma      -                 1  scaled rate of a small motion about steady sliding  real
+    sigma      -                 1  scaled rate of a small motion about steady sliding  real  from F12-linear
     -          \sigma_1          1  faster of two rates
     -          \sigma_2          1  slower of two rates
     -          T_1               s  shorter time constant

@@ -7,23 +7,8 @@ from ..engine.nomenclature import function, symbol
 from ..engine.step import Proof
 from .groups import k_s
 from .model import (
-    C,
-    F_z,
-    K,
-    M,
-    R,
-    V,
-    compression_rate,
-    delta_t,
-    depth_rate,
-    g,
-    h,
-    slope,
-    t,
-    tau,
-    u_i,
-    x_i,
-)
+    C, F_z, K, M, R, V, compression_rate, delta_t, depth_rate, g, h, slope, t, tau, u_i, x_i,
+)  # fmt: skip
 from .power_law_weight import a_0
 from .tables import delta_0
 from .theorems import kappa, lam

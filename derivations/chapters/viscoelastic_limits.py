@@ -13,43 +13,17 @@ from ..engine.step import Proof, tex
 from .asymptote_errors import e_l2_fixed, e_l2_weight
 from .model import F_x, F_z, K, R
 from .relaxation import (
-    FALLS,
-    WEIGHTS,
-    by_fall,
-    fading,
-    memory,
-    other_trailing,
-    spare_1,
-    spare_2,
-    spring_1,
-    spring_2,
-)
+    FALLS, WEIGHTS, by_fall, fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2,
+)  # fmt: skip
 from .relaxation import y as back
 from .steady import a, l, q
 from .theorems import UNIT as RATIOS
 from .theorems import m
 from .theorems import w as w_steady
 from .viscoelastic import (
-    OF_ARM,
-    SECTION,
-    SPRINGPOT,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    contact_length,
-    excess_share,
-    half,
-    half_share,
-    spring_share,
-    springpot,
-    twelfth,
-    w,
-    z,
-)
+    OF_ARM, SECTION, SPRINGPOT, UNIT, A, B, D, E, P, Q, contact_length, excess_share, half,
+    half_share, spring_share, springpot, twelfth, w, z,
+)  # fmt: skip
 
 spare_3, spare_4, reach, delay = symbols(r"""
     omega_v3   \breve \omega_3   1  remainder of a third bound  nonnegative
@@ -384,12 +358,12 @@ def _springpot(proof: Proof) -> None:
     r"""Fractional Kelvin-Voigt: both limits.
 
     With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for
-    the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3
-    - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha
-    (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)}
-    (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$
-    falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the
-    velocity (F17-growth).
+    the order, in units of $K$. At low velocity $\mu \to \frac{6 \alpha a}{(4 - \alpha) \Gamma(3 - \alpha) R}
+    \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{\alpha (3 - \alpha) a}{(4 -
+    \alpha) R}$ and $W \to \frac{(2 - \alpha)^{2 - \alpha} K}{\Gamma(4 - \alpha) R} (V \tau)^\alpha a^{3 -
+    \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$ falls as
+    $V^{-\alpha/(3 - \alpha)}$. Slopes are over $\ln \breve \zeta$; $\breve \zeta$ grows with the velocity
+    (F17-growth).
 
     Argued: At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
     $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The

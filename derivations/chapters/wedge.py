@@ -11,27 +11,16 @@ from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, delta, h, x
 from .power_law import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
-    SECTION,
-    Q,
-    eta_n,
-    m_n,
-    n,
-    phi_n,
-    w_ahead,
-    w_behind,
-    w_n,
-    y,
-)
+    FRICTION_COEFFICIENT, FRICTION_FORCE, LOAD, SECTION, Q, eta_n, m_n, n, phi_n, w_ahead, w_behind,
+    w_n, y,
+)  # fmt: skip
 from .power_law_weight import scaled_n
 from .steady import a, any_pressure, l, l_r, p, q
 from .theorems import P, kappa, lam, s
 
 inclination, side, held, s_peeling, s_peeled = symbols(r"""
     c_1   c       1  slope of a wedge  prints \hat c
-    sigma_w  \hat \sigma  1  1 behind the tip of a wedge, -1 ahead of it  real
+    sigma_w  \hat \sigma  1  1 behind the tip of a wedge, $-1$ ahead of it  real
     held  \bar w  1  scaled load beyond the support of a wedge
     s_w1  s_1     1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
     s_w2  s_2     1  half length of a wedge whose contact ends at its tip  prints \hat a_2
@@ -98,7 +87,7 @@ def _forces(
     proof.done(m_n, friction / load)
 
 
-result("wedge-peeling", title="Wedge: slow sliding", text=r"For $l < 1$, with $q = 1 - l$.",
+result("wedge-peeling", title="Wedge: slow sliding", text="The contact reaches beyond the tip.",
        state=PEELING, edge=q, load=1 + l**2 / 2,
        friction=2 * l - l**2 / 2)(_forces)  # fmt: skip
 result("wedge-peeled", title="Wedge: fast sliding",

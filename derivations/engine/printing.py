@@ -9,6 +9,8 @@ dots and primes are derivatives.
 'W - C V \\delta'
 >>> doprint(3 * sp.sqrt(3) / 4 - sp.Rational(3, 4)), doprint(sp.sqrt(2 * R * delta))
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
+>>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
+('\\frac{\\partial}{\\partial R} \\left(- \\frac{C}{R}\\right)', '\\left. \\frac{C}{R} \\right|_{R \\to R V}')
 >>> doprint(C * V * (1 - C / W) / R)
 '\\frac{C V}{R} \\left(1 - \\frac{C}{W}\\right)'
 """
@@ -448,7 +450,10 @@ class Printer(LatexPrinter):
             if self._small:
                 return rf"{sign}{power} {self._print(call)}/{below}"
             return rf"\frac{{{sign}{power} {self._print(call)}}}{{{below}}}"
-        return str(super()._print_Derivative(expr))
+        shown, inner = str(super()._print_Derivative(expr)), str(self._print(call))
+        if inner.startswith("-") and shown.endswith(inner):
+            shown = shown.removesuffix(inner) + self._bracket(inner)
+        return shown
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
         inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
@@ -467,10 +472,10 @@ class Printer(LatexPrinter):
     def _valued(self, node: sp.Subs) -> str:
         inner = str(self._print(node.expr))
         loose = any(part.is_Add for part in sp.Mul.make_args(node.expr)) or inner.startswith("- ")
-        pairs = zip(node.variables, node.point, strict=True)
         places = ", ".join(
-            f"{self._print(letter)} = {self._within('script', at, self._print)}"
-            for letter, at in pairs
+            f"{self._print(letter)} {sign} {self._within('script', at, self._print)}"
+            for letter, at in zip(node.variables, node.point, strict=True)
+            for sign in ["=" if not at.has(letter) else r"\to"]
         )
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
 

@@ -437,7 +437,8 @@ class Proof(Guarded):
             right = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             series = _series(c, eps, k)
-            right = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
+            whole = rf"{series} + O\left({tex(eps**rest)}\right)"
+            right = whole if leading == 1 else rf"{factor} \left({whole}\right)"
         note = rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$"
         fact = self._record(
             *(expr, "=", leading, reason, "proved-leading-order"),
