@@ -17,7 +17,7 @@ TOPICS = {
     ),
     "Other foundations": (
         *("foundations", "rubber", "rubber_start"),
-        *("temperature", "fewer_arms", "foundation_precision"),
+        *("temperature", "fewer_arms", "foundation_precision", "layer_error"),
     ),
     "The ball": ("ball", "ball_start", "ball_pressure"),
     "A spring in the drive": (

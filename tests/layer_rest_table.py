@@ -11,12 +11,13 @@ import math
 
 import mpmath as mp
 import numpy as np
+from scipy.interpolate import RectBivariateSpline
 from scipy.optimize import brentq
 
 from kvtheory.layer import Body, Support
 from kvtheory.layer.sliding import levels
 from kvtheory.scene.indenters import Parabola, Sphere
-from kvtheory.theory.contact_at_rest import HOME, poisson_ratio
+from kvtheory.theory.contact_at_rest import HOME, log_thin, poisson_ratio
 
 THICKNESS = np.exp(np.linspace(np.log(0.1), np.log(100.0), 25))
 THIN = np.exp(np.linspace(np.log(0.001), np.log(0.1), 17))[:-1]
@@ -76,9 +77,9 @@ def thick(name, thickness, last):
 
 
 def table(loads):
-    """Return the table from the loads of the entries, by name."""
-    axis = np.concatenate([THIN, THICKNESS, THICK])
-    found = {"log_thickness": np.log(axis).tolist(), "share": SHARES.tolist()}
+    """Return knots and coefficients of the splines from the loads of the entries, by name."""
+    axis, found = np.concatenate([THIN, THICKNESS, THICK]), {}
+    without = log_thin(axis[:, None], poisson_ratio(axis[:, None], SHARES))
     for name, own in loads.items():
         h = THICKNESS[0]
         left = own[0] / [thin(name, h, y) for y in SHARES] - 1.0
@@ -87,7 +88,10 @@ def table(loads):
             for H in THIN
         ]
         last = [[thick(name, H, load) for load in own[-1]] for H in THICK]
-        found[name] = np.log(np.vstack([first, own, last])).round(6).tolist()
+        values = np.log(np.vstack([first, own, last])) + without
+        *knots, c = RectBivariateSpline(np.log(axis), SHARES, values).tck
+        found |= {"log_thickness": knots[0].tolist(), "share": knots[1].tolist()}
+        found[name] = c.reshape(len(axis), -1).round(8).tolist()
     return found
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.layer.foundation_error import SMALL, errors_of, model_error
+from kvtheory.api._model_error import SMALL, errors_of, model_error
 from tests.commands import printed, run
 
 RUBBER = kv.GeneralizedMaxwell(

@@ -114,9 +114,16 @@ def test_refusals(options, message):
     assert refused.count("error") == 1
 
 
-def test_sweeps_know_the_foundation_alone():
-    with pytest.raises(ValueError, match="method"):
-        kv.sweep(LINE, over={"drive.velocity": [0.1]}, method="layer")
+def test_a_sweep_solves_the_layer_itself(tmp_path):
+    over = {"drive.velocity": np.array([0.02, 0.2]), "foundation.thickness": [1e-3, 2e-3]}
+    swept = kv.sweep(LINE, over=over, method="layer", output=tmp_path / "layer.csv")
+    grid = {"drive.velocity": over["drive.velocity"][:, None], "foundation.thickness": [1e-3, 2e-3]}
+    right = kv.steady(LINE, over=grid, method="layer")
+    assert swept["friction_force"] == pytest.approx(right.friction_force, rel=1e-3)
+    assert np.isnan(swept["dissipated_in_contact"]).all()
+    with pytest.raises(ValueError, match="steady quantities only"):
+        kv.sweep(LINE, over=over, quantities="depth.end", method="layer")
+    assert right.plot().axes[0].get_xlabel() == "drive velocity $V$ [mm/s]"
 
 
 def test_the_peak_on_a_damper_is_infinite_and_the_rest_is_not():

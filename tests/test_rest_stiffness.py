@@ -95,6 +95,9 @@ def test_depth_and_energy_follow_from_the_load(per_width):
     loads = np.append(0.0, load_at_rest(*at, per_width=per_width))
     energy = energy_at_rest(1e-4, *at[1:], per_width=per_width)
     assert energy == pytest.approx(np.trapezoid(loads, dx=5e-8), rel=1e-4)
+    # Its shallower contacts are off the table.
+    deep = energy_at_rest(1e-4, 0.01, 1e6, 900.0, 0.3, per_width=per_width)
+    assert 0.39 < deep / 1e-4 / load_at_rest(1e-4, 0.01, 1e6, 900.0, 0.3, per_width=per_width) < 0.5
     share = energy_at_rest([1e-9, 1e-9], 0.01, 1e6, [1e-9, 1e-3], 0.0, per_width=per_width)
     share /= 1e-9 * load_at_rest(1e-9, 0.01, 1e6, [1e-9, 1e-3], 0.0, per_width=per_width)
     assert share == pytest.approx([0.4, 0.48] if per_width else [1 / 3, 0.4], abs=0.02)

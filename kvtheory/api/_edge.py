@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.api._model_error import model_note
 from kvtheory.scene.capabilities import lacks_one_scene, require
 from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.layer import THIN_WAY, thick_layer
@@ -45,10 +46,6 @@ def layer_note(scene: Scene, half_length: Any) -> str:
     if foundation.stiffness_from == THIN_WAY:
         shortest = half_length * np.minimum(1.0, stretch)
         return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
-    if foundation.modulus is None:
-        return ""
-    from kvtheory.layer.foundation_error import model_note  # SciPy takes a while to import
-
     return model_note(scene)
 
 

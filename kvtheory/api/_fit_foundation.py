@@ -60,7 +60,9 @@ def fit_foundation(
     modulus
         ``"E"`` or ``"G"``, where the headers do not say which.
     thickness, poisson_ratio
-        Of the layer that is the foundation. Poisson's ratio is needed for shear moduli: E = 2 G (1 + nu).
+        Of the layer that is the foundation: any thickness, up to a ratio of 0.5; K is that of its contact at
+        rest in the scene, or, where the foundation of the scene says so, of a thin layer. Poisson's ratio is
+        needed for shear moduli: E = 2 G (1 + nu).
     temperature
         That of the foundation. The reference temperature is that of the nearest sweep; without
         `temperature`, that of the middle one.
@@ -93,7 +95,7 @@ def fit_foundation(
     >>> data = {"f [Hz]": f, "E' [MPa]": 1 + 3 * z**2 / (1 + z**2), "E'' [MPa]": 3 * z / (1 + z**2)}
     >>> found = kv.fit_foundation(data, thickness="2 mm", poisson_ratio=0.45)
     >>> found.arms, found.modulus, round(found.foundation.stiffness / 1e9, 4)
-    (((3000000.0, 0.02),), 1000000.0, 1.8966)
+    (((3000000.0, 0.02),), 1000000.0, 1.475)
 
     References
     ----------

@@ -7,6 +7,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.api._elements import elements
 from kvtheory.api._fewer_arms import fewer_arms
+from kvtheory.api._model_error import errors_of
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
@@ -111,8 +112,6 @@ def solve(
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
-        from kvtheory.layer.foundation_error import errors_of
-
         own = partial(steady, progress=progress)
         rungs = climbing.rungs(own)
         if (error := errors_of(scene)) is not None:

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
-from kvtheory.api._steady import method_for
+from kvtheory.api._steady import BODY, LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
-from kvtheory.models.steady.methods import METHODS
 from kvtheory.progress import Progress
 from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene import arguments as argument
@@ -133,7 +132,7 @@ def sweep(
 
 @argument.checked(
     scene=argument.a_scene, at=argument.times, over=argument.replacements, quantities=argument.names,
-    method=argument.choice(METHODS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
+    method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
     scene: Scene | None = None, *, over: Mapping[Any, Any] | None = None, quantities: Any = None,
@@ -150,10 +149,13 @@ def plan_of(
         if (key := "foundation.damping") in axis.values:
             scene = scene.replace({key: float(axis.values[key].max())})
     sprung = not scene.drive.rigid or any("drive.stiffness" in axis.values for axis in axes)
-    if quantities is None and at is None and sprung and not lacks_stability(scene):
+    on_body = method == BODY
+    if quantities is None and at is None and sprung and not (on_body or lacks_stability(scene)):
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
+    if on_body and (plan.transient or any(column.base == STABLE for column in columns)):
+        raise ValueError('`method` = "layer" gives steady quantities only, without `stable`')
     if plan.transient and lacks_continuum(scene):
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:

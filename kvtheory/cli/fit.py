@@ -35,9 +35,9 @@ def _save_scene(found: Any, _: Any, path: Path) -> None:
 )
 @click.argument("data", type=FILE)
 @click.option(
-    "--thickness", metavar='"2 mm"', help="Thickness of the layer that is the foundation."
+    "--thickness", metavar='"2 mm"', help="Thickness of the layer that is the foundation, or inf."
 )
-@click.option("--poisson-ratio", type=float, metavar="0.3", help="Its Poisson's ratio.")
+@click.option("--poisson-ratio", type=float, metavar="0.3", help="Its Poisson's ratio, up to 0.5.")
 @click.option("--temperature", metavar='"60 degC"', help="Temperature of the foundation.")
 @click.option(
     "--shift-factors", type=FILE, help="CSV of T [degC],log10 a_T; default: fitted to the sweeps."

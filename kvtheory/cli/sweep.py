@@ -47,7 +47,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
-@click.option("--method", metavar="exact|quadrature|asymptote", help="As in steady.")
+@click.option("--method", metavar="exact|quadrature|asymptote|layer", help="As in steady.")
 @click.option("--jobs", type=click.IntRange(1), help="Workers; default: 1.")
 @click.option(
     "--executor", metavar="MODULE:FACTORY",

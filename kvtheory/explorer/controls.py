@@ -15,7 +15,7 @@ from kvtheory.scene.layer import THIN, THIN_WAY
 from kvtheory.scene.model import SECTIONS as ALL_SECTIONS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
-from kvtheory.theory.contact_at_rest import coefficients
+from kvtheory.theory.contact_at_rest import splines
 
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
@@ -116,7 +116,7 @@ def controls(scene: Scene) -> dict[str, Any]:
     return {
         "sections": sections, "allowed": _allowed(), "scene": shown,
         "arm": {name: _slider("arm", s, name, None, True) for name, s in quantities(Arm).items()},
-        "rest": {"shapes": REST_SHAPES, **coefficients()},
+        "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
     }  # fmt: skip

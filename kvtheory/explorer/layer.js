@@ -19,17 +19,17 @@ function basis(knots, x) {
   return [i - 3, found];
 }
 
-function spline([x_knots, y_knots, c], x, y) {
-  const [i, row] = basis(x_knots, x), [j, column] = basis(y_knots, y), width = y_knots.length - 4;
-  return row.reduce((sum, p, k) => sum + p * column.reduce((inner, q, m) => inner + q * c[(i + k) * width + j + m], 0), 0);
+function spline(name, x, y) {
+  const [i, row] = basis(MODEL.rest.log_thickness, x), [j, column] = basis(MODEL.rest.share, y), c = MODEL.rest[name];
+  return row.reduce((sum, p, k) => sum + p * column.reduce((inner, q, m) => inner + q * c[i + k][j + m], 0), 0);
 }
 
 /** The load at rest at a depth: of a parabola per unit width, or of a ball. */
 function load_at_rest(depth, { line, R, E, H, nu }) {
-  const a = Math.sqrt(2 * R * depth), y = Math.log(H / a), table = MODEL.rest[line ? "line" : "ball"];
-  const within = Math.min(Math.max(y, table[0][0]), table[0][table[0].length - 1]), thinner = Math.min(y - within, 0);
+  const a = Math.sqrt(2 * R * depth), y = Math.log(H / a), ends = MODEL.rest.log_thickness;
+  const within = Math.min(Math.max(y, ends[0]), ends[ends.length - 1]), thinner = Math.min(y - within, 0);
   const c = 1 / (1 + Math.exp(-2 * (within + thinner))), free = 1 - 2 * nu, share = free * (1 + c) / (free + c);
-  const found = spline(table, within, share) - thinner - Math.log((free + c) / (1 - nu) ** 2);
+  const found = spline(line ? "line" : "ball", within, share) - thinner - Math.log((free + c) / (1 - nu) ** 2);
   return Math.exp(found) * depth * (line ? 1 : a) * E / (2 * (1 - nu * nu));
 }
 

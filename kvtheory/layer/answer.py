@@ -38,20 +38,25 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
     The half length is that of the body at rest at the depth of sliding. Where in a body power is dissipated
     is not known: `dissipated_in_contact` is NaN.
     """
-    shape, flat = scene.shape, scene.flat()
-    scenes = [flat.rows(i) for i in range(math.prod(shape))] if shape else [scene]
-    rows = []
-    for each, found in zip(scenes, _slidings(scene, scenes), strict=True):
-        rows.append(_row(each, found))
+    size, flat = scene.shape, scene.flat()
+    scenes = [flat.rows(i) for i in range(math.prod(size))] if size else [scene]
+    rows: list[list[float]] = []
+    at_rest: dict[tuple[int, float], Sliding] = {}
+    for i, (each, found) in enumerate(zip(scenes, _slidings(scene, scenes), strict=True)):
+        key = 0 if _at_velocities(scene) else i, found.depth
+        if key not in at_rest:
+            shape, body, _ = given(each)
+            at_rest[key] = slide(shape, body, 0.0, Support(found.depth), AT_REST)
+        rows.append(_row(each, found, at_rest[key]))
         report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")
     names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
     table = np.array(rows, dtype=float).reshape(len(scenes), len(names)).T
-    columns = [column.reshape(shape) if shape else float(column[0]) for column in table]
+    columns = [column.reshape(size) if size else float(column[0]) for column in table]
     values: dict[str, Any] = dict(zip(names, columns[: -len(WITH_ERROR)], strict=False))
     errors = dict(zip(WITH_ERROR, columns[-len(WITH_ERROR) :], strict=True))
     return SteadyState(
         **values,
-        dissipated_in_contact=np.full(shape, math.nan) if shape else math.nan,
+        dissipated_in_contact=np.full(size, math.nan) if size else math.nan,
         model="layer",
         certificate=Certificate("estimated", STATEMENT, errors, RELATIVE_TO),
         units=units_for(scene.indenter, STEADY_UNITS),
@@ -69,7 +74,7 @@ def _slidings(scene: Scene, scenes: list[Scene]) -> Iterable[Sliding]:
     if not scenes:
         return ()
     rtol, V = RTOL[scene.indenter.per_width], [float(each.drive.final_velocity) for each in scenes]
-    if scene.arrays().keys() <= {"drive.velocity"}:
+    if _at_velocities(scene):
         shape, body, support = given(scenes[0])
         return slide_at(shape, body, V, support, rtol)
     return (
@@ -78,10 +83,13 @@ def _slidings(scene: Scene, scenes: list[Scene]) -> Iterable[Sliding]:
     )
 
 
-def _row(scene: Scene, found: Sliding) -> list[float]:
+def _at_velocities(scene: Scene) -> bool:
+    """Whether the scenes of arrays differ in their velocities alone."""
+    return scene.arrays().keys() <= {"drive.velocity"}
+
+
+def _row(scene: Scene, found: Sliding, at_rest: Sliding) -> list[float]:
     """Return the quantities of one scene, and then the relative errors of those `WITH_ERROR`."""
-    shape, body, _ = given(scene)
-    at_rest = slide(shape, body, 0.0, Support(found.depth), AT_REST)
     length = found.trailing_edge - found.leading_edge
     half_length = 0.5 * (at_rest.trailing_edge - at_rest.leading_edge)
     half_error = 0.5 * (at_rest.errors["leading_edge"] + at_rest.errors["trailing_edge"])

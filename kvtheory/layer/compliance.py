@@ -68,12 +68,15 @@ def _rest(poisson_ratio: float) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _spline(poisson_ratio: float) -> CubicSpline:
-    """Return 1/(2 pi) int (T - 1 + e^(-2 kappa)) J_0(kappa r) d kappa."""
-    r = np.linspace(0.0, REACH, KNOTS)
-    rest = _rest(poisson_ratio) / (2.0 * math.pi)
-    values = np.concatenate([j0(np.outer(part, KAPPA)) @ rest for part in np.array_split(r, 16)])
-    return CubicSpline(r, values)
+def _spline(poisson_ratio: float, line: bool) -> CubicSpline:
+    """Return the rest at r thicknesses from a line or a point load: int (T - 1 + e^(-2 kappa)) f d kappa.
+
+    f = cos(kappa r)/(pi kappa) of a line, J_0(kappa r)/(2 pi) of a point.
+    """
+    r, rest = np.linspace(0.0, REACH, KNOTS), _rest(poisson_ratio) / (2.0 * math.pi)
+    wave, rest = (np.cos, 2.0 * rest / KAPPA) if line else (j0, rest)
+    values = [wave(np.outer(part, KAPPA)) @ rest for part in np.array_split(r, 16)]
+    return CubicSpline(r, np.concatenate(values))
 
 
 def _closed_of_point(r: Array) -> Array:
@@ -83,22 +86,30 @@ def _closed_of_point(r: Array) -> Array:
 
 def _rest_of_point(r: Array, poisson_ratio: float) -> Array:
     """Return the rest at r thicknesses from a point load; far away it takes away the closed part."""
-    near = _spline(poisson_ratio)(np.minimum(r, REACH))
+    near = _spline(poisson_ratio, line=False)(np.minimum(r, REACH))
     return np.where(r < REACH, near, -_closed_of_point(np.maximum(r, REACH)))
 
 
 def _line(x: Array, H: float, poisson_ratio: float, cell: float) -> Array:
     """Return the displacement at distances x from a strip of one cell (`cell` = 1), or a line load (0)."""
-    near, k = np.abs(x) < REACH * H, KAPPA / H
+    near = np.abs(x) < REACH * H
     found, at = np.zeros(x.shape), x[near]
-    spectrum = _rest(poisson_ratio) / KAPPA / math.pi * np.sinc(cell * k / (2.0 * math.pi))
+    spline = _spline(poisson_ratio, line=True)
     if cell:
         closed = sum(sign * (_log_integral(at + 0.5, b) - _log_integral(at - 0.5, b))
                      for sign, b in ((1.0, 2.0 * H), (-1.0, 0.0)))  # fmt: skip
+        points = zip(*_points(1.0, H), strict=True)
+        rest = sum(weight * spline(np.abs(at + u) / H) for u, weight in points)
     else:
-        closed = np.log1p((2.0 * H / at) ** 2)
-    found[near] = closed / (2.0 * math.pi) + np.cos(np.outer(at, k)) @ spectrum
+        closed, rest = np.log1p((2.0 * H / at) ** 2), spline(np.abs(at) / H)
+    found[near] = closed / (2.0 * math.pi) + rest
     return found
+
+
+def _points(length: float, H: float) -> Any:
+    """Return Gauss points and weights of a mean over a cell, of what varies over a thickness."""
+    points, weights = np.polynomial.legendre.leggauss(3 + int(3.0 * length / H))
+    return 0.5 * length * points, 0.5 * weights
 
 
 def _log_integral(x: Array, b: float) -> Array:
@@ -155,11 +166,10 @@ def of_cell(
     near = np.hypot(x, y) < REACH * H
     rows, columns = near.any(axis=1), int(np.count_nonzero(near.any(axis=0)))
     at, rest = x[rows], np.zeros((np.count_nonzero(rows), columns))
-    points = [np.polynomial.legendre.leggauss(3 + int(3.0 * step / H)) for step in (1.0, width)]
-    for u, along in zip(*points[0], strict=True):
-        for v, across in zip(*points[1], strict=True):
-            r = np.hypot(at + 0.5 * u, y[:columns] + 0.5 * v * width) / H
-            rest += 0.25 * along * across * width / H * _rest_of_point(r, poisson_ratio)
+    for u, along in zip(*_points(1.0, H), strict=True):
+        for v, across in zip(*_points(width, H), strict=True):
+            r = np.hypot(at + u, y[:columns] + v) / H
+            rest += along * across * width / H * _rest_of_point(r, poisson_ratio)
     found[rows, :columns] += rest
     return _mirrored(np.where(near, found, 0.0), shift)
 

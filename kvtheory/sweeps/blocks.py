@@ -14,6 +14,8 @@ import numpy as np
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
+from kvtheory.progress import silent
+from kvtheory.results import SteadyState
 from kvtheory.scene.capabilities import lacks_continuum
 from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
@@ -78,6 +80,15 @@ def compute(given: Task) -> Block:
     return Block(given.start, given.start + given.points, table, failures, statements, errors)
 
 
+def _state(scene: Scene, method: str) -> SteadyState:
+    """Solve steady sliding, by a method of the foundation or on the layer itself."""
+    if method in METHODS:
+        return METHODS[method](scene)
+    from kvtheory.layer.answer import solve  # SciPy takes a while to import
+
+    return solve(scene, silent)
+
+
 def _reason(error: Exception) -> str:
     reason = "; ".join(str(error).splitlines()) or type(error).__name__
     beyond_range = isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError)
@@ -94,7 +105,7 @@ def _steady(given: Task) -> Measured:
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
                 scene = plan.scene.replace({key: array[a:b] for key, array in given.over.items()})
-                state = METHODS[plan.method](scene)
+                state = _state(scene, plan.method)
                 if STABLE in names:
                     state = replace(state, stable=lasts(scene))
         except FAILS as error:

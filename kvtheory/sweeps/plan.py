@@ -36,6 +36,8 @@ Table = dict[str, NDArray[Any]]
 FAILS = (ValueError, ArithmeticError, RuntimeError)
 """Errors that mean a scene has no solution; any other is a bug."""
 
+VECTORISED = "exact", "asymptote"
+"""Methods of steady sliding that solve a block as fast as a few scenes."""
 MEASURES = ("end", "max", "min", "time_of_max")
 OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
 """Measures that elements can give. Times of maxima and short losses of contact need more resolution."""
@@ -215,7 +217,7 @@ class Plan:
     @property
     def vectorised(self) -> bool:
         """Whether a block is one call on arrays."""
-        return not self.transient and self.method != "quadrature"
+        return not self.transient and self.method in VECTORISED
 
     def needed(self, *, steady: bool) -> list[str]:
         """Return the quantities that are needed of steady sliding, or of transients."""

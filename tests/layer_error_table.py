@@ -1,0 +1,156 @@
+"""Writes `kvtheory/layer/model_error.json`: python -m tests.layer_error_table, half an hour on two cores.
+
+Every entry is the lowest and the highest error, over spectra of the same width and stiffening, of the
+foundation against boundary elements of the body, at dead weight.
+"""
+
+import json
+import math
+from concurrent.futures import ProcessPoolExecutor
+from itertools import product
+
+import numpy as np
+from scipy.optimize import brentq
+
+import kvtheory as kv
+from kvtheory.layer import Body, Support, load_at_rest
+from kvtheory.layer.model_error import TABLE, half_width
+from kvtheory.layer.sliding import levels
+
+THICKNESS = [0.1, 0.3, 1.0, 3.0, 10.0, 100.0]
+"""Over the half length at rest; the last one of a ball is a half-space."""
+RATIOS = [0.0, 0.3, 0.45, 0.49, 0.5]
+STIFFENING = [1.05, 3.0, 50.0, 2000.0]
+WIDTHS = [0.0, 2.0, 6.0]
+PLACES = np.array([-1.2, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0, 1.5, 2.2])
+"""log10(V/V*) over the half width of the transition in decades."""
+SLOPES = (-0.5,)
+"""Powers of the relaxation time as which the moduli of many arms vary."""
+RADIUS, DEPTH, MODULUS = 0.01, 1e-4, 1e6
+HALF_LENGTH = math.sqrt(2.0 * RADIUS * DEPTH)
+CELLS = {True: 60, False: 20}
+COARSE = 0.02
+"""Largest change between the last two grids."""
+NAMES = "friction_coefficient", "depth"
+
+
+def width_of(moduli, times):
+    """Return the width of a spectrum in decades."""
+    return math.log10(np.sum(moduli * times) * np.sum(moduli / times) / np.sum(moduli) ** 2)
+
+
+def spectra(width):
+    """Return arms, of a total modulus of 1, of each form of a spectrum of a width."""
+    if width == 0.0:
+        return [[(1.0, 0.02)]]
+    found = []
+    for n, slope in [(2, 0.0)] + [(int(width) + 2, slope) for slope in SLOPES]:
+
+        def arms(decades, n=n, slope=slope):
+            times = 0.02 * np.logspace(0.0, decades, n)
+            moduli = times**slope
+            return moduli / np.sum(moduli), times
+
+        decades = brentq(lambda d: width_of(*arms(d)) - width, 0.1, 40.0)
+        found.append(list(zip(*arms(decades), strict=True)))
+    return found
+
+
+def scene_of(kind, thickness, nu, arms):
+    """Return a scene of independent elements at dead weight, and the layer: no arms are Kelvin-Voigt."""
+    shape = {"line": kv.Parabola, "ball": kv.Sphere}[kind](radius=RADIUS)
+    H = thickness * HALF_LENGTH
+    load = float(load_at_rest(DEPTH, RADIUS, MODULUS, H, nu, per_width=shape.per_width))
+    of_depth = 4.0 / 3.0 * HALF_LENGTH * DEPTH if shape.per_width else math.pi * RADIUS * DEPTH**2
+    K = load / of_depth
+    if arms:
+        body = Body.of_series(MODULUS, H, nu, [(MODULUS * E, tau) for E, tau in arms])
+        foundation = kv.GeneralizedMaxwell(stiffness=K, arms=[(K * E, tau) for E, tau in arms])
+    else:
+        body = Body.kelvin_voigt(MODULUS, H, nu, 0.02)
+        foundation = kv.Foundation(K, 0.02)
+    return kv.Scene(shape, foundation, kv.DeadWeight(load=load), kv.Drive(1.0)), body
+
+
+def errors(kind, thickness, nu, arms, ratios):
+    """Return the errors of friction coefficient and depth over V/V*, and the changes from grid to grid."""
+    scene, body = scene_of(kind, thickness, nu, arms)
+    velocities = ratios * float(kv.asymptotes(scene).critical_velocity)
+    found = kv.steady(scene, over={"drive.velocity": velocities})
+    fine, coarse = np.array([on_the_body(scene, body, V) for V in velocities]).T.reshape(2, 2, -1)
+    return np.array([getattr(found, name) for name in NAMES]) / fine - 1.0, coarse / fine - 1.0
+
+
+def on_the_body(scene, body, velocity):
+    """Return values on the body, and on the grid before the last."""
+    known = []
+    for found in levels(scene.indenter, body, velocity, Support.of_scene(scene.support)):
+        values = found.values(scene.indenter, body, velocity)
+        known.append([values[name] for name in NAMES])
+        touching = np.count_nonzero(found.contact.active.any(axis=1))
+        if len(known) > 1 and touching > CELLS[scene.indenter.per_width]:
+            break
+    return [*known[-1], *known[-2]]
+
+
+def entry(case):
+    """Return the lowest and the highest errors of an entry, (4, places)."""
+    kind, thickness, nu, stiffening, width = case
+    ratios = 10.0 ** (PLACES * half_width(width, stiffening))
+    if kind == "ball" and thickness == THICKNESS[-1]:
+        thickness = math.inf
+    if math.isinf(stiffening):
+        forms = [[]]  # Kelvin-Voigt
+    else:
+        forms = [[((stiffening - 1.0) * E, tau) for E, tau in arms] for arms in spectra(width)]
+    found = [resolved(*errors(kind, thickness, nu, arms, ratios)) for arms in forms]
+    return case, np.concatenate([np.min(found, axis=0), np.max(found, axis=0)])
+
+
+def resolved(found, change):
+    """Return errors; where no grid resolves friction at low velocity, those at a higher one."""
+    found = np.where(abs(change) < COARSE, found, np.nan)
+    for i in reversed(range(found.shape[1] - 1)):
+        found[:, i] = np.where(np.isnan(found[:, i]), found[:, i + 1], found[:, i])
+    if not np.isfinite(found).all():
+        raise AssertionError("no grid is fine enough")
+    return found
+
+
+def cases():
+    """Return all entries; of a half-space Poisson's ratio does not matter."""
+    for kind, thickness, nu in product(("line", "ball"), THICKNESS, RATIOS):
+        if kind == "ball" and thickness == THICKNESS[-1] and nu < 0.5:
+            continue
+        for stiffening, width in [*product(STIFFENING, WIDTHS), (math.inf, 0.0)]:
+            yield kind, thickness, nu, stiffening, width
+
+
+def table(found):
+    """Return the map: errors in per mille, by kind and law, over its axes."""
+    axes = {"thickness": THICKNESS, "poisson_ratio": RATIOS, "stiffening": STIFFENING}
+    axes |= {"width": WIDTHS, "place": PLACES.tolist()}
+    result = {"axes": axes}
+    for kind in ("line", "ball"):
+
+        def entries(h, nu, pairs, kind=kind):
+            nu = 0.5 if kind == "ball" and h == THICKNESS[-1] else nu
+            return [
+                np.rint(1e3 * found[kind, h, nu, *pair].T).astype(int).tolist() for pair in pairs
+            ]
+
+        def grid(pairs, entries=entries):
+            return [[entries(h, nu, pairs) for nu in RATIOS] for h in THICKNESS]
+
+        shape = len(THICKNESS), len(RATIOS), len(STIFFENING), len(WIDTHS), PLACES.size, 4
+        arms = np.reshape(grid(list(product(STIFFENING, WIDTHS))), shape).tolist()
+        voigt = np.reshape(grid([(math.inf, 0.0)]), (*shape[:2], PLACES.size, 4)).tolist()
+        result[kind] = {"arms": arms, "kelvin_voigt": voigt}
+    return result
+
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(2) as workers:
+        TABLE.write_text(
+            json.dumps(table(dict(workers.map(entry, cases()))), separators=(",", ":")) + "\n"
+        )
