@@ -77,7 +77,9 @@ def stability(
     if wrong := sorted(wanted - set(QUANTITIES)):
         raise SceneError([problem("`quantity`", name, nearest(name, QUANTITIES)) for name in wrong])
     if scene.drive.coasts:
-        message = "stability is that of a spring: with drive.stiffness = 0 the indenter coasts to rest"
+        message = (
+            "stability is that of a spring: with drive.stiffness = 0 the indenter coasts to rest"
+        )
         raise ValueError(f"{message}; give a stiffness above 0, or none, for a rigid drive")
     from kvtheory.models.steady import stable_sliding
 

@@ -302,7 +302,9 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         lasts = min(float(times[-1]), math.sqrt(M_x / k_x)) if k_x else float(times[-1])
         swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
     low, high = motion.extremes(0.0, float(times[-1]))
-    elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing, begun.depth, wider)
+    elements = Elements.at_rest(
+        scene, rules, -high - reach - swing, -low + reach + swing, begun.depth, wider
+    )
     damping = (
         scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
     )
@@ -373,7 +375,9 @@ def _widens(scene: Scene, begun: StartState) -> float:
     energy = 0.5 * scene.support.mass * begun.rate**2
     energy += (static.load + scene.support.spring * off) * off
     energy += static.load * max(begun.depth, 0.0) ** 2 / static.depth
-    return max(1.0, math.sqrt(max(begun.depth, 0.0) / static.depth), (energy / static.energy) ** IMPACT)
+    return max(
+        1.0, math.sqrt(max(begun.depth, 0.0) / static.depth), (energy / static.energy) ** IMPACT
+    )
 
 
 def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:

@@ -160,9 +160,14 @@ class Model:
             return math.inf
         if c.spring * -depth <= NO_SPRING * c.weight:
             speed = math.sqrt(rate * rate - 2.0 * depth * c.weight / c.mass)
-            return -2.0 * depth / (rate + speed) if rate > 0.0 else (speed - rate) * c.mass / c.weight
+            return (
+                -2.0 * depth / (rate + speed) if rate > 0.0 else (speed - rate) * c.mass / c.weight
+            )
         turns, sags = math.sqrt(c.spring / c.mass), c.depth + c.weight / c.spring
-        swing, phase = math.hypot(depth - sags, rate / turns), math.atan2(-rate / turns, depth - sags)
+        swing, phase = (
+            math.hypot(depth - sags, rate / turns),
+            math.atan2(-rate / turns, depth - sags),
+        )
         return (-math.acos(max(-sags / swing, -1.0)) - phase) % (2.0 * math.pi) / turns
 
     @property
