@@ -6,14 +6,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, one_scene
 from kvtheory.results.impact import Impact
 from kvtheory.scene.arguments import a_scene, checked, measured, number
-from kvtheory.scene.capabilities import (
-    KELVIN_VOIGT,
-    MOVING,
-    QUADRATIC,
-    Needs,
-    Scenes,
-    require,
-)
+from kvtheory.scene.capabilities import lacks_drop, lacks_dropped, require
 from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity
@@ -22,8 +15,6 @@ from kvtheory.scene.static_state import StaticState, ball_stiffness
 SPEED = Quantity("m/s", "v, speed at which the indenter lands", 0.0, True)
 TIME = Quantity("s", "time in contact", 0.0, True)
 FREQUENCY = Quantity("1/s", "omega, angular frequency of the undamped motion", 0.0, True)
-lacks_drop = Needs(Scenes(QUADRATIC, KELVIN_VOIGT, MOVING))
-lacks_indenter = Needs(Scenes(QUADRATIC, supports=MOVING))
 
 
 @checked(scene=a_scene, speed=measured(SPEED))
@@ -115,7 +106,7 @@ def foundation_of_drop(
     from kvtheory.theory.drop import drop, number_of
 
     scene = one_scene(scene, "a drop")
-    require(lacks_indenter, scene, "a drop in closed form")
+    require(lacks_dropped, scene, "a drop in closed form")
     with double_precision(scene):
         line = scene.indenter.per_width
         eta = number_of(restitution, line=line)
@@ -159,7 +150,7 @@ def foundation_of_mode(
     '2.434e+10 0.001'
     """
     scene = one_scene(scene, "a mode")
-    require(lacks_indenter, scene, "a mode in closed form")
+    require(lacks_dropped, scene, "a mode in closed form")
     with double_precision(scene):
         W, stiffness = scene.support.weight, scene.support.mass * frequency * frequency
         unit, power = _contact(scene, 1.0)

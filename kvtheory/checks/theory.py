@@ -190,7 +190,7 @@ class Theory:
         return Rates.of([2.0 * M / (damping + root), (damping + root) / (2.0 * stiffness)])
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
-        """Return the curves at `times` (s): held as at the start before t = 0, just after a jump of the drive."""
+        """Return the curves at `times` (s): held as at the start before, just after a jump of the drive."""
         key = rtol, times.tobytes()
         if key in self._known:
             return self._known[key]

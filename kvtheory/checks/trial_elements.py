@@ -295,23 +295,18 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     drive, held, begun = scene.drive, scene.held, scene.start.at(static.depth, motion.velocity(0.0))
     wider = _widens(scene, begun)
     reach = WINDOW * static.half_length * wider
+    outside = reach + _swing(scene, begun, motion, float(times[-1]))
     M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
-    swing = 0.0 if drive.rigid else SWING * static.half_length
-    if not drive.rigid and (begun.along_rate or not k_x):
-        lasts = min(float(times[-1]), math.sqrt(M_x / k_x)) if k_x else float(times[-1])
-        swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
     low, high = motion.extremes(0.0, float(times[-1]))
-    elements = Elements.at_rest(
-        scene, rules, -high - reach - swing, -low + reach + swing, begun.depth, wider
-    )
+    elements = Elements.at_rest(scene, rules, -high - outside, -low + outside, begun.depth, wider)
     damping = (
         scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
     )
     parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
     depth, damper, creep, drops = (parts * [begun.depth, damping, 1.0 / damping, 1.0]).T
-    rate, along, along_rate, lifted, pulled, sinks = np.zeros((6, len(rules)))
-    rate, along_rate, sprung = rate + begun.rate, along_rate + begun.along_rate, not drive.rigid
+    first = np.array([[begun.rate], [0.0], [begun.along_rate], [0.0], [0.0], [0.0]])
+    rate, along, along_rate, lifted, pulled, sinks = np.repeat(first, len(rules), axis=1)
 
     def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
@@ -334,7 +329,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
-        if h > 0.0 and (sprung or not held):
+        if h > 0.0 and (not drive.rigid or not held):
             sunk, shift, found = at(h)
             if not held:
                 slope = damper + IMPLICIT * h * k_s + found.slope
@@ -346,7 +341,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
                 # Where the whole force raises the indenter and what is left lowers it, it stays, or creeps.
                 sinks = creep * np.maximum(-lift(sunk, rate, found), 0.0)
                 rate = np.maximum(full, np.minimum(less, sinks))
-            if sprung:
+            if not drive.rigid:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
                 along_rate = along_rate + h * a / M_x / (1.0 + IMPLICIT * h * slope / M_x)
@@ -355,15 +350,27 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if not held:
             full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
             lifted = np.select([rate > sinks, rate < 0.0], [full, less], np.clip(0.0, full, less))
-        if sprung:
+        if not drive.rigid:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
         forward = elements.direction(forward, speed, depth, base - along)
         edges = np.where(forward, (found.left, found.right), (found.right, found.left))
-        spring = k_x * along + drive.damping * along_rate if sprung else found.friction
+        spring = found.friction if drive.rigid else k_x * along + drive.damping * along_rate
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
                      found.peak, speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def _swing(scene: Scene, begun: StartState, motion: Any, end: float) -> float:
+    """Return the largest displacement along x, on the spring or without one."""
+    drive, k_x = scene.drive, scene.drive.stiffness or 0.0
+    if drive.rigid:
+        return 0.0
+    swing = SWING * StaticState.of(scene).half_length
+    if begun.along_rate or not k_x:
+        lasts = min(end, math.sqrt(scene.drive_mass / k_x)) if k_x else end
+        swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
+    return swing
 
 
 def _widens(scene: Scene, begun: StartState) -> float:

@@ -23,11 +23,11 @@ class TimeSeries(Presented):
 
     A note says if V/c, c the length of the contact, leaves the frequencies of a measured foundation.
 
-    Of a drop, `restitution` is the speed up at the first take-off over the speed down at the first landing, and
-    `contact_time` (s) the time between both. Of an indenter that coasts, the sliding velocity stays below one
-    hundredth of that at the start from `stopping_time` (s) on, after a sliding distance `stopping_distance`
-    (m): friction vanishes with the velocity, so that the rest fades exponentially and never ends. They are
-    None where they do not occur within the run.
+    Of a drop, from a gap, `restitution` is the speed up at the first take-off over the speed down at the
+    first landing, and `contact_time` (s) the time between both. Of an indenter that coasts, the sliding
+    velocity stays below one hundredth of that at the start from `stopping_time` (s) on, after a sliding
+    distance `stopping_distance` (m): friction vanishes with the velocity, so that the rest fades
+    exponentially and never ends. They are None where they do not occur within the run.
     """
 
     time: Value

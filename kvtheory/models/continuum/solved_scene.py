@@ -30,7 +30,7 @@ from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
-from kvtheory.scene.start import Start
+from kvtheory.scene.start import REST, Start
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ class SolvedScene:
     drive: BaseMotion
     units: StaticState
     end: float
-    start: Start = Start()
+    start: Start = REST
     coasts: bool = False
 
     @property
@@ -115,7 +115,7 @@ class SolvedScene:
 
     @cached_property
     def landmarks(self) -> dict[str, float]:
-        """Return restitution and contact time of a drop, time and distance in which a coasting indenter stops."""
+        """Return restitution and contact time of a drop, and where and when a coasting indenter stops."""
         motion, unit, found = self.motion, self.units, dict[str, float]()
         hops = {kind: s for s, kind in reversed(motion.events) if kind in ("landing", "take-off")}
         if self.start.gap is not None and len(hops) == 2:
@@ -127,7 +127,7 @@ class SolvedScene:
         return found
 
     def _stop(self) -> dict[str, float]:
-        """Return when the sliding velocity stays below a share of that at the start, and the distance slid."""
+        """Return when the sliding velocity stays below a share of the first one, and the distance slid."""
         motion = self.motion
         times, states, count = motion.samples
         speed = np.abs(np.array(structured(states[:count], STATE)["sliding_velocity"]))
