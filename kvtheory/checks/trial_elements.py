@@ -18,6 +18,7 @@ from scipy.linalg import expm
 
 from kvtheory.checks.theory import Array, Theory
 from kvtheory.scene import Scene, Sphere
+from kvtheory.scene.start import StartState
 from kvtheory.scene.static_state import StaticState
 
 
@@ -47,8 +48,9 @@ class Rule(NamedTuple):
 
 COLUMNS, ROWS = {False: 100, True: 26}, 8
 """Elements per static half length of a line contact and of a ball; rows per half width of a ball."""
-WINDOW = 1.7
-"""Half width of the simulated region, in static half lengths."""
+WINDOW, IMPACT = 1.7, 0.2
+"""Half width of the simulated region, in static half lengths; the power of the energy at the start, over that
+at rest, with which it grows."""
 PASSED = 1.618
 """Elements that pass in a step; no whole number, so that entries are not in phase with steps."""
 FEWEST_STEPS, LONGEST_RUN = 300, 1500
@@ -111,20 +113,26 @@ class Elements:
     seen: Array
 
     @classmethod
-    def at_rest(cls, scene: Scene, rules: Sequence[Rule], low: float, high: float) -> "Elements":
-        """Return elements at rest under the indenter, between two places (m)."""
+    def at_rest(
+        cls, scene: Scene, rules: Sequence[Rule], low: float, high: float, depth: float,
+        wider: float = 1.0,
+    ) -> "Elements":  # fmt: skip
+        """Return elements at rest under the indenter at a depth (m), between two places (m).
+
+        A ball has rows for a contact that is `wider` than at rest.
+        """
         static, ball = StaticState.of(scene), isinstance(scene.indenter, Sphere)
         rule = Rule(*np.array(rules, dtype=float).T[:, :, None, None])
         length = static.half_length / COLUMNS[ball]
         places: Any = np.arange(math.floor(low / length), math.ceil(high / length) + 1) * length
         heights, areas = np.zeros((len(rules), 1, 1)), np.full((len(rules), 1, 1), length)
         if isinstance(scene.indenter, Sphere):
-            y = (np.arange(int(ROWS * WINDOW)) + 0.5)[:, None] / ROWS  # over the half width
+            y = (np.arange(int(ROWS * WINDOW * wider)) + 0.5)[:, None] / ROWS  # over the half width
             heights = static.depth * np.where(rule.flat > 0.0, 0.0, y * y)
             width = 2.0 * static.half_length * scene.indenter.stretch / ROWS
             areas = length * width * ((rule.flat == 0.0) | (y < 1.0))
         R = scene.indenter.radius  # type: ignore[union-attr]
-        surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
+        surface = np.maximum(rule.start * depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
         stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
         return cls(
@@ -266,7 +274,7 @@ def instants(scene: Scene, motion: Any, end: float) -> Array:
     longest = end / FEWEST_STEPS
     if motion.highest_speed:
         longest = min(longest, PASSED * length / motion.highest_speed)
-    if not scene.drive.rigid:
+    if scene.drive.stiffness:
         longest = min(longest, OSCILLATION * math.sqrt(scene.drive_mass / scene.drive.stiffness))
     first = longest * FINEST * GROWTH ** np.arange(math.ceil(-math.log(FINEST) / math.log(GROWTH)))
     changes = sorted({0.0, *(t for t in motion.changes if 0.0 < t < end)})
@@ -284,18 +292,21 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     static = StaticState.of(scene)
     motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)
-    reach, drive, held = WINDOW * static.half_length, scene.drive, scene.held
+    drive, held, begun = scene.drive, scene.held, scene.start.at(static.depth, motion.velocity(0.0))
+    wider = _widens(scene, begun)
+    reach = WINDOW * static.half_length * wider
+    outside = reach + _swing(scene, begun, motion, float(times[-1]))
     M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
-    swing = 0.0 if drive.rigid else SWING * static.half_length
     low, high = motion.extremes(0.0, float(times[-1]))
-    elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
+    elements = Elements.at_rest(scene, rules, -high - outside, -low + outside, begun.depth, wider)
     damping = (
         scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
     )
     parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
-    depth, damper, creep, drops = (parts * [static.depth, damping, 1.0 / damping, 1.0]).T
-    rate, along, along_rate, lifted, pulled, sinks = np.zeros((6, len(rules)))
+    depth, damper, creep, drops = (parts * [begun.depth, damping, 1.0 / damping, 1.0]).T
+    first = np.array([[begun.rate], [0.0], [begun.along_rate], [0.0], [0.0], [0.0]])
+    rate, along, along_rate, lifted, pulled, sinks = np.repeat(first, len(rules), axis=1)
 
     def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
@@ -318,7 +329,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
-        if h > 0.0 and (k_x or not held):
+        if h > 0.0 and (not drive.rigid or not held):
             sunk, shift, found = at(h)
             if not held:
                 slope = damper + IMPLICIT * h * k_s + found.slope
@@ -330,7 +341,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
                 # Where the whole force raises the indenter and what is left lowers it, it stays, or creeps.
                 sinks = creep * np.maximum(-lift(sunk, rate, found), 0.0)
                 rate = np.maximum(full, np.minimum(less, sinks))
-            if k_x:
+            if not drive.rigid:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
                 along_rate = along_rate + h * a / M_x / (1.0 + IMPLICIT * h * slope / M_x)
@@ -339,15 +350,41 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if not held:
             full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
             lifted = np.select([rate > sinks, rate < 0.0], [full, less], np.clip(0.0, full, less))
-        if k_x:
+        if not drive.rigid:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
         forward = elements.direction(forward, speed, depth, base - along)
         edges = np.where(forward, (found.left, found.right), (found.right, found.left))
-        spring = k_x * along + drive.damping * along_rate if k_x else found.friction
+        spring = found.friction if drive.rigid else k_x * along + drive.damping * along_rate
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
                      found.peak, speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def _swing(scene: Scene, begun: StartState, motion: Any, end: float) -> float:
+    """Return the largest displacement along x, on the spring or without one."""
+    drive, k_x = scene.drive, scene.drive.stiffness or 0.0
+    if drive.rigid:
+        return 0.0
+    swing = SWING * StaticState.of(scene).half_length
+    if begun.along_rate or not k_x:
+        lasts = min(end, math.sqrt(scene.drive_mass / k_x)) if k_x else end
+        swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
+    return swing
+
+
+def _widens(scene: Scene, begun: StartState) -> float:
+    """Return how much longer than at rest a contact may become after a start."""
+    static = StaticState.of(scene)
+    if scene.held or scene.start.at_rest:
+        return 1.0
+    off = abs(begun.depth - static.depth)
+    energy = 0.5 * scene.support.mass * begun.rate**2
+    energy += (static.load + scene.support.spring * off) * off
+    energy += static.load * max(begun.depth, 0.0) ** 2 / static.depth
+    return max(
+        1.0, math.sqrt(max(begun.depth, 0.0) / static.depth), (energy / static.energy) ** IMPACT
+    )
 
 
 def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:
@@ -377,7 +414,7 @@ def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
     """Return the curves of steady sliding by a rule at speeds (m/s)."""
     scene, static, count = theory.scene, theory.static, speeds.size
     reach, zero = WINDOW * static.half_length, np.zeros(count)
-    elements = Elements.at_rest(scene, [rule] * count, -reach, reach)
+    elements = Elements.at_rest(scene, [rule] * count, -reach, reach, static.depth)
     x = elements.places
     elements.surface = np.zeros((count, elements.heights.shape[1], x.size))
     if scene.foundation.arms:

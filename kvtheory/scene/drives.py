@@ -137,6 +137,11 @@ class Drive(Part):
         """Whether the indenter cannot move along x: there is no spring."""
         return self.stiffness is None
 
+    @property
+    def coasts(self) -> bool:
+        """Whether the indenter is free to move along x, without a spring that would hold it."""
+        return not (self.rigid or np.all(self.stiffness))
+
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
         """The necessary points (time, velocity), in SI; a drive that is a function raises SceneError.

@@ -39,6 +39,7 @@ from kvtheory.scene.quantities import (
     quantities,
     required,
 )
+from kvtheory.scene.start import Start
 from kvtheory.scene.tables import read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -270,6 +271,8 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
         return ["activation_energy"]
     if section == "foundation" and name in (specs := quantities(Foundation)):
         return list(specs[name].excludes)
+    if section == "start" and name in (starts := quantities(Start)):
+        return list(starts[name].excludes)
     if section == "drive" and name in DRIVES and name not in table:
         wave = WAVEFORMS.get(str(table.get("waveform")))
         if wave is None or name not in quantities(wave):  # another motion, on the same spring

@@ -31,7 +31,7 @@ from kvtheory.scene.quantities import (
     quantity,
     validate,
 )
-from kvtheory.scene.start import Start, misplaced
+from kvtheory.scene.start import REST, Start, misplaced
 from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
@@ -159,7 +159,7 @@ class Scene(Part):
     support: Support = DeadWeight(mass=1000.0)
     drive: Drive = Drive(velocity=0.1)
     run: Run = Run()
-    start: Start = Start()
+    start: Start = REST
 
     def __post_init__(self) -> None:
         parts = vars(self)

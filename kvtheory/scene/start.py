@@ -1,5 +1,6 @@
 """How a motion starts: in the air, at another depth than at rest, or with a velocity of its own."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -7,7 +8,7 @@ from typing import Any, NamedTuple
 from kvtheory.scene.mistakes import Problems
 from kvtheory.scene.quantities import Part, Value, given, quantity, validate
 
-ANY = {"minimum": -float("inf"), "default": None}
+ANY: dict[str, Any] = {"minimum": -math.inf, "default": None}
 VERTICAL = "gap", "depth", "depth_rate"
 """The quantities of a start that a fixed indenter has not."""
 
@@ -66,6 +67,10 @@ class Start(Part):
         return StartState(
             depth if self.gap is None else -self.gap, self.depth_rate or 0.0, velocity - sliding
         )
+
+
+REST = Start()
+"""At rest at the static depth."""
 
 
 def misplaced(parts: Mapping[str, Any]) -> Problems:

@@ -15,7 +15,8 @@ from kvtheory.records import record
 class Scenes(NamedTuple):
     """Scenes in scaled form, one entry each: inertia and support number, end time, steady friction force.
 
-    A row of `start` holds d and d' at s = 0. The pieces of the drive of scene i are `pieces[first[i] : first[i + 1]]`.
+    A row of `start` holds d and d' at s = 0. The pieces of the drive of scene i are
+    `pieces[first[i] : first[i + 1]]`.
     """
 
     eps: Any

@@ -7,9 +7,10 @@ In units of W_0 delta_0, with integrals over the contact (in) and over the surfa
                               + 3/8 int_in u^2 dxi + 3/8 int_out u^2 dxi
                               + 3/4 int int_in u'^2 dxi ds + 3/4 int int_out u'^2 dxi ds,
 
-where E_0 is the right side at s = 0: 2/5 at rest; x = 0 for a rigid drive. No term is the remainder of the others: under
-the indenter the integrals over xi are polynomials of the edges, the energy stored outside follows from the
-memory, and since u' = -u there, twice that energy is dissipated per unit of time (F14-surface).
+where E_0 is the right side at s = 0: 2/5 at rest; x = 0 for a rigid drive. No term is the remainder of the
+others: under the indenter the integrals over xi are polynomials of the edges, the energy stored outside
+follows from the memory, and since u' = -u there, twice that energy is dissipated per unit of time
+(F14-surface).
 """
 
 from collections.abc import Callable

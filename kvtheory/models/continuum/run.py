@@ -114,7 +114,7 @@ class Spring(NamedTuple):
 
 
 class Beginning(NamedTuple):
-    """d, d' and x' just after s = 0; at rest at the static depth by default, and above flat ground at d <= 0."""
+    """d, d' and x' just after s = 0: at rest at the static depth by default, above flat ground if d <= 0."""
 
     depth: float = 1.0
     rate: float = 0.0

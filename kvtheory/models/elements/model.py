@@ -17,7 +17,7 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
 from kvtheory.scene.indenters import Circle, Indenter, Revolved, Sphere
 from kvtheory.scene.model import Scene
-from kvtheory.scene.start import Start, StartState
+from kvtheory.scene.start import REST, Start, StartState
 from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Element
 
@@ -60,7 +60,7 @@ class Model:
     constants: Constants
     contact: Contact
     at_rest: StaticState
-    start: Start = Start()
+    start: Start = REST
 
     @classmethod
     def of(
@@ -154,15 +154,20 @@ class Model:
         return math.sqrt(2.0 * energy / c.mass), max(c.depth, depth, deeper)
 
     def landing(self, path: BaseMotion) -> float:
-        """Return the time (s) at which the indenter first lands after a start above the ground, or infinity."""
+        """Return the time (s) at which an indenter lands that starts above the ground, or infinity."""
         c, (depth, rate, _) = self.constants, self.begun(path)
         if depth > 0.0 or math.isinf(c.mass):
             return math.inf
         if c.spring * -depth <= NO_SPRING * c.weight:
             speed = math.sqrt(rate * rate - 2.0 * depth * c.weight / c.mass)
-            return -2.0 * depth / (rate + speed) if rate > 0.0 else (speed - rate) * c.mass / c.weight
+            return (
+                -2.0 * depth / (rate + speed) if rate > 0.0 else (speed - rate) * c.mass / c.weight
+            )
         turns, sags = math.sqrt(c.spring / c.mass), c.depth + c.weight / c.spring
-        swing, phase = math.hypot(depth - sags, rate / turns), math.atan2(-rate / turns, depth - sags)
+        swing, phase = (
+            math.hypot(depth - sags, rate / turns),
+            math.atan2(-rate / turns, depth - sags),
+        )
         return (-math.acos(max(-sags / swing, -1.0)) - phase) % (2.0 * math.pi) / turns
 
     @property

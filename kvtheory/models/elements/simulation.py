@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.elements import kernels, stability
-from kvtheory.models.elements.kernels import REPORT, Constants, Instants
+from kvtheory.models.elements.kernels import REPORT, Instants
 from kvtheory.models.elements.model import Model, contact
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme

@@ -217,7 +217,7 @@ def update(run: Run, free: int, size: int) -> None:
 
 
 def gained(run: Run) -> float:
-    """Return the share of its velocities at the start that the indenter gains in a step, in the first pause."""
+    """Return the share of its first velocities that the indenter gains in a step of the first pause."""
     if run.now.piece > 0 or not run.clock.paused[0]:
         return 0.0
     return float(run.steps[run.now.steps].span / run.pieces[0, END])
