@@ -580,3 +580,34 @@ def test_a_long_record_is_averaged_and_read_in_one_go(tmp_path):
     assert len(found.arms) == 3
     assert found.arms[1][0] == pytest.approx(3e6, rel=3e-3)
     assert "30,000 values were averaged to 1,200" in found.notes[0]
+
+
+def test_measured_shift_factors_hold_in_the_scene_where_the_law_misses_them(tmp_path):
+    """Of three temperatures two factors are known, too few for WLF's two constants: Arrhenius misses them."""
+    T = [0.0, 20.0, 60.0]
+    data, shifts = swept(WLF, np.geomspace(0.03, 3000.0, 26), T)
+    layer = {"thickness": "0.1 mm", "poisson_ratio": 0.3}
+    found = kv.fit_foundation(data, temperature="60 degC", **layer)
+    assert found.shift_law.startswith("Arrhenius")
+    assert found.reference_temperature == 333.15
+    assert "Prony series at 60 degC" in str(found)
+    path = tmp_path / "rubber.toml"
+    path.write_text(found.to_toml())
+    scene = kv.load_scene(path)
+    assert scene == found.scene
+    for each, shift in zip(T, shifts - shifts[-1], strict=True):
+        a_T = scene.replace({"foundation.temperature": f"{each} degC"}).foundation.shift_factor
+        assert np.log10(a_T) == pytest.approx(shift, abs=5e-3)
+    between = kv.fit_foundation(data, temperature="30 degC", **layer)
+    assert "a_T" in between.notes[-1]
+    assert "which hold at 20 degC" in between.notes[-1]
+    for factors, told in (
+        ([["20 degC", 1.0]], "log10 a_T = 0 at foundation.reference_temperature"),
+        ([["20 degC", 0.0], ["20 degC", 1.0]], "different temperatures"),
+        ("20 degC", "pairs of temperature"),
+    ):
+        with pytest.raises(kv.SceneError, match=told):
+            kv.Foundation(1e9, 1.0, reference_temperature="20 degC", activation_energy="80 kJ/mol",
+                          shift_factors=factors)  # fmt: skip
+    with pytest.raises(kv.SceneError, match=r"needs foundation.* and a law"):
+        kv.Foundation(1e9, 1.0, shift_factors=[["20 degC", 0.0]])

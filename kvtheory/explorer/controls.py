@@ -108,6 +108,7 @@ def controls(scene: Scene) -> dict[str, Any]:
         "arm": {name: _slider("arm", s, name, None, True) for name, s in quantities(Arm).items()},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
+        "shift_factors": scene.foundation.shift_factors or [],
     }  # fmt: skip
 
 

@@ -361,7 +361,7 @@ def models(scene: Scene) -> dict[str, tuple[Scene, tuple[str, ...]]]:
     stiff, arm = (STIFF[1], "modulus") if layer else (STIFF[0], "stiffness")
     own = {name: as_given(getattr(old, name)) for name in given(old) if name not in SHAPED}
     size = float(scene.values()[stiff])
-    own |= {} if old.wlf is None else {"wlf": old.wlf}
+    own |= {n: held for n in ("wlf", "shift_factors") if (held := getattr(old, n)) is not None}
     found: dict[str, Any] = {
         "kelvin-voigt": (Foundation(**own, retardation_time=1.0), ["retardation_time"]),
         "springpot": (

@@ -44,7 +44,12 @@ CHOOSERS = {section: chooser for section, (chooser, _) in SECTIONS.items() if ch
 """The key of each section that selects a model, on which the other keys depend."""
 MODELS = {section: models for section, (_, models) in SECTIONS.items()}
 DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run"}
-LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
+LISTS = {
+    ("foundation", "arms"),
+    ("foundation", "wlf"),
+    ("foundation", "shift_factors"),
+    ("drive", "history"),
+}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
@@ -177,6 +182,9 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         ]
     if foundation.wlf is not None:
         tables["foundation"]["wlf"] = [foundation.wlf.c_1, _text(foundation.wlf.c_2, "K")]
+    if foundation.shift_factors is not None:
+        pairs = foundation.shift_factors
+        tables["foundation"]["shift_factors"] = [[_text(T, "K"), log] for T, log in pairs]
     if drive.history is not None:
         tables["drive"]["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in drive.history]
     elif (wave := drive.waveform) is not None:
@@ -404,7 +412,8 @@ def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
     if cls in FOUNDATIONS.values():
-        lists = ("arms", "wlf") if cls is GeneralizedMaxwell else ("wlf",)
+        lists = ("wlf", "shift_factors")
+        lists = ("arms", *lists) if cls is GeneralizedMaxwell else lists
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))
