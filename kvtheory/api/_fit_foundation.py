@@ -12,7 +12,13 @@ from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
 from kvtheory.scene.arguments import a_scene, checked, choice, count, flag, measured, number
-from kvtheory.scene.foundations import MEASURED_RANGES, MOST_ARMS, GeneralizedMaxwell, beyond
+from kvtheory.scene.foundations import (
+    MEASURED_RANGES,
+    MOST_ARMS,
+    Foundation,
+    GeneralizedMaxwell,
+    beyond,
+)
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
 
@@ -129,6 +135,10 @@ def fit_foundation(
         constants = tuple(map(_rounded, law.constants))
         thermal = {"wlf": constants} if law.name == "wlf" else {"activation_energy": constants[0]}
         thermal["reference_temperature"] = _rounded(master.reference)
+        thermal["shift_factors"] = tuple(
+            (_rounded(T), _rounded(log))
+            for T, log in zip(master.temperatures.tolist(), master.log_shift.tolist(), strict=True)
+        )
         thermal |= {} if temperature is None else {"temperature": temperature}
         range_of_T = map(_rounded, master.temperatures[[0, -1]])
         thermal |= dict(zip(MEASURED_RANGES[1], range_of_T, strict=True))
@@ -165,10 +175,13 @@ def fit_foundation(
         shift_law=None if law is None or master is None else (
             f"{law.text} at {master.reference - ZERO_CELSIUS:.4g} degC, log10 a_T to {law.misfit:.2g}"
         ),
+        reference_temperature=None if law is None else thermal["reference_temperature"],
         frequencies=frequencies,
         velocities=None if whole is None else _velocities(whole, frequencies),
         source=source,
-        notes=(*found.notes, *filter(None, [beyond(whole.foundation) if whole else ""])),
+        notes=tuple(filter(None, (
+            *found.notes, _at(temperature, thermal), beyond(whole.foundation) if whole else "",
+        ))),
         scene=whole,
         data={
             "x": x, "measured": found.data.values * factor,
@@ -176,6 +189,16 @@ def fit_foundation(
             "sweeps": found.measured.sweeps, "shifted": master, "law": law, "factor": factor,
         },
     )  # fmt: skip
+
+
+def _at(temperature: float | None, thermal: Any) -> str:
+    """Return by how much the times differ at the temperature of the foundation from those of the arms."""
+    if temperature is None or temperature == thermal["reference_temperature"]:
+        return ""
+    a_T = Foundation(1.0, 1.0, **thermal).shift_factor
+    T, T_ref = (each - ZERO_CELSIUS for each in (temperature, thermal["reference_temperature"]))
+    of = f"times that of the arms, which hold at {T_ref:.4g} degC"
+    return f"At {T:.4g} degC every time is a_T = {a_T:.4g} {of}."
 
 
 def _rounded(value: float) -> float:

@@ -119,6 +119,7 @@ def controls(scene: Scene) -> dict[str, Any]:
         "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
+        "shift_factors": scene.foundation.shift_factors or [],
     }  # fmt: skip
 
 

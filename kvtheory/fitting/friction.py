@@ -361,7 +361,7 @@ def models(scene: Scene) -> dict[str, tuple[Scene, tuple[str, ...]]]:
     stiff, arm = (STIFF[1], "modulus") if layer else (STIFF[0], "stiffness")
     own = {name: as_given(getattr(old, name)) for name in given(old) if name not in SHAPED}
     size = float(scene.values()[stiff])
-    own |= {"wlf": old.wlf, "stiffness_from": old.stiffness_from}
+    own |= {n: held for n in ("wlf", "shift_factors", "stiffness_from") if (held := getattr(old, n)) is not None}
     found: dict[str, Any] = {
         "kelvin-voigt": (Foundation(**own, retardation_time=1.0), ["retardation_time"]),
         "springpot": (

@@ -63,7 +63,8 @@ class FoundationFit(_Fit):
     of them; no series with non-negative arms has a misfit below `least_misfit`, however many arms it has.
 
     `shift_factors` are pairs of temperature (degrees Celsius) and log10 a_T, `shift_errors` the standard
-    errors of the latter, `shift_law` the law that was fitted to them. `frequencies` (Hz) are those that the
+    errors of the latter, `shift_law` the law that was fitted to them; the arms are those at the
+    `reference_temperature` (K), as in the scene, which shifts them. `frequencies` (Hz) are those that the
     data cover at the reference temperature; sliding at `velocities` (m/s), V over the length of the contact
     of `scene`, is within them. `notes` are remarks on the data. Without a layer there is no `scene`: its
     `foundation` needs `thickness` and `poisson_ratio`.
@@ -79,6 +80,7 @@ class FoundationFit(_Fit):
     shift_factors: tuple[tuple[float, float], ...] | None
     shift_errors: tuple[float, ...] | None
     shift_law: str | None
+    reference_temperature: float | None
     frequencies: tuple[float, float]
     velocities: tuple[float, float] | None
     source: str
@@ -117,7 +119,9 @@ class FoundationFit(_Fit):
         heads = f"arm [{unit}]", "relaxation time [s]"
         rows = [(f"{E:.6g}", f"{tau:.6g}") for E, tau in self.arms]
         relaxed = self.stiffness if self.modulus is None else self.modulus
-        first = f"Prony series, relaxed {relaxed:.6g} {unit}"
+        T = self.reference_temperature
+        at = "" if T is None else f" at {T - ZERO_CELSIUS:.4g} degC"
+        first = f"Prony series{at}, relaxed {relaxed:.6g} {unit}"
         return "\n".join([first, *aligned(heads, rows), *self.remarks])
 
     def _columns(self) -> Columns:

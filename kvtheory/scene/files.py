@@ -49,7 +49,12 @@ MODELS = {section: models for section, (_, models) in SECTIONS.items()}
 DEFAULTS = {
     "indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run", "start": "start",
 }  # fmt: skip
-LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
+LISTS = {
+    ("foundation", "arms"),
+    ("foundation", "wlf"),
+    ("foundation", "shift_factors"),
+    ("drive", "history"),
+}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
@@ -187,6 +192,9 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         tables["foundation"]["wlf"] = [foundation.wlf.c_1, _text(foundation.wlf.c_2, "K")]
     if foundation.stiffness_from == THIN_WAY:
         tables["foundation"]["stiffness_from"] = THIN_WAY
+    if foundation.shift_factors is not None:
+        pairs = foundation.shift_factors
+        tables["foundation"]["shift_factors"] = [[_text(T, "K"), log] for T, log in pairs]
     if drive.history is not None:
         tables["drive"]["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in drive.history]
     elif (wave := drive.waveform) is not None:
@@ -416,7 +424,7 @@ def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
     if cls in FOUNDATIONS.values():
-        lists = ("wlf", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
+        lists = ("wlf", "shift_factors", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))
