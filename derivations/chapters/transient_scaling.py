@@ -69,18 +69,10 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.define(here, K * u_i + C * compression_rate)
     proof.define(P, here / (K * delta_0))
     proof.equal(P, PRESSURE, "scaled pressure")
-    proof.equal(
-        *(
-            here * a_0 / W_0,
-            sp.Rational(3, 4) * P,
-            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
-        ),
-    )
-    proof.equal(
-        -slope * here * a_0 / (W_0 * delta_0 / a_0),
-        -sp.Rational(3, 2) * xi * P,
-        r"share of the friction force, in units of $W_0 \delta_0/a_0$",
-    )
+    proof.equal(here * a_0 / W_0, sp.Rational(3, 4) * P,
+                r"share of the load, for Eq. (14), with $dx = a_0 d\xi$")  # fmt: skip
+    proof.equal(-slope * here * a_0 / (W_0 * delta_0 / a_0), -sp.Rational(3, 2) * xi * P,
+                r"share of the friction force, in units of $W_0 \delta_0/a_0$")  # fmt: skip
     proof.done(P, PRESSURE)
 
 
