@@ -123,11 +123,7 @@ class _Chapter:
 
     def _rise(self) -> Derivation:
         proof = self._proof("rise", "Shape", _SHAPE)
-        proof.define(
-            h(x),
-            self.rise,
-            "the surface of the indenter",
-        )
+        proof.define(h(x), self.rise, "the surface of the indenter")  # fmt: skip
         try:
             _signed(proof, self.slope, ">", "it rises on both sides: its slope")
             curvature = sp.diff(self.slope, distance)

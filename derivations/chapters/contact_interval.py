@@ -130,22 +130,12 @@ def _shape(proof: Proof, slope: sp.Expr, rate: sp.Expr, gain: sp.Expr) -> None:
 
 
 for _label, _name, _text, _rise, _rate, _form in (
-    (
-        "power",
-        "every power law",
-        r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
-        (y / L) ** excess,
-        excess / y,
-        -excess * m / (y * (y + m)),
-    ),
-    (
-        "catenary",
-        "a catenary",
-        r"$h = L (\cosh(x/L) - 1)$.",
-        sp.sinh(y / L),
-        sp.cosh(y / L) / (L * sp.sinh(y / L)),
-        -sp.sinh(m / L) / (L * sp.sinh(y / L) * sp.sinh((y + m) / L)),
-    ),
+    ("power", "every power law",
+     r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.", (y / L) ** excess,
+     excess / y, -excess * m / (y * (y + m))),
+    ("catenary", "a catenary", r"$h = L (\cosh(x/L) - 1)$.", sp.sinh(y / L),
+     sp.cosh(y / L) / (L * sp.sinh(y / L)),
+     -sp.sinh(m / L) / (L * sp.sinh(y / L) * sp.sinh((y + m) / L))),
     (
         "wedge",
         "the wedge",
@@ -155,7 +145,7 @@ for _label, _name, _text, _rise, _rate, _form in (
         sp.S.Zero,
         sp.S.Zero,
     ),
-):
+):  # fmt: skip
     result(f"F9-{_label}", title=f"Concave logarithm of the slope: {_name}", text=f"{_text} {_CASE}",
            slope=_rise, rate=_rate, gain=_form)(_shape)  # fmt: skip
 

@@ -18,12 +18,8 @@ from .steady import CONTACT, p, x_le, x_te
 height_there = symbol("h_i", "height of the indenter at a free element over its lowest point", "m")
 ball_depth = symbol("delta_b", "depth of a ball", "m", latex=r"\delta_{\mathrm{B}}")
 ball_rate = symbol("delta_b'", latex=r"\dot\delta_{\mathrm{B}}", real=True)
-ball_relaxed = symbol(
-    "w_bin",
-    r"depth of an elastic contact with the edges of a ball coming out",
-    "m",
-    latex=r"w_{\mathrm{B}}",
-)
+ball_relaxed = symbol("w_bin", r"depth of an elastic contact with the edges of a ball coming out",
+                      "m", latex=r"w_{\mathrm{B}}")  # fmt: skip
 ball_mass = symbol("M_ball", "mass of a ball", "kg", latex=r"M_{\mathrm{B}}")
 radius_across = symbol("R_y", latex=r"R_{\mathrm{y}}")
 (

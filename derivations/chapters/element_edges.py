@@ -13,11 +13,9 @@ from .element_schemes import SECTION
 from .model import C, V, x
 
 letter("x_k", "position of an element behind the leading edge", "m")
-letter(
-    r"\vartheta",
-    "position of an edge between two elements, or of a rim between two strips, in spacings",
-    source="F15-sawtooth",
-)
+letter(r"\vartheta",
+       "position of an edge between two elements, or of a rim between two strips, in spacings",
+       source="F15-sawtooth")  # fmt: skip
 letter(r"m_{\mathrm{k}}", "slope difference of two surfaces where they meet")
 letter(r"\hat w_0", "depth of the indenter below the free surface at the last element outside", "m")
 letter(r"\hat w_1", "depth of the indenter below the free surface at the first element inside", "m")

@@ -33,13 +33,8 @@ behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
 edge_distance = symbol(
     "y_v", "distance back from there, or behind the trailing edge", "m", latex=r"\breve y"
 )
-fading = function(
-    "H_v",
-    "rate of decrease of the relaxation function",
-    "Pa/m²",
-    printed=r"\breve H",
-    nonnegative=True,
-)
+fading = function("H_v", "rate of decrease of the relaxation function", "Pa/m²",
+                  printed=r"\breve H", nonnegative=True)  # fmt: skip
 (
     other_trailing, felt, shift, left_behind, arm_ratio, parting, slope_free, pressed, damper_1,
     damper_2, spring_1, spring_2, share_1, share_2, on_off, spare_1, spare_2,
@@ -296,11 +291,8 @@ def _stored_springpot(proof: Proof) -> None:
     near = part(1 + w, nu + 1) - part(w, nu + 1)
     primitive = ((h + 1) * part(1 + w, nu) - h * part(w, nu) - near / (nu + 1)) / nu
     two = 2**nu
-    none, mixed, square = (
-        2 * (two - 1) / (nu * (nu + 1)),
-        (2 * two - 1) / ((1 + nu) * (2 + nu)),
-        2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)),
-    )
+    none, mixed, square = (2 * (two - 1) / (nu * (nu + 1)), (2 * two - 1) / ((1 + nu) * (2 + nu)),
+                           2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)))  # fmt: skip
     value = square + 2 * h * mixed + h**2 * none
     proof.integral(outer, (h + w) * felt, UNIT, "and once more", value=value,
                    antiderivative=primitive)  # fmt: skip

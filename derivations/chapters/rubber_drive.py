@@ -65,14 +65,8 @@ kernels_still = tuple(
     b_T      -              1     factor of all moduli by temperature  from scene
 """)  # fmt: skip
 memory_warm = function("G_T", "relaxation function at another temperature", "N/m³", real=True)
-memory_cold = function(
-    "G",
-    "relaxation function at the reference temperature",
-    "N/m³",
-    printed=r"G_{\mathrm{r}}",
-    source="",
-    real=True,
-)
+memory_cold = function("G", "relaxation function at the reference temperature", "N/m³",
+                       printed=r"G_{\mathrm{r}}", source="", real=True)  # fmt: skip
 temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = symbols(r"""
     T    -               K        temperature  from scene
     T_r  T_{\mathrm{r}}  K        temperature at which the times were measured  from scene
@@ -319,16 +313,11 @@ def _kelvin_voigt(proof: Proof) -> None:
     steady = {d: (HALF + e) ** 2, d_s: 0}
     for factor, force, variable, form, reason in (
         (sp.Rational(4, 3), f_normal, d, 1 + zeta, r"$F_{z\delta}$ at $\tilde s = 0$"),
-        (
-            sp.Rational(2, 3),
-            f_friction,
-            d,
-            e + zeta * (HALF + e),
-            r"$F_{x\delta}$ at $\tilde s = 0$",
-        ),
+        (sp.Rational(2, 3), f_friction, d, e + zeta * (HALF + e),
+         r"$F_{x\delta}$ at $\tilde s = 0$"),
         (sp.Rational(2, 3), f_normal, lam, e, r"$-F_{zX}$ over $\tilde \sigma \breve \zeta$"),
         (sp.Rational(1, 3), f_friction, lam, sp.Rational(1, 12) + e**2, "$-F_{xX}$ over the same"),
-    ):
+    ):  # fmt: skip
         change = at_motion(sp.Derivative(force, variable), steady)
         proof.equal(factor * change, form, reason)
 

@@ -21,14 +21,8 @@ d = symbol("d", r"scaled depth, $\delta/\delta_0$")
 d_s = symbol("d_s", latex="d'", real=True)
 d_ss = symbol("d_ss", latex="d''", real=True)
 eps = symbol("epsilon", r"inertia number, $M \delta_0/(W_0 \tau^{2})$", latex=r"\varepsilon")
-f_normal = symbol(
-    "f_normal",
-    "scaled normal force, $F_z/W_0$",
-    latex="f_z",
-    source="eq14",
-    several=True,
-    real=True,
-)
+f_normal = symbol("f_normal", "scaled normal force, $F_z/W_0$", latex="f_z", source="eq14",
+                  several=True, real=True)  # fmt: skip
 xi = symbol("xi", "scaled coordinate, $x/a_0$", latex=r"\xi", real=True)
 P = symbol("P", r"scaled pressure, $p/(K \delta_0)$", latex=r"\hat p", printed=r"\bar p", real=True)
 

@@ -254,13 +254,10 @@ def _glass(proof: Proof) -> None:
     proof.equal(glass * second - first**2, form, "of Cauchy and Schwarz, with two arms")
     proof.holds(form, ">", 0, r"$\breve \omega > \breve \gamma$")
     for weight, value, what in (
-        (
-            WEIGHTS[A],
-            half,
-            r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this",
-        ),
+        (WEIGHTS[A], half,
+         r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this"),
         (WEIGHTS[D], sp.Rational(1, 24), r"and $\breve D$ by at most $\breve \gamma$ times this"),
-    ):
+    ):  # fmt: skip
         whole = sp.Integral(w * weight, UNIT)
         proof.integral(whole, whole.function, UNIT, what, value=value)
 
