@@ -69,7 +69,9 @@ def unique(expr, over):
 
 def integral(integrand, over, primitive, name=v, **more):
     return lambda p: p.integral(
-        name, sp.sympify(integrand), over, sp.sympify(primitive), "integral", **more
+        *(name, sp.sympify(integrand), over, "integral"),
+        antiderivative=sp.sympify(primitive),
+        **more,
     )
 
 

@@ -334,11 +334,13 @@ def test_article_escapes_text_and_is_reproducible():
     assert pdf.typeset(source)[0] == pdf.typeset(source)[0]
 
 
-def compiled(directory: Path, names: list[str], references: str = "") -> str:
+def compiled(
+    directory: Path, names: list[str], references: str = "", start: str = r"\documentclass{article}"
+) -> str:
     """Return the log of a bare document of these fragments."""
     inputs = "\n".join(rf"\input{{fragments/{name}}}" for name in names)
     (directory / "own.tex").write_text(
-        r"\documentclass{article}\usepackage{amsmath}\renewcommand\thepage{}\begin{document}"
+        rf"{start}\usepackage{{amsmath}}\renewcommand\thepage{{}}\begin{{document}}"
         f"{references}\n{inputs}\n\\end{{document}}\n"
     )
     options = ("-draftmode", "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error")
@@ -375,6 +377,30 @@ def test_fragments_keep_to_labels_of_their_own(everything, tmp_path):
     text = fragments.with_steps(other.derivations[0], other)
     assert r"\label{nk-eq27}" in text
     assert r"\derivationref{nk-eq28}" in text
+
+
+@pytest.mark.parametrize("kind", ["article", "amsart"])
+def test_two_editions_share_an_article_of_somebody_else(everything, tmp_path, kind):
+    """It has sections, equations and a theorem of the same names, and links."""
+    labels, names = ["eq27", "F3", "F11", "F24-damper"], []
+    (tmp_path / "fragments").mkdir()
+    for prefix in "ab":
+        printing = edition(everything, labels, label_prefix=f"{prefix}:")
+        for each in printing.derivations:
+            if each.label in labels:
+                names.append(f"{prefix}-{each.label}.tex")
+                text = fragments.with_steps(each, printing)
+                (tmp_path / "fragments" / names[-1]).write_text(text)
+    references = " ".join(rf"\eqref{{{one}:{each}}}" for one in "ab" for each in labels)
+    own = (
+        r"\title{Sliding}\author{A. Nother}\maketitle\section{Load}\label{load}"
+        r"\begin{equation}\label{eq27}W = 1\end{equation}\begin{lemma}\label{F3}By \eqref{eq27},"
+        rf" Section~\ref{{load}}, Lemma~\ref{{F3}} and {references}.\end{{lemma}}"
+    )
+    packages = r"\usepackage{amssymb,amsthm}\usepackage{hyperref}\newtheorem{lemma}{Lemma}"
+    log = compiled(tmp_path, names, own, rf"\documentclass{{{kind}}}{packages}")
+    assert not re.search(r"Warning|undefined|multiply", log)
+    assert max(overfull(log), default=0.0) <= 1
 
 
 def test_the_document_counts_the_equations_of_a_fragment(everything):

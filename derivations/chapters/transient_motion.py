@@ -57,14 +57,10 @@ def _forces(proof: Proof) -> None:
     """
     friction = sp.expand(xi * PRESSURE)
     proof.recall("scaled-pressure")
-    proof.integral(
-        *(f_normal, _LOAD_SHARE * P, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
-        "all pressure is between the edges", value=NORMAL_FORCE,
-    )  # fmt: skip
-    proof.integral(
-        *(f_friction, _FRICTION_SHARE * friction, CONTACT, _FRICTION_SHARE * sp.integrate(friction, xi)),
-        r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE,
-    )  # fmt: skip
+    proof.integral(f_normal, _LOAD_SHARE * P, CONTACT, "all pressure is between the edges",
+                   value=NORMAL_FORCE)  # fmt: skip
+    proof.integral(f_friction, _FRICTION_SHARE * friction, CONTACT,
+                   r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE)  # fmt: skip
     proof.done(f_normal, NORMAL_FORCE)
 
 
@@ -104,8 +100,7 @@ def _edges(proof: Proof) -> None:
         slope = sp.Derivative(_touching, variable)
         proof.root(sp.Derivative(MEETS, variable), slope, value, "an edge that touches")
     proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
-    proof.recall("F10-peel", rho)
-    proof.recall("F10-peel")
+    proof.recall("F10-peel", rho, "F10-peel")
     for variable in (d, d_s):
         slope = sp.Derivative(right, variable)
         proof.equal(slope, 1 / (2 * rho), "an edge that peels")
@@ -135,8 +130,7 @@ def _derivatives(proof: Proof) -> None:
             )
             slope = share * inside + share * ahead - share * behind
             proof.equal(sp.Derivative(force, variable), slope, "moving ends")
-    proof.recall("F10-touch")
-    proof.recall("F11-edges")
+    proof.recall("F10-touch", "F11-edges")
     proof.define(xi, _touching)
     speed = sp.Derivative(edge_path, time)
     proof.equal(P * sp.Derivative(_touching, d), speed, _TOUCHES)
