@@ -51,7 +51,10 @@ def test_no_claim_is_refuted_and_every_known_kind_is_decided(records):
     assert counts(verdicts)["confirmed"] > 5 * sum(weaker.values())
 
 
-@pytest.mark.parametrize("name", ["F13/8", "F10-touch/1", "F10-touch/2", "F10-touch/15", "F3/3"])
+@pytest.mark.parametrize(
+    "name",
+    ["F13/8", "F10-touch/1", "F10-touch/2", "F10-touch/15", "F3/3", "F11-edges/4", "F11-edges/5"],
+)
 def test_a_root_elsewhere_is_refuted_also_where_only_a_premise_has_its_variable(records, name):
     record = of(records, name.split("/")[0])
     claim = next(each for each in record["claims"] if each["id"] == name)

@@ -110,6 +110,23 @@ class Printer(LatexPrinter):
     _small = ""
     """Where what is printed is small: in a "fraction", or in a "script". There a line is a slash."""
 
+    def __init__(self, settings: dict[str, Any]) -> None:
+        super().__init__(settings)
+        self._known: dict[tuple[str, str, sp.Expr], str] = {}
+        """What was printed: a part is asked for again to see how long it is, or how tall."""
+
+    def _once(self, way: str, expr: sp.Expr, show: Callable[[Any], Any]) -> str:
+        key = way, self._small, expr
+        if key not in self._known:
+            self._known[key] = str(show(expr))
+        return self._known[key]
+
+    def _print(self, expr: Any, **kwargs: Any) -> str:
+        show = super()._print
+        if kwargs or not isinstance(expr, sp.Basic):
+            return str(show(expr, **kwargs))
+        return self._once("whole", expr, show)
+
     def _within(self, place: str, expr: Any, show: Callable[[Any], Any]) -> str:
         before, self._small = self._small, place
         try:
@@ -125,6 +142,9 @@ class Printer(LatexPrinter):
         return self._sum(expr)
 
     def _sum(self, expr: sp.Add) -> str:
+        return self._once("sum", expr, self._summed)
+
+    def _summed(self, expr: sp.Add) -> str:
         terms = self._ordered(expr)
         shown = [self._term(terms[0])]
         for term in terms[1:]:

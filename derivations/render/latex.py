@@ -69,7 +69,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \newsavebox{\formula}
 \newsavebox{\remark}
 \newsavebox{\number@}
-\newdimen\indented \indented=2em
+\newdimen\indented \indented=1em
 \newdimen\room
 \newcommand{\checked}[4]{%
   \startline
