@@ -189,7 +189,10 @@ class Elements:
         old = self.surface[:, :, near]
         forgets = np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
-        free = np.where(forgets | (rule.tension > 0.0), 0.0, np.exp(-age)) * old if h else old.copy()
+        kept = (
+            np.where(forgets | (rule.tension > 0.0), 0.0, np.exp(-age)) if h else np.ones_like(age)
+        )
+        free = kept * old
         on = np.where(old == 0.0, touching, g >= free)
         k = having.tension
         on[k] = g[k] > 0.0
@@ -369,12 +372,10 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
         forward = elements.direction(forward, speed, depth, base - along)
-        left, right = _edges(found.pressure, found.x)
-        edges = np.where(forward, (left, right), (right, left))
-        peak = found.pressure.max(axis=(1, 2))
+        edges = np.where(forward, ends := _edges(found.pressure, found.x), ends[::-1])
         spring = k_x * along + drive.damping * along_rate if k_x else found.friction
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
-                     peak, speed, spring))  # fmt: skip
+                     found.pressure.max(axis=(1, 2)), speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
 
 
@@ -431,7 +432,8 @@ def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
         low, high = np.where(light, middle, low), np.where(light, high, middle)
     depth = np.full(count, static.depth) if scene.held else 0.5 * (low + high)
     found = pressed(depth)
-    mu, (left, right) = found.friction / np.maximum(found.normal, TINY), _edges(found.pressure, found.x)
+    mu = found.friction / np.maximum(found.normal, TINY)
+    left, right = _edges(found.pressure, found.x)
     return {"depth": depth, "normal_force": found.normal, "friction_force": found.friction,
             "friction_coefficient": mu, "leading_edge": left, "trailing_edge": right,
             "peak_pressure": found.pressure.max(axis=(1, 2))}  # fmt: skip
