@@ -26,7 +26,7 @@ from kvtheory.derivations.render import (
     pdf,
     write,
 )
-from kvtheory.derivations.render.edition import symbols_of
+from kvtheory.derivations.render.edition import Edition, symbols_of
 from kvtheory.derivations.render.inline import inline
 from kvtheory.derivations.render.text import Given, Line, blocks, by_section, sentence
 
@@ -54,8 +54,21 @@ def everything() -> tuple[Derivation, ...]:
 
 
 @pytest.fixture(scope="session")
-def page(everything) -> str:
-    return html.document(edition(everything, command="kvtheory derive"))
+def book(everything) -> Edition:
+    return edition(everything, command="kvtheory derive")
+
+
+@pytest.fixture(scope="session")
+def page(book) -> str:
+    return html.document(book)
+
+
+@pytest.fixture(scope="session")
+def as_tex(everything, tmp_path_factory) -> Path:
+    """A folder with everything as LaTeX."""
+    folder = tmp_path_factory.mktemp("everything")
+    write(everything, folder, ["tex"])
+    return folder
 
 
 def overfull(log: str) -> list[float]:
@@ -70,7 +83,7 @@ def test_labels_fit_file_names_and_every_status_has_a_meaning(everything):
     assert tuple(frame.VOCABULARY) == STATUSES
 
 
-def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(everything):
+def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(book, everything):
     listed = [symbol.latex for symbol in SYMBOLS]
     shown = {symbol: each.label for each in everything for symbol in symbols_of(each)}
     assert set(shown) == set(listed), shown
@@ -78,13 +91,11 @@ def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(every
     assert [next(atoms(letter)).symbol for letter in listed] == listed
     assert all(symbol.meaning and symbol.unit for symbol in SYMBOLS)
     words = {"", "coordinate", "counter", "constant", "sign", "dimension"}
-    book = edition(everything)
     found = [*book.nomenclature, *(row for rows in book.chapters.values() for row in rows)]
     assert {symbol.source for symbol in found} <= {each.label for each in everything} | words
 
 
-def test_a_section_has_letters_of_its_own_without_accents_that_it_does_not_need(everything):
-    book = edition(everything)
+def test_a_section_has_letters_of_its_own_without_accents_that_it_does_not_need(book, everything):
     accented, shown = 0, 0
     for section, members in by_section(book.derivations).items():
         letters = {letter for each in members for letter in symbols_of(each)}
@@ -204,8 +215,8 @@ def test_the_pages_of_the_site_have_each_derivation_once(everything, site):
 # JSON
 
 
-def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(everything):
-    book, records = edition(everything), {each.label: each for each in everything}
+def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(book, everything):
+    records = {each.label: each for each in everything}
     roots = [
         step for each in everything for step in each.steps
         if step.claim and step.claim.check == "root" and not step.source
@@ -236,16 +247,15 @@ ASSUMED = {
 """The records that assume a sign which they do not prove, and why they may."""
 
 
-def test_few_records_assume_a_sign_that_they_do_not_prove(everything):
-    book = edition(everything)
+def test_few_records_assume_a_sign_that_they_do_not_prove(book, everything):
     assert {each.label for each in everything if "ssumed" in book.domain(each)} == {*ASSUMED}
 
 
-def test_json_keeps_the_contract(everything, tmp_path):
+def test_json_keeps_the_contract(book, everything, tmp_path):
     write(everything, tmp_path, ["json"])
     entries = json.loads((tmp_path / "derivations.json").read_text(encoding="utf-8"))
     assert [entry["label"] for entry in entries] == [each.label for each in everything]
-    for entry, each in zip(entries, edition(everything).derivations, strict=True):
+    for entry, each in zip(entries, book.derivations, strict=True):
         assert entry["status"] in STATUSES
         assert (entry["equation"], entry["latex"]) == (each.equation, each.latex)
         assert entry["latex"]
@@ -315,9 +325,9 @@ def test_html_fits_a_phone(page, tmp_path):
 # LaTeX and PDF
 
 
-def test_article_compiles_without_loose_ends(everything):
+def test_article_compiles_without_loose_ends(book):
     required("pdflatex")
-    made, log = pdf.typeset(latex.article(edition(everything, command="kvtheory derive")))
+    made, log = pdf.typeset(latex.article(book))
     assert made.startswith(b"%PDF")
     assert not re.search(
         r"undefined|Rerun to get|Token not allowed|multiply.defined|LaTeX Warning", log
@@ -352,13 +362,12 @@ def compiled(
 
 
 @pytest.mark.parametrize("kind", ["", "-steps"])
-def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, tmp_path, kind):
-    write(everything, tmp_path, ["tex"])
+def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, as_tex, kind):
     names = [f"{each.label}{kind}.tex" for each in everything]
     references = " ".join(rf"\eqref{{kv:{each.label}}}" for each in everything)
-    written = {path.name for path in (tmp_path / "fragments").iterdir()}
+    written = {path.name for path in (as_tex / "fragments").iterdir()}
     assert written == {f"{each.label}{end}.tex" for each in everything for end in ("", "-steps")}
-    log = compiled(tmp_path, names, references)
+    log = compiled(as_tex, names, references)
     assert not re.search(r"LaTeX Warning", log)
     assert overfull(log) == []
 
@@ -403,11 +412,10 @@ def test_two_editions_share_an_article_of_somebody_else(everything, tmp_path, ki
     assert max(overfull(log), default=0.0) <= 1
 
 
-def test_the_document_counts_the_equations_of_a_fragment(everything):
-    printing = edition(everything)
-    texts = {each.label: fragments.with_steps(each, printing) for each in everything}
+def test_the_document_counts_the_equations_of_a_fragment(book, everything):
+    texts = {each.label: fragments.with_steps(each, book) for each in everything}
     for each in everything:
-        for text in (fragments.equation(each, printing), texts[each.label]):
+        for text in (fragments.equation(each, book), texts[each.label]):
             assert r"\tag" not in text
             assert text.count(rf"\label{{kv:{each.label}}}") == 1
     assert r"\derivationref{kv:eq28}{(28 of Nakano and Kono)}" in texts["eq27"]

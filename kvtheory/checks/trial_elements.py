@@ -9,7 +9,7 @@ with the models.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -79,16 +79,15 @@ IMPLICIT = 0.52
 
 
 class Pressed(NamedTuple):
-    """Forces (`lift` moves the indenter), their slopes, edges, peak and new state, by rule."""
+    """Forces (`lift` moves the indenter) and their slopes, by rule; pressures at places x, and new state."""
 
     normal: Array
     lift: Array
     friction: Array
     slope: Array
-    drag: Array
-    left: Array
-    right: Array
-    peak: Array
+    drag: Array | float
+    pressure: Array
+    x: Array
     surface: Array
     stress: Array
     on: Array
@@ -139,54 +138,78 @@ class Elements:
             scene, rule, places, heights, areas, length, surface, stress, surface > 0.0, seen
         )
 
+    @cached_property
+    def having(self) -> Any:
+        """The rules with each mistake, by number: what few rules do is computed for these alone."""
+        pairs = zip(self.rule, Rule(), strict=True)
+        return Rule(*(np.flatnonzero(values != right) for values, right in pairs))  # type: ignore[arg-type]
+
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
 
         `state` is, by rule, the depth, its rate, the displacement of the base and the sliding velocity.
         """
         depth, rate, moved, speed = (each[:, None, None] for each in state)
-        rule, R = self.rule, self.scene.indenter.radius  # type: ignore[union-attr]
+        rule, having, R = self.rule, self.having, self.scene.indenter.radius  # type: ignore[union-attr]
         x = self.places[near] + moved
         slope = x / R
         g = depth - self.heights - 0.5 * x * slope
         rise = rule.depth_rate * rate - rule.slide_rate * slope * speed
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
-        touching = g > -0.5 * np.abs(slope) * self.length  # with a part of the element
+        inclined = np.abs(slope) * self.length
+        touching = g > -0.5 * inclined  # with a part of the element
         on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
-        rubbed = p + (1.0 - rule.friction) * damping * slope * speed  # for the friction
-        p, rubbed = (np.where(on & ((q > 0.0) | (rule.tension > 0.0)), q, 0.0) for q in (p, rubbed))
-        inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
-        area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
-        reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
-        area = np.where((rule.lost > 0.0) & (np.abs(x) > (1.0 - rule.lost) * reach)
-                        & (x * speed < 0.0), 0.0, area)  # fmt: skip
-        normal, friction = (p * area).sum(axis=(1, 2)), -(rubbed * slope * area).sum(axis=(1, 2))
-        kept = 1.0 - rule.stale * (g < self.surface[:, :, near])
-        lift = (p * area * kept).sum(axis=(1, 2))
-        pressing = np.where((p != 0.0).any(axis=1), x[:, 0], np.nan)
-        left, right = np.fmin.reduce(pressing, axis=1), np.fmax.reduce(pressing, axis=1)
-        central = -normal * np.nan_to_num(left + right) / (2.0 * R)
-        friction = np.where(rule.central[:, 0, 0] > 0.0, central, friction)
-        held = np.where(p != 0.0, area, 0.0)
+        area = np.clip(0.5 + g / (inclined + 1e-300), 0.0, 1.0) * self.areas
+        for k, weight in ((having.front, rule.front), (having.back, rule.back)):
+            counts = (x[k] < 0.0) == (weight is rule.front)
+            area[k] *= np.where(counts, weight[k], 1.0)
+        k = having.lost
+        reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
+        lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
+        area[k] = np.where(lost, 0.0, area[k])
+
+        def borne(p: Array, k: Any = slice(None)) -> Array:
+            pushes = p > 0.0
+            return np.where(on[k] & (pushes | (rule.tension[k] > 0.0)), p, 0.0)
+
+        k = having.friction
+        change = (1.0 - rule.friction[k]) * np.broadcast_to(damping, p.shape)[k]
+        rubbed = borne(p[k] + change * slope[k] * speed[k], k)
+        p = borne(p)
+        force = p * area
+        normal, friction = force.sum(axis=(1, 2)), -(force * slope).sum(axis=(1, 2))
+        friction[k] = -(rubbed * slope[k] * area[k]).sum(axis=(1, 2))
+        k, lift = having.stale, normal.copy()
+        kept = 1.0 - rule.stale[k] * (g[k] < self.surface[k][:, :, near])
+        lift[k] = (force[k] * kept).sum(axis=(1, 2))
+        k = having.central
+        friction[k] = -normal[k] * np.nan_to_num(sum(_edges(p[k], x[k]))) / (2.0 * R)
+        held, drag = np.where(p != 0.0, area, 0.0), 0.0
         stiff = (held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0)).sum(axis=(1, 2))
-        drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
-        drag = (held * drag * slope * slope).sum(axis=(1, 2))
-        peak = p.max(axis=(1, 2))
-        return Pressed(normal, lift, friction, stiff, drag, left, right, peak, surface, stress, on)
+        if not self.scene.drive.rigid:
+            drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
+            drag = (held * drag * slope * slope).sum(axis=(1, 2))
+        return Pressed(normal, lift, friction, stiff, drag, p, x, surface, stress, on)
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
         """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
-        foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
+        foundation, rule, having = self.scene.foundation, self.rule, self.having
+        old = self.surface[:, :, near]
+        forgets = np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
-        free = np.where(forgets | sticks, 0.0, np.exp(-age) * old) if h else old
-        on = np.where(sticks, g > 0.0, np.where(old == 0.0, touching, g >= free))
-        factor = rule.hunt_crossley * g / StaticState.of(self.scene).depth
-        size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
-        damping = foundation.damping * size
+        kept = (
+            np.where(forgets | (rule.tension > 0.0), 0.0, np.exp(-age)) if h else np.ones_like(age)
+        )
+        free = kept * old
+        on = np.where(old == 0.0, touching, g >= free)
+        k = having.tension
+        on[k] = g[k] > 0.0
+        damping, k = np.full(g.shape, foundation.damping), having.hunt_crossley
+        damping[k] *= rule.hunt_crossley[k] * g[k] / StaticState.of(self.scene).depth
         p = foundation.stiffness * g + damping * rise
-        flagged = (g > 0.0) & np.where(self.on[:, :, near], p >= 0.0, g >= old)
-        on, free = (np.where(rule.freezes > 0.0, *each) for each in ((flagged, on), (old, free)))
+        k = having.freezes
+        on[k] = (g[k] > 0.0) & np.where(self.on[k][:, :, near], p[k] >= 0.0, g[k] >= old[k])
+        free[k] = old[k]
         surface = np.where(on, np.maximum(g, 0.0), free)
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
@@ -251,6 +274,12 @@ class Elements:
                 tau = self.scene.foundation.retardation_time
                 self.surface[..., k] *= np.exp(-decay[..., 0] * gap / tau)
         self.seen[late] = time
+
+
+def _edges(pressure: Array, x: Array) -> tuple[Array, Array]:
+    """Return the ends of what presses, by rule."""
+    pressing = np.where((pressure != 0.0).any(axis=1), x[:, 0], np.nan)
+    return np.fmin.reduce(pressing, axis=1), np.fmax.reduce(pressing, axis=1)
 
 
 def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
@@ -354,10 +383,10 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
         forward = elements.direction(forward, speed, depth, base - along)
-        edges = np.where(forward, (found.left, found.right), (found.right, found.left))
+        edges = np.where(forward, ends := _edges(found.pressure, found.x), ends[::-1])
         spring = found.friction if drive.rigid else k_x * along + drive.damping * along_rate
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
-                     found.peak, speed, spring))  # fmt: skip
+                     found.pressure.max(axis=(1, 2)), speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
 
 
@@ -441,6 +470,7 @@ def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
     depth = np.full(count, static.depth) if scene.held else 0.5 * (low + high)
     found = pressed(depth)
     mu = found.friction / np.maximum(found.normal, TINY)
+    left, right = _edges(found.pressure, found.x)
     return {"depth": depth, "normal_force": found.normal, "friction_force": found.friction,
-            "friction_coefficient": mu, "leading_edge": found.left, "trailing_edge": found.right,
-            "peak_pressure": found.peak}  # fmt: skip
+            "friction_coefficient": mu, "leading_edge": left, "trailing_edge": right,
+            "peak_pressure": found.pressure.max(axis=(1, 2))}  # fmt: skip
