@@ -836,7 +836,8 @@ class Book:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
         direct: dict[sp.Expr, set[sp.Expr]] = {}
         opaque = (AppliedUndef, sp.Derivative, sp.Integral)
-        for premise in self._premises():
+        found = (each for fact in self._origins.values() for each in fact.premises)
+        for premise in {id(each): each for each in found}.values():  # most facts share theirs
             if premise.lhs not in self._rules and premise.lhs.is_Symbol:
                 direct.setdefault(premise.lhs, set()).update(letters_of(premise.rhs))
             if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):

@@ -135,7 +135,7 @@ def _lettered(expr: sp.Expr) -> sp.Expr:
 
 def _drawn(letter: sp.Symbol, draw: random.Random, above: set[sp.Expr]) -> mpmath.mpf:
     """Draw an admissible value, above zero where a condition says so."""
-    size = draw.randrange(1, 9) if letter.is_integer else mpmath.mpf(10) ** draw.uniform(-2, 1)
+    size = draw.randrange(1, 9) if letter.is_integer else 10 ** draw.uniform(-2, 1)
     negative = letter.is_nonpositive or (
         not letter.is_nonnegative and letter not in above and draw.random() < 0.5
     )
