@@ -241,7 +241,6 @@ class _Chapter:
         return proof.done(mu, result)
 
     def _recall_forces(self, proof: Proof) -> None:
-
         for label, force in (("load", W), ("friction", F)):
             proof.recall(f"shape-{label}", force)
 

@@ -135,9 +135,7 @@ def _friction(proof: Proof) -> None:
     in_q(proof)
     primitive = y**n - y ** (2 * n) / 2
     damper = n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
-    for name, pressure, side, end in (
-        (phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q),
-    ):  # fmt: skip
+    for name, pressure, side, end in ((phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q)):
         integrand = sp.expand(n * y ** (n - 1) * pressure)
         where = (
             "a backward force ahead of the tip" if side == 1 else "and a forward force behind it"

@@ -182,7 +182,7 @@ def _surface(proof: Proof) -> None:
         + spring_1 * rho * (rho - r_2)
         + spring_2 * rho * (rho - r_1)
     ) / glassy  # fmt: skip
-    proof.equal(law, form, r"it vanishes where $s_i \sim e^{-\varrho t}$")
+    proof.equal(law, form, r"it vanishes where $s_i \sim e^{-\tilde \varrho t}$")
     for place, sign, where in ((0, ">", "at 0"), (r_1, "<", "at the slower rate"),
                                (r_2, ">", "at the faster one: two roots in between")):  # fmt: skip
         proof.holds(form.subs(rho, place), sign, 0, where)

@@ -100,8 +100,9 @@ def _quadratics(proof: Proof) -> None:
 def _numbers(proof: Proof) -> None:
     r"""The numbers of the rates.
 
-    With both motions divided by their dampings: $\vartheta$ are times of inertia, $\varrho$ rates of
-    stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how strongly the motions are coupled.
+    With both motions divided by their dampings: $\vartheta_z$ and $\vartheta_x$ are times of inertia,
+    $\varrho_z$ and $\varrho_x$ rates of stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how
+    strongly the motions are coupled.
     $\check h$ and $\check e$ decide about stability; the forms are without differences of nearly equal
     numbers.
     """

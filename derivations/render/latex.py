@@ -52,7 +52,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \renewcommand{\subsection}{\@startsection{subsection}{2}{0pt}{2ex plus 1ex}{-0.7em}{\bfseries}}
 \renewcommand{\@tocrmarg}{2.5em plus 1fil}
 % A section begins on a page with room for its table: a head of a longtable would stand above its title.
-\newcommand{\spare}{\par\penalty-100\ifdim\dimexpr\pagegoal-\pagetotal\relax<12\baselineskip\newpage\fi}
+\newcommand{\spare}{\par\penalty-100\relax\ifdim\dimexpr\pagegoal-\pagetotal\relax<12\baselineskip\newpage\fi}
 \newcommand{\numbered}[2]{\phantomsection\def\@currentlabel{#2}\label{#1}(#2)}
 % What introduces a line (a heading without text, a sentence) stays on its page.
 \newcommand{\startline}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
