@@ -88,9 +88,14 @@ def test_the_table_of_the_climb_names_the_layer(tmp_path):
 
 def test_arrays_have_the_errors_of_their_scenes():
     over = {"foundation.thickness": np.array([1e-4, 2e-3, 5e-2]), "drive.velocity": [[0.01], [0.1]]}
-    many = model_error(LINE.replace(over))
-    assert many[0].shape == (2, 3)
-    for i, j in np.ndindex(2, 3):
-        own = {key: np.broadcast_to(value, (2, 3))[i, j] for key, value in over.items()}
-        one = model_error(LINE.replace(own))
-        assert [each[i, j] for each in many] == [float(each) for each in one]
+    for scene in (LINE, HELD):
+        many = model_error(scene.replace(over))
+        assert many[0].shape == many[1].shape == (2, 3)
+        for i, j in np.ndindex(2, 3):
+            own = {key: np.broadcast_to(value, (2, 3))[i, j] for key, value in over.items()}
+            one = model_error(scene.replace(own))
+            assert [each[i, j] for each in many] == [float(each) for each in one]
+    arm = {"foundation.arms[0].modulus": [1e6, 4e6, 1e12]}
+    assert np.isinf(model_error(LINE.replace(arm))[0]).tolist() == [False, False, True]
+    (note,) = kv.steady(LINE, over={"foundation.arms[0].modulus": 1e12}).notes
+    assert note.startswith("How far the foundation is from its layer is not known here")

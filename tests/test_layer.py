@@ -191,6 +191,36 @@ def test_line_at_rest_on_a_thick_layer_has_the_width_of_hertz():
     assert found.peak_pressure == pytest.approx(2 * load / (math.pi * a), rel=2e-3)
 
 
+def hunter(V, half_length, modulus, nu, arm):
+    """Load, friction, and middle of the contact of a cylinder on a standard linear half-plane (Hunter 1961).
+
+    E(s) has the relaxation time tau and the retardation time theta, so that q = p + tau V p' is the elastic
+    pressure of the slope w' + theta V w'' = -(x + theta V)/R. With x = c + l t it is q = (q_0 + q_1 t + q_2
+    T_2(t))/sqrt(1 - t^2), q_1 = -(c + theta V)/(R S), q_2 = -l/(2 R S). Then p vanishes where the contact
+    ends if q_0 I_0 + q_1 I_1 + q_2 I_2 = 0 at l/(tau V), and w' is continuous where it begins if
+    q_0 K_0 - q_1 K_1 + q_2 K_2 = 0 at l/(theta V).
+    """
+    from scipy.special import ive, kve
+
+    l, tau, theta = half_length, arm[1], arm[1] * (1.0 + arm[0] / modulus)
+    S = 2.0 * (1.0 - nu**2) / modulus
+    i, k = ive([0, 1, 2], l / (tau * V)), kve([0, 1, 2], l / (theta * V))
+    q0, ahead = np.linalg.solve([[i[0], -i[1]], [k[0], k[1]]], [0.5 * l * i[2], 0.5 * l * k[2]])
+    load, c = math.pi * l * q0 / (R * S), ahead - theta * V
+    moment = (c + tau * V) * load - 0.5 * math.pi * l**2 * ahead / (R * S)
+    return load, -moment / R, c
+
+
+@pytest.mark.parametrize("V", [4e-3, 0.02, 0.1, 1.0])
+def test_cylinder_on_a_half_plane(V):
+    l, nu = 1e-3, 0.3
+    load, friction, c = hunter(V, l, 1e6, nu, ARM[0])
+    found = slide(Parabola(radius=R), rubber(300 * (l + 0.1 * V), nu), V, Support(load=load))
+    assert found.friction_force == pytest.approx(friction, rel=1e-3)
+    for edge, expected in (("leading_edge", c - l), ("trailing_edge", c + l)):
+        assert abs(getattr(found, edge) - expected) <= found.errors[edge] < 0.2 * l
+
+
 LAYERS = [(1e-3, 0.49, 1e-3, 785.585, 5.91842), (1e-3, 0.49, 0.05, 2320.35, 85.0970),
           (4e-3, 0.5, 1e-3, 137.851, 1.03879), (4e-3, 0.5, 0.05, 388.804, 15.1065)]  # fmt: skip
 
@@ -260,6 +290,24 @@ def test_low_velocity_friction_follows_from_the_contact_at_rest():
         )
         assert 0.9 < faster < slower < 1.0
         assert 2 * slower - faster == pytest.approx(1.0, abs=8e-3)
+
+
+def test_dimensionality_reduction_is_not_for_sliding():
+    """Elements that are exact in normal contact of a ball have twice its friction, and then a wrong load."""
+    E = 1e6 / (1 - 0.5**2)
+    arms = [(4 * E, 0.02)]
+    reduced = kv.Scene(
+        kv.Parabola(R / 2),
+        GeneralizedMaxwell(stiffness=E, arms=arms),
+        kv.Fixed(1e-4),
+        kv.Drive(0.05),
+    )
+    slow = kv.steady(reduced, over={"drive.velocity": 1e-6})
+    assert slow.friction_coefficient == pytest.approx(2 * 1e-6 * 0.08 / R, rel=1e-3)
+    ball = slide(Sphere(radius=R), rubber(math.inf, 0.5), 0.05, Support(depth=1e-4), rtol=1e-2)
+    fast = kv.steady(reduced)
+    assert fast.load / ball.load == pytest.approx(1.340, abs=4e-3)
+    assert fast.friction_coefficient / ball.friction_coefficient == pytest.approx(1.531, abs=8e-3)
 
 
 def test_high_velocity_friction_follows_from_the_elastic_energy():

@@ -69,8 +69,8 @@ _ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of st
 `poisson_ratio`, they are pairs of modulus and relaxation time, `[["30 MPa", "10 ms"]]`, and their stiffness
 follows from the layer as that of the foundation does. `stiffness_from` says how: `"rest"`, the default, gives
 the K on which the indenter at rest has the depth and the load that it has on the elastic layer, of any
-thickness; `"thin"` gives E (1 - nu)/((1 + nu)(1 - 2 nu) h). `damping` is that of a damper beside the arms; a layer
-takes none, as a damping per unit area would not follow its thickness.
+thickness; `"thin"` gives E (1 - nu)/((1 + nu)(1 - 2 nu) h). `damping` is that of a damper beside the arms; a
+layer takes none, as a damping per unit area would not follow its thickness.
 
 `temperature` multiplies every time of a foundation by a_T. The times in the file are those at the
 `reference_temperature`; the law is `wlf = ["17.44", "51.6 K"]`, the constants C_1 and C_2 of

@@ -70,11 +70,11 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
-        whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, if a foundation
-        given as a layer is not thin for its contact, and if V/c is outside the frequencies, or the
-        temperature outside the temperatures, at which the foundation was measured. By ``"layer"`` the half
-        length is that of the body at rest at this depth, stability on a spring is not known, and
-        `dissipated_in_contact` is NaN.
+        whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, how far a
+        foundation given by a layer is from the layer itself, or, taken as thin, that it is not, and if V/c
+        is outside the frequencies, or the temperature outside the temperatures, at which the foundation was
+        measured. By ``"layer"`` the half length is that of the body at rest at this depth, stability on a
+        spring is not known, and `dissipated_in_contact` is NaN.
 
     Raises
     ------

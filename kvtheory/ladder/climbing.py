@@ -143,7 +143,9 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
     )
 
 
-def beside_layer(rungs: Sequence[Rung], error: Mapping[str, float], steady: Steady) -> list[Rung]:
+def beside_layer(
+    rungs: Sequence[Rung], error: Mapping[str, float], steady: Steady
+) -> tuple[Rung, ...]:
     """Return rungs for a scene by a layer: those of its foundation, and then the layer itself.
 
     `error` is that of the foundation, by quantity; others are not known on the layer.
@@ -164,7 +166,7 @@ def beside_layer(rungs: Sequence[Rung], error: Mapping[str, float], steady: Stea
         )
         for rung in rungs
     ]
-    return [*own, Rung("layer", "steady sliding on the layer itself", partial(_on_layer, steady))]
+    return *own, Rung("layer", "steady sliding on the layer itself", partial(_on_layer, steady))
 
 
 def _added(answer: Answer, error: Mapping[str, float]) -> Answer:

@@ -6,6 +6,7 @@ mu -> (r/V) 2 U_g/W, r = -E'(0)/E_g, with the elastic energy U_g = int W_g d(dep
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,8 @@ def limits(scene: Scene) -> BodyLimits | None:
     They are floats, or arrays of the shape of the scene. On a damper alone, which has no glassy modulus, only
     that at low velocity is known.
     """
-    foundation, indenter, support = scene.foundation, scene.indenter, scene.support
+    foundation, support = scene.foundation, scene.support
+    indenter: Any = scene.indenter
     if foundation.modulus is None or lacks_body(scene) or lacks_quadratic(scene):
         return None
     if unfit(foundation, indenter, at_rest=True):
