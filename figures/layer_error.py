@@ -19,7 +19,7 @@ VELOCITIES = np.geomspace(1e-2, 1e3, 101)
 THICKNESSES = np.geomspace(0.1, 100.0, 61)
 RATIOS = {0.3: "#2171b5", 0.45: "#41ab5d", 0.5: "#cb181d"}
 STIFFENING, WIDTHS, NEARLY = 6.0, {0.0: "-", 6.0: "--"}, 0.49
-LEVELS = np.array([0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0])
+LEVELS = np.array([0.05, 0.1, 0.2, 0.5, 1.0])
 KINDS = {"line": "cylinder", "ball": "ball"}
 
 

@@ -1,7 +1,7 @@
 """Writes `kvtheory/layer/model_error.json`: python -m tests.layer_error_table, half an hour on two cores.
 
 Every entry is the lowest and the highest error, over spectra of the same width and stiffening, of the
-foundation against boundary elements of the body, at dead weight.
+foundation against boundary elements of the body.
 """
 
 import json
@@ -17,21 +17,23 @@ from kvtheory.layer import Body, Support, load_at_rest
 from kvtheory.layer.model_error import TABLE, half_width
 from kvtheory.layer.sliding import levels
 
-THICKNESS = [0.1, 0.3, 1.0, 3.0, 10.0, 100.0]
+THICKNESS = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0]
 """Over the half length at rest; the last one of a ball is a half-space."""
 RATIOS = [0.0, 0.3, 0.45, 0.49, 0.5]
-STIFFENING = [1.05, 3.0, 50.0, 2000.0]
-WIDTHS = [0.0, 2.0, 6.0]
+STIFFENING = {"dead-weight": [1.05, 3.0, 50.0, 2000.0], "fixed": [3.0, 200.0]}
+WIDTHS = {"dead-weight": [0.0, 2.0, 6.0], "fixed": [0.0, 6.0]}
 PLACES = np.array([-1.2, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0, 1.5, 2.2])
 """log10(V/V*) over the half width of the transition in decades."""
 SLOPES = (-0.5,)
 """Powers of the relaxation time as which the moduli of many arms vary."""
 RADIUS, DEPTH, MODULUS = 0.01, 1e-4, 1e6
+VOIGT = math.inf, 0.0
 HALF_LENGTH = math.sqrt(2.0 * RADIUS * DEPTH)
 CELLS = {True: 60, False: 20}
 COARSE = 0.02
 """Largest change between the last two grids."""
-NAMES = "friction_coefficient", "depth"
+NAMES = {"dead-weight": "depth", "fixed": "load"}
+"""Of the quantity that is wrong beside the friction coefficient."""
 
 
 def width_of(moduli, times):
@@ -56,8 +58,8 @@ def spectra(width):
     return found
 
 
-def scene_of(kind, thickness, nu, arms):
-    """Return a scene of independent elements at dead weight, and the layer: no arms are Kelvin-Voigt."""
+def scene_of(support, kind, thickness, nu, arms):
+    """Return a scene of independent elements, and the layer: no arms are Kelvin-Voigt."""
     shape = {"line": kv.Parabola, "ball": kv.Sphere}[kind](radius=RADIUS)
     H = thickness * HALF_LENGTH
     load = float(load_at_rest(DEPTH, RADIUS, MODULUS, H, nu, per_width=shape.per_width))
@@ -69,16 +71,23 @@ def scene_of(kind, thickness, nu, arms):
     else:
         body = Body.kelvin_voigt(MODULUS, H, nu, 0.02)
         foundation = kv.Foundation(K, 0.02)
-    return kv.Scene(shape, foundation, kv.DeadWeight(load=load), kv.Drive(1.0)), body
+    held = kv.Fixed(DEPTH) if support == "fixed" else kv.DeadWeight(load=load)
+    return kv.Scene(shape, foundation, held, kv.Drive(1.0)), body
 
 
-def errors(kind, thickness, nu, arms, ratios):
-    """Return the errors of friction coefficient and depth over V/V*, and the changes from grid to grid."""
-    scene, body = scene_of(kind, thickness, nu, arms)
+def errors(support, kind, thickness, nu, arms, ratios):
+    """Return both errors over V/V*, and the changes from grid to grid."""
+    scene, body = scene_of(support, kind, thickness, nu, arms)
     velocities = ratios * float(kv.asymptotes(scene).critical_velocity)
     found = kv.steady(scene, over={"drive.velocity": velocities})
     fine, coarse = np.array([on_the_body(scene, body, V) for V in velocities]).T.reshape(2, 2, -1)
-    return np.array([getattr(found, name) for name in NAMES]) / fine - 1.0, coarse / fine - 1.0
+    ours = np.array([getattr(found, name) for name in names(scene)])
+    return ours / fine - 1.0, coarse / fine - 1.0
+
+
+def names(scene):
+    """Return the names of both quantities."""
+    return "friction_coefficient", NAMES[scene.support.kind]
 
 
 def on_the_body(scene, body, velocity):
@@ -86,24 +95,25 @@ def on_the_body(scene, body, velocity):
     known = []
     for found in levels(scene.indenter, body, velocity, Support.of_scene(scene.support)):
         values = found.values(scene.indenter, body, velocity)
-        known.append([values[name] for name in NAMES])
+        known.append([values[name] for name in names(scene)])
         touching = np.count_nonzero(found.contact.active.any(axis=1))
-        if len(known) > 1 and touching > CELLS[scene.indenter.per_width]:
+        enough = CELLS[scene.indenter.per_width] * (1.0 + 0.1 * HALF_LENGTH / body.thickness)
+        if len(known) > 1 and touching > enough:
             break
     return [*known[-1], *known[-2]]
 
 
 def entry(case):
     """Return the lowest and the highest errors of an entry, (4, places)."""
-    kind, thickness, nu, stiffening, width = case
+    support, kind, thickness, nu, stiffening, width = case
     ratios = 10.0 ** (PLACES * half_width(width, stiffening))
-    if kind == "ball" and thickness == THICKNESS[-1]:
+    if half_space(kind, thickness):
         thickness = math.inf
     if math.isinf(stiffening):
         forms = [[]]  # Kelvin-Voigt
     else:
         forms = [[((stiffening - 1.0) * E, tau) for E, tau in arms] for arms in spectra(width)]
-    found = [resolved(*errors(kind, thickness, nu, arms, ratios)) for arms in forms]
+    found = [resolved(*errors(support, kind, thickness, nu, arms, ratios)) for arms in forms]
     return case, np.concatenate([np.min(found, axis=0), np.max(found, axis=0)])
 
 
@@ -119,33 +129,33 @@ def resolved(found, change):
 
 def cases():
     """Return all entries; of a half-space Poisson's ratio does not matter."""
-    for kind, thickness, nu in product(("line", "ball"), THICKNESS, RATIOS):
-        if kind == "ball" and thickness == THICKNESS[-1] and nu < 0.5:
-            continue
-        for stiffening, width in [*product(STIFFENING, WIDTHS), (math.inf, 0.0)]:
-            yield kind, thickness, nu, stiffening, width
+    for support, kind, h, nu in product(NAMES, ("line", "ball"), THICKNESS, RATIOS):
+        if nu == RATIOS[-1] or not half_space(kind, h):
+            for stiffening, width in [*product(STIFFENING[support], WIDTHS[support]), VOIGT]:
+                yield support, kind, h, nu, stiffening, width
+
+
+def half_space(kind, thickness):
+    """Whether a thickness stands for a half-space."""
+    return kind == "ball" and thickness == THICKNESS[-1]
 
 
 def table(found):
-    """Return the map: errors in per mille, by kind and law, over its axes."""
-    axes = {"thickness": THICKNESS, "poisson_ratio": RATIOS, "stiffening": STIFFENING}
-    axes |= {"width": WIDTHS, "place": PLACES.tolist()}
-    result = {"axes": axes}
-    for kind in ("line", "ball"):
-
-        def entries(h, nu, pairs, kind=kind):
-            nu = 0.5 if kind == "ball" and h == THICKNESS[-1] else nu
-            return [
-                np.rint(1e3 * found[kind, h, nu, *pair].T).astype(int).tolist() for pair in pairs
-            ]
-
-        def grid(pairs, entries=entries):
-            return [[entries(h, nu, pairs) for nu in RATIOS] for h in THICKNESS]
-
-        shape = len(THICKNESS), len(RATIOS), len(STIFFENING), len(WIDTHS), PLACES.size, 4
-        arms = np.reshape(grid(list(product(STIFFENING, WIDTHS))), shape).tolist()
-        voigt = np.reshape(grid([(math.inf, 0.0)]), (*shape[:2], PLACES.size, 4)).tolist()
-        result[kind] = {"arms": arms, "kelvin_voigt": voigt}
+    """Return the map: errors in per mille, by support, kind and law, over its axes."""
+    result = {"thickness": THICKNESS, "poisson_ratio": RATIOS, "place": PLACES.tolist()}
+    for support in NAMES:
+        M, width = STIFFENING[support], WIDTHS[support]
+        result[support] = {"stiffening": M, "width": width}
+        for kind in ("line", "ball"):
+            laws = {"arms": list(product(M, width)), "kelvin_voigt": [VOIGT]}
+            for law, pairs in laws.items():
+                entries = [
+                    found[support, kind, h, RATIOS[-1] if half_space(kind, h) else nu, *pair].T
+                    for h, nu, pair in product(THICKNESS, RATIOS, pairs)
+                ]
+                result[support][f"{kind} {law}"] = (
+                    np.rint(1e3 * np.ravel(entries)).astype(int).tolist()
+                )
     return result
 
 

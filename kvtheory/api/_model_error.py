@@ -16,13 +16,6 @@ SMALL = 0.03
 """Error of the model up to which it is not worth a note: the map adds 2 % to what it finds."""
 
 
-ELSEWHERE = 1.5
-"""Factor on the largest error of a dead weight at any velocity that covers other supports: the map is of a
-dead weight. The largest found in 120 held scenes is 1.3 in friction and 1.02 in load."""
-PLACES = np.array([-1.2, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0, 1.5, 2.19])
-"""log10(V/V*) over the half width of the transition, at the entries of the map, which is linear between."""
-
-
 def model_error(scene: Scene) -> tuple[Any, Any] | None:
     """Return bounds of the relative errors of friction coefficient, and of depth (held: of load).
 
@@ -35,23 +28,25 @@ def model_error(scene: Scene) -> tuple[Any, Any] | None:
         return None
     if foundation.springpot:
         return none + math.inf, none + math.inf
-    from kvtheory.layer.model_error import half_width, relative_error, spectrum  # needs SciPy
+    from kvtheory.layer.model_error import relative_error, spectrum  # SciPy takes a while to import
 
     if scene.indenter.per_width:  # a circle is taken as its parabola
         scene = replace(scene, indenter=Parabola(scene.indenter.radius))
     _, half_length = asymptotes.at_rest(scene)
     arms = [(arm.stiffness / foundation.stiffness, arm.relaxation_time) for arm in foundation.arms]
     ratio = np.abs(scene.drive.final_velocity) / asymptotes.critical_velocity(scene)
-    width, stiffening = spectrum(arms)
     kind = "line" if scene.indenter.per_width else "ball"
-    layer, law = (foundation.thickness / half_length, foundation.poisson_ratio), (width, stiffening)
-    friction, second = relative_error(kind, *layer, ratio, *law)
-    if scene.held or np.any(scene.support.spring):
-        places = PLACES.reshape(-1, *(1,) * len(scene.shape))
-        ratios = 10.0 ** (places * half_width(*law))
-        largest = (np.max(each, axis=0) for each in relative_error(kind, *layer, ratios, *law))
-        pairs = zip((friction, second), largest, strict=True)
-        friction, second = (np.where(np.isinf(a), a, ELSEWHERE * most) for a, most in pairs)
+    given = (
+        kind,
+        foundation.thickness / half_length,
+        foundation.poisson_ratio,
+        ratio,
+        *spectrum(arms),
+    )
+    friction, second = relative_error(*given, held=scene.held)
+    if not scene.held and np.any(scene.support.spring):  # between a dead weight and a given depth
+        other = relative_error(*given, held=True)
+        friction, second = np.maximum(friction, other[0]), np.maximum(second, other[1])
     return friction + none, second + none
 
 
