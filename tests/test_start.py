@@ -30,10 +30,12 @@ def dropped(**changes):
     return kv.Scene(**{**given, **changes})
 
 
-@pytest.mark.parametrize("kind", start_elements.KINDS)
-@pytest.mark.parametrize("law", range(3))
-def test_starts_agree_with_an_independent_program(kind, law):
-    ratio, _ = start_elements.compared(kind, 1200 + law)
+@pytest.mark.parametrize(
+    ("kind", "seed"), zip(start_elements.KINDS, range(1200, 1205), strict=True)
+)
+def test_starts_agree_with_an_independent_program(kind, seed):
+    """The seeds draw all laws; run the module itself for more of them."""
+    ratio, _ = start_elements.compared(kind, seed)
     assert ratio.max() < 1.0
 
 
@@ -105,11 +107,11 @@ def test_elements_and_solver_agree_within_their_certificates(law, start, drive):
 
 def test_a_ball_falls_by_elements_and_an_impact_has_the_restitution_of_the_closed_form():
     ball = kv.Scene(
-        kv.Sphere(0.01), kv.Foundation(1e10, 1e-4), kv.DeadWeight(mass=0.03, load=1e-4),
-        kv.Drive(0.0), kv.Run(4e-3), kv.Start(gap=1e-4, depth_rate=0.5),
+        kv.Sphere(0.01), kv.Foundation(1e10, 1e-4), kv.DeadWeight(mass=0.03, load=0.01),
+        kv.Drive(0.0), kv.Run(2.5e-3), kv.Start(gap=1e-4, depth_rate=0.5),
     )  # fmt: skip
     known = kv.restitution(ball, speed=0.5)
-    run = kv.elements(ball, per_length="30 /mm", certify=False)
+    run = kv.elements(ball, per_length="40 /mm", certify=False)
     assert -run.depth_rate[-1] / 0.5 == pytest.approx(known.restitution, rel=4e-3)
     assert run.depth.max() == pytest.approx(known.peak_depth, rel=4e-3)
 
@@ -194,7 +196,7 @@ def test_which_end_of_the_spring_is_drawn():
 
 
 def test_a_sweep_over_gaps_has_the_values_of_single_motions():
-    scene = dropped(start=kv.Start(gap=1e-4))
+    scene = dropped()
     names = ["restitution", "contact_time", "depth.max", "hops", "stopping_time"]
     table = kv.sweep(scene, over={"start.gap": [1e-4, 1e-3]}, quantities=names)
     one = kv.transient(scene.replace({"start.gap": 1e-3}))

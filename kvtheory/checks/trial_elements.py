@@ -321,14 +321,10 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     static = StaticState.of(scene)
     motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)
-    drive, held, begun = scene.drive, scene.held, scene.start.at(static.depth, motion.velocity(0.0))
-    wider = _widens(scene, begun)
-    reach = WINDOW * static.half_length * wider
-    outside = reach + _swing(scene, begun, motion, float(times[-1]))
+    drive, held = scene.drive, scene.held
+    begun, reach, elements = _begin(scene, rules, motion, float(times[-1]))
     M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
-    low, high = motion.extremes(0.0, float(times[-1]))
-    elements = Elements.at_rest(scene, rules, -high - outside, -low + outside, begun.depth, wider)
     damping = (
         scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
     )
@@ -388,6 +384,19 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
                      found.pressure.max(axis=(1, 2)), speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def _begin(
+    scene: Scene, rules: Sequence[Rule], motion: Any, end: float
+) -> tuple[StartState, float, Elements]:
+    """Return the state just after t = 0, how far a contact reaches, and the elements that it meets."""
+    static = StaticState.of(scene)
+    begun = scene.start.at(static.depth, motion.velocity(0.0))
+    wider, (low, high) = _widens(scene, begun), motion.extremes(0.0, end)
+    reach = WINDOW * static.half_length * wider
+    outside = reach + _swing(scene, begun, motion, end)
+    place = -high - outside, -low + outside
+    return begun, reach, Elements.at_rest(scene, rules, *place, begun.depth, wider)
 
 
 def _swing(scene: Scene, begun: StartState, motion: Any, end: float) -> float:

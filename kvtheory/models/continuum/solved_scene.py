@@ -114,7 +114,7 @@ class SolvedScene:
         }
 
     @cached_property
-    def landmarks(self) -> dict[str, float]:
+    def landmarks(self) -> dict[str, Any]:
         """Return restitution and contact time of a drop, and where and when a coasting indenter stops."""
         motion, unit, found = self.motion, self.units, dict[str, float]()
         hops = {kind: s for s, kind in reversed(motion.events) if kind in ("landing", "take-off")}
