@@ -91,9 +91,18 @@ def _shown(found: Any) -> Iterator[None]:
 @click.option(
     "--models", is_flag=True, help="Weigh Kelvin-Voigt, a springpot and one to three arms instead."
 )
+@click.option(
+    "--offset", is_flag=True, help="One unknown more: friction that does not depend on velocity."
+)
 @scene_output
 def fit(
-    scene: "Scene", progress: Any, data: Sequence[Path], free: str | None, *, models: bool
+    scene: "Scene",
+    progress: Any,
+    data: Sequence[Path],
+    free: str | None,
+    *,
+    models: bool,
+    offset: bool,
 ) -> Iterator[Any]:
     """Fit quantities of SCENE to measured friction.
 
@@ -104,6 +113,6 @@ def fit(
     from kvtheory.api import fit as find
 
     keys = console.split(free or "")
-    found = find(scene, list(data), free=keys, models=models, progress=progress)
+    found = find(scene, list(data), free=keys, models=models, offset=offset, progress=progress)
     yield found
     click.echo(str(found))

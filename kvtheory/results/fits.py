@@ -151,7 +151,10 @@ class Parameter(NamedTuple):
 
 
 class WeighedModel(NamedTuple):
-    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all."""
+    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all.
+
+    The weight is NaN where the best one does not fit to the scatter: weights hold if one of them is true.
+    """
 
     name: str
     unknowns: int
@@ -203,7 +206,7 @@ class FrictionFit(_Fit):
                 key,
                 f"{value:.5g}",
                 f"{error:.2g}",
-                specs[key].unit,
+                specs[key].unit if key in specs else "1",
                 f"{error / value:.2g}",
                 " or ".join(f"{low:.4g} to {high:.4g}" for low, high in (own, *others)),
             )
@@ -214,7 +217,13 @@ class FrictionFit(_Fit):
         if self.models:
             columns = "model", "unknowns", "misfit", "AICc", "weight"
             weighed = [
-                (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
+                (
+                    m.name,
+                    str(m.unknowns),
+                    f"{m.misfit:.3g}",
+                    f"+{m.aicc:.1f}",
+                    f"{m.weight:.0%}" if m.weight == m.weight else "-",
+                )
                 for m in self.models
             ]
             lines += ["", *aligned(columns, weighed)]
