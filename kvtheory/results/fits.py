@@ -94,6 +94,17 @@ class FoundationFit(_Fit):
         """The foundation of `scene`."""
         return self._found.foundation  # type: ignore[return-value]
 
+    def to_card(self, suffix: str) -> str:
+        """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa and s."""
+        from kvtheory.fitting.cards import written
+        from kvtheory.fitting.spectrum import Series
+
+        nu = self.data["poisson_ratio"]
+        if self.modulus is None or nu is None:
+            raise ValueError("a card holds moduli and Poisson's ratio: give `poisson_ratio`")
+        E, tau = np.array(self.arms).T
+        return written(suffix, Series(self.modulus, E, tau), nu, self.source)
+
     @property
     def remarks(self) -> list[str]:
         """What should be known about the fit, a line each."""
