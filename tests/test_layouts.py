@@ -68,7 +68,9 @@ ALIKE = {
         + table("{w}\t{G}\t{L}\t{size}")
     ),
     "mean in the last row": "w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN + "Mean,3.1,0.4\n",
-    "columns in a comment": "% made by hand\n% columns: w [rad/s], G' [MPa], G'' [MPa]\n" + table("{w} {G} {L}"),
+    "columns in a comment": (
+        "% made by hand\n% columns: w [rad/s], G' [MPa], G'' [MPa]\n" + table("{w} {G} {L}")
+    ),
     "words before symbols": (
         "Kreisfrequenz [rad/s];Speichermodul G' [MPa];Verlustmodul G'' [MPa]\n" + table("{w};{G};{L}")
     ),

@@ -180,7 +180,10 @@ def _units_below(
     is_number = [number(cell, ",") is not None for cell in texts if cell not in UNITLESS]
     long = any(len(cell) > LONGEST_UNIT for cell in texts)
     spaced = separator in SPACES and len(cells) != count
-    if not is_number or any(is_number) or long or spaced or len(cells) > count + 1:
+    numbers = all(
+        number(word, ",") is not None for word in re.split(r"[\s,;]+", lines[below].strip())
+    )
+    if numbers or not is_number or any(is_number) or long or spaced or len(cells) > count + 1:
         return [], at
     return cells, below + 1
 
