@@ -611,3 +611,42 @@ def test_measured_shift_factors_hold_in_the_scene_where_the_law_misses_them(tmp_
                           shift_factors=factors)  # fmt: skip
     with pytest.raises(kv.SceneError, match=r"needs foundation.* and a law"):
         kv.Foundation(1e9, 1.0, shift_factors=[["20 degC", 0.0]])
+
+
+@pytest.mark.parametrize("suffix", [".inp", ".mac"])
+def test_cards_of_other_programs_are_written_and_read_back(tmp_path, suffix):
+    path, card = written(tmp_path, HEAD + ROWS), tmp_path / f"card{suffix}"
+    layer = ["--thickness", "2 mm", "--poisson-ratio", "0.3"]
+    first = printed("foundation", path, *layer, "-o", card)
+    again = printed("foundation", card, "--thickness", "2 mm")
+    assert np.array(again["arms"]) == pytest.approx(np.array(first["arms"]), rel=1e-5)
+    for key in ("modulus", "stiffness"):
+        assert again[key] == pytest.approx(first[key], rel=1e-5)
+    assert again["misfit"] < 1e-5
+    text = card.read_text()
+    assert f"{first['modulus'] + sum(E for E, _ in first['arms']):.9g}" in text
+    card.write_text(text.replace("units", "unit is not told"))
+    refused(["foundation", card], ['expected a comment such as "units: MPa, s"'])
+
+
+def test_a_card_may_give_the_relaxed_modulus_in_other_units(tmp_path):
+    text = "** units: MPa, s\n*ELASTIC\n30, 0.45\n*VISCOELASTIC, TIME=PRONY\n0.5, 0., 1e-3\n0.3,0.,0.1\n"
+    found = kv.fit_foundation(written(tmp_path, text, "card.INP"), thickness="2 mm")
+    assert found.modulus == pytest.approx(30e6)
+    assert np.array(found.arms) == pytest.approx(np.array([[75e6, 1e-3], [45e6, 0.1]]))
+    assert "bulk modulus" in found.notes[0]
+    relative = {"modulus": "30 MPa", "thickness": "2 mm", "poisson_ratio": 0.45}
+    with pytest.raises(kv.SceneError, match="relative to the instantaneous modulus"):
+        kv.GeneralizedMaxwell(**relative, arms=[["0.5", "1 ms"]])
+
+
+def test_a_measured_stiffness_scales_the_arms():
+    data = dynamic()
+    found = kv.fit_foundation(data, stiffness="3.5 GN/m^3")
+    own = found.foundation
+    assert own.stiffness == 3.5e9
+    assert [arm.stiffness for arm in own.arms] == pytest.approx(3.5e3 * TRUE.modulus, rel=1e-4)
+    shear = {key.replace("E", "G"): values for key, values in data.items()}
+    assert kv.fit_foundation(shear, stiffness="3.5 GN/m^3").foundation == own
+    with pytest.raises(ValueError, match="takes the place of a layer"):
+        kv.fit_foundation(data, stiffness=1e9, thickness="2 mm", poisson_ratio=0.3)

@@ -68,6 +68,12 @@ ALIKE = {
         + table("{w}\t{G}\t{L}\t{size}")
     ),
     "mean in the last row": "w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN + "Mean,3.1,0.4\n",
+    "columns in a comment": (
+        "% made by hand\n% columns: w [rad/s], G' [MPa], G'' [MPa]\n" + table("{w} {G} {L}")
+    ),
+    "words before symbols": (
+        "Kreisfrequenz [rad/s];Speichermodul G' [MPa];Verlustmodul G'' [MPa]\n" + table("{w};{G};{L}")
+    ),
     "end in the last row": "w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN + "End of data\n",
     "|G*| and phase": "w [rad/s],|G*| [MPa],phase angle [deg]\n" + table("{w},{size},{phase}"),
     "|G*| and tan delta": "w [rad/s],G* [MPa],tan(delta)\n" + table("{w},{size},{tan}"),
@@ -102,14 +108,16 @@ INTERVAL = (
     "\nInterval:\t{k}\t5\nTemperature:\t{T} °C\nInterval data:\tw [rad/s]\tG' [MPa]\tG'' [MPa]\n"
 )
 STEPS = "[Step]\nStep name\tFrequency sweep ({T} °C)\nw\tG'\tG''\nrad/s\tMPa\tMPa\n"
+KEYS = "Segment;{k}\nSet temperature;{T};°C\nw;G';G''\nrad/s;MPa;MPa\n"
 ONE_HEADER = "Temperature: {T} °C\n"
 
 
-@pytest.mark.parametrize("head", [INTERVAL, STEPS, ONE_HEADER])
+@pytest.mark.parametrize("head", [INTERVAL, STEPS, KEYS, ONE_HEADER])
 def test_the_head_of_a_table_tells_its_temperature(tmp_path, head):
     first = "w [rad/s]\tG' [MPa]\tG'' [MPa]\n" * (head is ONE_HEADER)
     text = first + "".join(
-        head.format(T=T, k=k) + table("{w}\t{G}\t{L}", 1.0 - 0.1 * k)
+        head.format(T=T, k=k)
+        + table("{w};{G};{L}" if head is KEYS else "{w}\t{G}\t{L}", 1.0 - 0.1 * k)
         for k, T in enumerate((25, 35, 45))
     )
     found = moduli.read(written(tmp_path, text))
@@ -206,6 +214,7 @@ V = np.geomspace(1e-3, 1.0, 8)
 FRICTION = {
     "tribometer": ("Sliding speed (mm/s),COF (-)\n", "{V}e3,{mu}"),
     "percent": ("V [mm/s],mu [%]\n", "{V}e3,{mu}e2"),
+    "factor": ("Sliding Speed;Friction Factor\n[m/s];[1]\n", "{V};{mu}"),
     "label": ("run;V [m/s];Reibwert\n", "Lauf {i};{V};{mu}"),
     "units below": ("Speed   COF\nmm/s   -\n", "{V}e3   {mu}"),
     "suffix": ("v_mm_s,mu\n", "{V}e3,{mu}"),

@@ -325,11 +325,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     begun, reach, elements = _begin(scene, rules, motion, float(times[-1]))
     M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
-    damping = (
-        scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
-    )
-    parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
-    depth, damper, creep, drops = (parts * [begun.depth, damping, 1.0 / damping, 1.0]).T
+    depth, damper, creep, drops = _of_rules(scene, rules, begun.depth)
     first = np.array([[begun.rate], [0.0], [begun.along_rate], [0.0], [0.0], [0.0]])
     rate, along, along_rate, lifted, pulled, sinks = np.repeat(first, len(rules), axis=1)
 
@@ -384,6 +380,14 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
                      found.pressure.max(axis=(1, 2)), speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def _of_rules(scene: Scene, rules: Sequence[Rule], depth: float) -> Array:
+    """Return the depths at the start, dampers, creep and shares of the lift that remain, by rule."""
+    law, static = scene.foundation, StaticState.of(scene)
+    damping = law.slow_damping * static.load / law.stiffness / static.depth
+    parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
+    return (parts * [depth, damping, 1.0 / damping, 1.0]).T
 
 
 def _begin(

@@ -1,13 +1,14 @@
 """A Prony series from measured moduli: master curve, fewest arms within the scatter, remarks."""
 
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import nnls
 from scipy.stats import chi2
 
-from kvtheory.fitting import creep, moduli, shifting
+from kvtheory.fitting import cards, creep, moduli, shifting
 from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
 
@@ -26,6 +27,8 @@ WINDOW = 5
 """Points of the running mean that shows where."""
 LOWEST = 3
 """Frequencies at which the loss shows whether the material flows."""
+BEYOND_CARD, CARD_POINTS = 10.0, 100
+"""Factor beyond the times of a card up to which its moduli hold, and the points at which they are drawn."""
 VAGUE = 0.3
 """Standard error of log10 a_T from which a shift is reported as vague."""
 MISSED = 2.0
@@ -102,6 +105,16 @@ def fit(
             f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
         )
     return Fitted(measured, thin, series, least, master, law, tuple(notes))
+
+
+def of_card(path: Path) -> tuple[Fitted, float]:
+    """Return the series of a card of Abaqus or ANSYS, sampled over its times, and Poisson's ratio."""
+    series, poisson_ratio, notes = cards.read(path)
+    ends = BEYOND_CARD ** np.array([-1.0, 1.0]) / series.time[[-1, 0]]
+    omega = np.geomspace(*ends, CARD_POINTS)
+    data = Moduli(omega, series.values(omega, dynamic=True))
+    measured = moduli.Measured(str(path), (moduli.Sweep(math.nan, data),), "E", tuple(notes))
+    return Fitted(measured, data, series, 0.0, None, None, tuple(notes)), poisson_ratio
 
 
 def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> float:

@@ -224,12 +224,19 @@ def plausible(table: Table, name: str, values: Array) -> Array:
     return values
 
 
-def largest_speed(scene: Scene, time: Array) -> float:
-    """Return the largest speed of the drive during a time series."""
+def speeds(scene: Scene, time: Array) -> Array:
+    """Return the velocity of the drive at times."""
     drive = scene.drive
     if drive.function is None:
-        return max(abs(V) for _, V in drive.points)
-    return max(abs(drive.called(t)) for t in time.tolist())
+        return np.interp(time, *np.array(drive.points).T)
+    return np.array([drive.called(t) for t in time.tolist()])
+
+
+def largest_speed(scene: Scene, time: Array) -> float:
+    """Return the largest speed of the drive during a time series."""
+    if scene.drive.function is None:
+        return max(abs(V) for _, V in scene.drive.points)
+    return float(np.abs(speeds(scene, time)).max())
 
 
 def _over_time(table: Table, data: Data, scene: Scene) -> Data:

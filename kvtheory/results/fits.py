@@ -94,6 +94,17 @@ class FoundationFit(_Fit):
         """The foundation of `scene`."""
         return self._found.foundation  # type: ignore[return-value]
 
+    def to_card(self, suffix: str) -> str:
+        """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa and s."""
+        from kvtheory.fitting.cards import written
+        from kvtheory.fitting.spectrum import Series
+
+        nu = self.data["poisson_ratio"]
+        if self.modulus is None or nu is None:
+            raise ValueError("a card holds moduli and Poisson's ratio: give `poisson_ratio`")
+        E, tau = np.array(self.arms).T
+        return written(suffix, Series(self.modulus, E, tau), nu, self.source)
+
     @property
     def remarks(self) -> list[str]:
         """What should be known about the fit, a line each."""
@@ -151,7 +162,10 @@ class Parameter(NamedTuple):
 
 
 class WeighedModel(NamedTuple):
-    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all."""
+    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all.
+
+    The weight is NaN where the best one does not fit to the scatter: weights hold if one of them is true.
+    """
 
     name: str
     unknowns: int
@@ -203,7 +217,7 @@ class FrictionFit(_Fit):
                 key,
                 f"{value:.5g}",
                 f"{error:.2g}",
-                specs[key].unit,
+                specs[key].unit if key in specs else "1",
                 f"{error / value:.2g}",
                 " or ".join(f"{low:.4g} to {high:.4g}" for low, high in (own, *others)),
             )
@@ -214,7 +228,13 @@ class FrictionFit(_Fit):
         if self.models:
             columns = "model", "unknowns", "misfit", "AICc", "weight"
             weighed = [
-                (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
+                (
+                    m.name,
+                    str(m.unknowns),
+                    f"{m.misfit:.3g}",
+                    f"+{m.aicc:.1f}",
+                    f"{m.weight:.0%}" if m.weight == m.weight else "-",
+                )
                 for m in self.models
             ]
             lines += ["", *aligned(columns, weighed)]

@@ -56,7 +56,7 @@ SPELLINGS = {
     "horizontal force, Reibkraft, Reibungskraft, Tangentialkraft",
     "spring_force": "spring_force, F_s, F_spring, drive force, pulling force, Federkraft, Zugkraft",
     "friction_coefficient": "friction_coefficient, mu, μ, µ, coefficient of friction, CoF, friction coeff, "
-    "friction coeff., Reibungszahl, Reibwert, Reibungskoeffizient",
+    "friction coeff., friction factor, Reibungszahl, Reibwert, Reibungskoeffizient",
     "leading_edge": "leading_edge, x_LE, Vorderkante",
     "trailing_edge": "trailing_edge, x_TE, Hinterkante",
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
@@ -331,7 +331,10 @@ class Reader:
         return name, unit
 
     def _name(self, head: str) -> str | None:
-        return self.known.get(_key(head), (None, ""))[0]
+        """Return the quantity of a name, or of a symbol behind words: Storage modulus G'."""
+        words = head.split()
+        symbol = words[-1] if len(words) > 1 and not words[-1].isalnum() else ""
+        return (self.known.get(_key(head)) or self.known.get(_key(symbol)) or (None, ""))[0]
 
     def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
         found: Known = {}

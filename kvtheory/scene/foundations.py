@@ -71,6 +71,10 @@ NO_DAMPER = (
 FACTORS = 'pairs of temperature and log10 a_T as measured, such as ["0 degC", 2.155], that of T_ref with 0'
 SAME_TEMPERATURE = 0.01
 """Difference in K up to which a temperature of shift factors is the reference temperature."""
+RELATIVE = (
+    ". Moduli g_i of Abaqus or ANSYS are relative to the instantaneous modulus E_0: the relaxed one is "
+    "E_0 (1 - sum g_i), and that of an arm is g_i E_0; `foundation` reads such a card"
+)
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
 
@@ -545,10 +549,18 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
                 copy.copy(pair) if whole else Arm(**{own: pair[0]}, relaxation_time=pair[1])
             )
         except SceneError as error:
-            problems += [line.replace("arm", key, 1) for line in error.problems]
+            hint = RELATIVE if isinstance(pair, Sequence) and _relative(pair[0]) else ""
+            problems += [line.replace("arm", key, 1) + hint for line in error.problems]
     problems += _equal_times(arms)
     problems.report()
     return tuple(arms.values())
+
+
+def _relative(value: Any) -> bool:
+    """Whether a modulus is a number from 0 to 1 without a unit, as in the cards of other programs."""
+    with suppress(ValueError):
+        return isinstance(value, str) and 0.0 < float(value) < 1.0
+    return False
 
 
 def _reads(value: Any, unit: str) -> bool:

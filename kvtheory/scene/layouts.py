@@ -11,7 +11,7 @@ single cell, of a key with a colon, or of two cells that are a key and its value
 import csv
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 
 from kvtheory.scene.tables import SEPARATED, number
@@ -22,7 +22,8 @@ Names = Callable[[Sequence[str], Sequence[str]], int]
 
 STARTS = re.compile(r"[\s,;\"]*(?:[-+.]*\d|nan\b)", re.IGNORECASE)
 """The beginning of a row of numbers; its first cells may be empty."""
-COMMENT = re.compile(r"^\s*(?:#|%|//)+\s*")
+COMMENT = re.compile(r"^\s*(?:#|%|//)+\s*(?:\w+:\s+)?")
+"""The mark of a comment, and a word with a colon behind it, such as "columns:"."""
 UNITLESS = "", "-", "1"
 INCH = re.compile(r'(?<=[EG])"(?=\s*(?:[\[(/\t;, ]|$))')
 """A double prime written as a quotation mark, before a unit or at the end of a name."""
@@ -69,6 +70,7 @@ class Layout:
     separator: str
     rows: list[int]
     above: list[str]
+    numeric: int = 0  # numbers in its first row
     shift: int = 0  # of the cells of rows against those of the header
 
     def cells(self, line: str) -> Cells:
@@ -127,12 +129,13 @@ def tables(lines: Sequence[str], names: Names) -> tuple[list[Layout], int | None
                 if not holds:
                     return found, at
                 if above and own.rows:
-                    own = Layout(own.line, own.heads, own.units, own.separator, [], above)
+                    own = replace(own, rows=[], above=above)
                 elif above:
                     own.above += above
                 above = []
                 if not own.rows:
                     _align(own, line)
+                    own.numeric = _numeric(own, line)
                     found.append(own)
                 own.rows.append(at)
             else:
@@ -177,18 +180,23 @@ def _units_below(
     is_number = [number(cell, ",") is not None for cell in texts if cell not in UNITLESS]
     long = any(len(cell) > LONGEST_UNIT for cell in texts)
     spaced = separator in SPACES and len(cells) != count
-    if not is_number or any(is_number) or long or spaced or len(cells) > count + 1:
+    numbers = all(
+        number(word, ",") is not None for word in re.split(r"[\s,;]+", lines[below].strip())
+    )
+    if numbers or not is_number or any(is_number) or long or spaced or len(cells) > count + 1:
         return [], at
     return cells, below + 1
 
 
+def _numeric(own: Layout, line: str) -> int:
+    return sum(number(cell, own.decimal) is not None for cell in own.cells(line))
+
+
 def _is_row(own: Layout, line: str) -> bool:
-    """Whether a line that begins with text has a number, and as many cells as the header."""
-    cells = own.cells(line)
-    count = sum(number(cell, own.decimal) is not None for cell in cells)
-    return (
-        count > 0 and len(cells) > 1 and len(cells) >= len(own.heads) - 1 and not _is_metadata(line)
-    )
+    """Whether a line that begins with text has as many cells as the header, and numbers as the first row."""
+    if len(own.cells(line)) < max(len(own.heads) - 1, 2) or _is_metadata(line):
+        return False
+    return 2 * _numeric(own, line) >= max(own.numeric, 1)
 
 
 def _is_metadata(line: str) -> bool:

@@ -354,7 +354,7 @@ PARTS: dict[str, tuple[Any, ...]] = {
 
 
 def inconsistencies(parts: Mapping[str, Any]) -> Problems:
-    """Report parts that do not fit: totals with a line contact, no mass for a spring, an unknown layer, a start."""
+    """Report parts that do not fit: totals with a line contact, no mass for a spring, a layer, a start."""
     found = misplaced(parts)
     indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
     if indenter is not None:
