@@ -43,12 +43,7 @@ SHOWN_DIGITS = 6
 AGREEMENT = 1e-9
 """Relative difference below which two values of one quantity are the same."""
 
-FOLLOWING = (
-    ("eq29", sym.l_r),
-    ("eq28", sym.a),
-    ("eq26", sym.x_le),
-    ("eq27", sym.x_te),
-)
+FOLLOWING = (("eq29", sym.l_r), ("eq28", sym.a), ("eq26", sym.x_le), ("eq27", sym.x_te))
 """The quantities that follow from a scene and its depth, with the derivations that give them."""
 
 GIVEN = {

@@ -123,11 +123,7 @@ class _Chapter:
 
     def _rise(self) -> Derivation:
         proof = self._proof("rise", "Shape", _SHAPE)
-        proof.define(
-            h(x),
-            self.rise,
-            "the surface of the indenter",
-        )
+        proof.define(h(x), self.rise, "the surface of the indenter")  # fmt: skip
         try:
             _signed(proof, self.slope, ">", "it rises on both sides: its slope")
             curvature = sp.diff(self.slope, distance)
@@ -205,8 +201,8 @@ class _Chapter:
         ):
             weight = sp.S.One if force == W else sign * self.slope
             inner = sp.expand(weight * K * (delta - self.rise + sign * l_r * self.slope))
-            proof.integral(side, inner, (distance, 0, end), _integral(inner), f"{name} the lowest line",
-                           value=value)  # fmt: skip
+            proof.integral(side, inner, (distance, 0, end), f"{name} the lowest line", value=value,
+                           antiderivative=_integral(inner))  # fmt: skip
         if force == F:
             level = self._at(self.rise, self.trailing)
             squares = _integral(sp.expand(self.slope**2))
@@ -245,7 +241,6 @@ class _Chapter:
         return proof.done(mu, result)
 
     def _recall_forces(self, proof: Proof) -> None:
-
         for label, force in (("load", W), ("friction", F)):
             proof.recall(f"shape-{label}", force)
 
@@ -290,15 +285,8 @@ class _Chapter:
         load, friction = K * (a * depth - area + l_r * depth), K * (depth**2 / 2 + l_r * squares)
         for force, weight, value in ((W, sp.S.One, load), (F, self.slope, friction)):
             inner = sp.expand(weight * K * (delta - self.rise + l_r * self.slope))
-            primitive = _integral(inner)
-            proof.integral(
-                force,
-                inner,
-                (distance, 0, a),
-                primitive,
-                "ahead of the tip",
-                value=sp.expand(value),
-            )
+            proof.integral(force, inner, (distance, 0, a), "ahead of the tip", value=sp.expand(value),
+                           antiderivative=_integral(inner))  # fmt: skip
         proof.define(mu, F / W, "Eq. (37)")
         ratio = _tidy(friction / load)
         proof.equal(mu, ratio, "exactly")

@@ -23,13 +23,11 @@ PLACES, PROVED = 6, 4
 """Digits of the maximum that are printed, and decimals of its place that are proved."""
 
 
-ROWS = (
-    Symbol(r"\Lambda", "retardation length in the units of the load", "1", None),
-    Symbol(r"\hat \mu", "friction coefficient in the units of the load", "1", None),
-    Symbol("w_n", "load in the units of the half length", "1", None),
-    Symbol(r"\varphi_n", "friction force in the units of the half length", "1", None),
-    Symbol(r"\mu_{\mathrm{L2}}", "asymptote of $\\mu$ for high velocity", "1", None),
-)
+ROWS = (Symbol(r"\Lambda", "retardation length in the units of the load", "1", None),
+        Symbol(r"\hat \mu", "friction coefficient in the units of the load", "1", None),
+        Symbol("w_n", "load in the units of the half length", "1", None),
+        Symbol(r"\varphi_n", "friction force in the units of the half length", "1", None),
+        Symbol(r"\mu_{\mathrm{L2}}", "asymptote of $\\mu$ for high velocity", "1", None))  # fmt: skip
 """What these letters mean for a dead weight of this shape."""
 
 

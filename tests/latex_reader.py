@@ -413,7 +413,7 @@ class _Reader:
         self._expect("_")
         self._expect("{")
         variable = self._name()
-        self._expect("=")
+        self._expect(r"\to" if self._next() == r"\to" else "=")
         value = self._sum()
         self._expect("}")
         return sp.Subs(inner, variable, value)

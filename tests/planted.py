@@ -69,7 +69,9 @@ def unique(expr, over):
 
 def integral(integrand, over, primitive, name=v, **more):
     return lambda p: p.integral(
-        name, sp.sympify(integrand), over, sp.sympify(primitive), "integral", **more
+        *(name, sp.sympify(integrand), over, "integral"),
+        antiderivative=sp.sympify(primitive),
+        **more,
     )
 
 
@@ -1113,19 +1115,19 @@ def verdict(step, seconds=20):
     Where it has printed what must not vanish, "where" and that.
     """
     proof = _proof()
-    before = signal.signal(signal.SIGALRM, _expire)
-    signal.alarm(seconds)
+    before = signal.signal(signal.SIGPROF, _expire)
+    signal.setitimer(signal.ITIMER_PROF, seconds)  # of processor time, whatever else is running
     try:
         step(proof)
     except OverTimeError:
-        return "timeout", f"longer than {seconds} s"
+        return "timeout", f"longer than {seconds} s of processor time"
     except StepError as error:
         return "refused", str(error)
     except Exception as error:
         return "crashed", f"{type(error).__name__}: {error}"
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
     excluded = [each for each in proof._domain if r"\neq" in each]
     return f"where {', '.join(excluded)}" if excluded else "accepted", ""
 

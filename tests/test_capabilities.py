@@ -120,6 +120,7 @@ ASK = {
     "sweep": swept,
     "sweep over time": partial(swept, at=AT),
     "footprint": lambda each: np.isfinite(kv.footprint(each).half_width),
+    "drop": lambda each: np.isfinite(kv.restitution(each, speed=0.1).contact_time),
     "explorer": lambda each: explorer_page(each).startswith("<!DOCTYPE html>"),
 }
 

@@ -92,27 +92,45 @@ class Decay(Waveform):
 """By file: the class, the line before which it goes, and the row of the table before and after."""
 
 
+SERVER = """
+import json, sys
+from click.testing import CliRunner
+from kvtheory.cli import main
+
+for line in sys.stdin:
+    found = CliRunner().invoke(main, json.loads(line))
+    print(json.dumps([found.stdout, found.stderr]), flush=True)
+"""
+"""Runs commands in one process, for it takes longer to import the package than to answer."""
+
+
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    """Commands of a copy of the package with all four; they return standard output and error."""
+def copy(tmp_path_factory):
+    """How to start Python in a copy of the package with all four."""
     folder = tmp_path_factory.mktemp("copy")
-    package = Path(kv.__file__).parent
-    shutil.copytree(package, folder / "kvtheory", ignore=shutil.ignore_patterns("__pycache__"))
+    # What Python has compiled stays valid, but of the files that change; kernels have a cache of their own.
+    kernels = shutil.ignore_patterns("*.nb?")
+    shutil.copytree(Path(kv.__file__).parent, folder / "kvtheory", ignore=kernels)
     for name, (text, place, before, after) in ADDED.items():
         file = folder / "kvtheory" / "scene" / name
         source = file.read_text()
         assert source.count(before) == source.count(f"\n{place}") == 1
         file.write_text(source.replace(f"\n{place}", f"\n{text}\n\n{place}").replace(before, after))
+    return {"cwd": folder, "env": os.environ | {"PYTHONPATH": str(folder)}, "text": True}
 
-    def run(*words):
-        command = [sys.executable, *(() if words[0] == "-c" else ("-m", "kvtheory")), *words]
-        found = subprocess.run(
-            command, cwd=folder, env=os.environ | {"PYTHONPATH": str(folder)}, text=True,
-            capture_output=True, check=False,
-        )  # fmt: skip
-        return found.stdout, found.stderr
 
-    return run
+@pytest.fixture(scope="module")
+def run(copy):
+    """Commands of the copy; they return standard output and error."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", SERVER], **copy, **pipes) as server:
+
+        def run(*words):
+            print(json.dumps(words), file=server.stdin, flush=True)
+            return json.loads(server.stdout.readline())
+
+        yield run
+        server.stdin.close()
 
 
 def test_a_shape_is_a_class_and_a_row(run):
@@ -203,8 +221,10 @@ assert swept["friction_force"][1] == kv.steady(two).friction_force
 """In the copy: a solid of its own answers as the Prony series with its arms, also as a layer."""
 
 
-def test_a_law_is_a_class_and_a_row(run):
-    assert run("-c", LAWS_ALIKE) == ("", "")
+def test_a_law_is_a_class_and_a_row(copy, run):
+    call = [sys.executable, "-c", LAWS_ALIKE]
+    found = subprocess.run(call, **copy, capture_output=True, check=False)
+    assert (found.stdout, found.stderr) == ("", "")
     kind = ("--set", "foundation.kind=standard-linear-solid", "--set", "foundation.ratio=4")
     time = ("--set", "foundation.relaxation_time=10 ms")
     refused = run("steady", "--method", "asymptote", *kind, *time)[1]

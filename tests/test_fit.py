@@ -478,6 +478,43 @@ def test_an_interval_has_no_end_where_another_unknown_leaves_the_range_of_the_se
     assert cut == (-np.inf, np.inf)
 
 
+def test_an_offset_is_one_unknown_more():
+    """Friction of Kelvin-Voigt on adhesion of 0.1: without an offset no model is given a weight."""
+    data = table(TABLE1, 0.02, 1) | {"mu": 0.1 + measured(TABLE1, 0.02, 1)}
+    found = kv.fit(TABLE1, data, free=VOIGT, offset=True)
+    value, error, _, _ = found.parameters["offset"]
+    assert abs(value - 0.1) < 3.0 * error < 0.02
+    stiffness, error, _, _ = found.parameters[VOIGT[0]]
+    assert abs(stiffness - 1e10) < 3.0 * error
+    assert found.notes == ()
+    assert found.scene.foundation.stiffness == stiffness
+    force = {"V [m/s]": V, "F_x [N/m]": -data["mu"] * kv.Scene().support.weight, "s": V}
+    force["V [m/s]"] = -V
+    again = kv.fit(TABLE1, force, free=VOIGT, offset=True)
+    assert again.parameters["offset"].value == pytest.approx(value, rel=0.05)
+    axes = draw_fit(found).axes
+    assert np.abs(axes[0].lines[1].get_ydata()).min() > value
+    assert "offset" in str(found)
+
+
+def test_an_offset_over_time_needs_a_rigid_drive():
+    data, key = series(TABLE1, columns=["friction_force"]), "friction_force [N/m]"
+    load = kv.transient(TABLE1, at=data["t [ms]"] / 1e3, certify=False).normal_force
+    lifted = data | {key: data[key] + 0.05 * load}
+    found = kv.fit(TABLE1, lifted, free=VOIGT[1:], offset=True)
+    assert found.parameters["offset"].value == pytest.approx(0.05, rel=1e-3)
+    sprung = TABLE1.replace({"drive.stiffness": 1e8})
+    with pytest.raises(ValueError, match="an offset would change the motion"):
+        kv.fit(sprung, data, free=VOIGT[1:], offset=True)
+
+
+def test_many_unknowns_need_twice_as_many_values():
+    arms = kv.GeneralizedMaxwell("1 GN/m^3", arms=[[1e9, 10.0**k] for k in range(-6, 2)])
+    data = {"V [m/s]": V, "mu": 0.1 * V**0.1}
+    with pytest.raises(ValueError, match=r"holds 25 values; 16 unknowns need more than 31 values"):
+        kv.fit(kv.Scene(foundation=arms), data, free=["foundation.arms"])
+
+
 RUN = "t [ms],F_x [N/m]\n0,5\n1,4\n2,3\n3,3\n"
 
 
@@ -501,7 +538,7 @@ BAD = {
     "misspelt column": (MU.replace("mu", "mu,indenter.radus [mm]"), 'did you mean "indenter.radius"'),
     "nan": (MU + "5,nan\n", 'line 6, column "mu": nan is not a finite number'),
     "text": (MU + "5,high\n", 'line 6, column "mu": "high" is not a number'),
-    "unit of mu": (MU.replace("mu", "mu [%]"), 'has the unit "%"'),
+    "unit of mu": (MU.replace("mu", "mu [mm]"), 'has the unit "mm"'),
     "no unit": (MU.replace(" [mm/s]", ""), "has no unit"),
     "wrong unit": (MU.replace("mm/s", "mm"), "wrong dimension"),
     "zero": ("V [mm/s],mu\n1,0\n2,0\n3,0\n", "friction_coefficient is zero throughout"),

@@ -305,6 +305,71 @@ def test_a_law_that_misses_a_shift_factor_is_noted(last, notes):
     assert all("Arrhenius misses the shift factor at" in note for note in found)
 
 
+def swept(law, omega, T, noise=0.0, seed=0, lift=0.0, series=TRUE):
+    """Return moduli at temperatures in degrees Celsius, and log10 a_T relative to the one in the middle."""
+    rng, middle = np.random.default_rng(seed), T[len(T) // 2]
+    shifts = law.log_shift(np.array(T) + 273.15, middle + 273.15)
+    rows = []
+    for each, shift in zip(T, shifts, strict=True):
+        values = series.values(omega * 10.0**shift, dynamic=True) * 10.0 ** (lift * (each - middle))
+        values = values * (1.0 + noise * rng.standard_normal(values.shape))
+        rows.append(np.vstack([omega, values, np.full(omega.size, each)]))
+    names = "w [rad/s]", "E' [Pa]", "E'' [Pa]", "T [degC]"
+    return dict(zip(names, np.hstack(rows), strict=True)), shifts
+
+
+WLF = shifting.Law("wlf", (8.86, 101.6))
+
+
+def test_errors_of_shifts_cover_where_sweeps_hardly_overlap():
+    """Three decades each, 2.9 apart: log-linear interpolation is off by 0.09."""
+    series = Series(1000.0, np.array([4000.0, 800.0]), np.array([2e-3, 0.1]))
+    data, shifts = swept(WLF, np.geomspace(0.628, 628.0, 16), [0.0, 25.0, 50.0], series=series)
+    found = kv.fit_foundation(data)
+    off = np.abs(np.array(found.shift_factors)[:, 1] - shifts)
+    assert (off <= 2.0 * np.array(found.shift_errors)).all()
+    assert off.max() < 5e-3
+    assert not any("Kramers" in note for note in found.notes)
+
+
+def test_errors_of_shifts_cover_the_truth_for_few_points():
+    within = []
+    for seed in range(6):
+        omega = np.geomspace(1.0, 300.0, 5 + seed % 3 * 5)
+        data, shifts = swept(WLF, omega, [0.0, 10.0, 20.0, 30.0], 0.02, seed)
+        found = shifting.shifted(moduli.read(data).sweeps, 293.15, None, vertical=False)
+        off = np.abs(found.log_shift - shifts)[found.errors > 0.0]
+        within += (off < 2.0 * found.errors[found.errors > 0.0]).tolist()
+    assert np.mean(within) > 0.9
+
+
+def test_vertical_shifts_are_proposed_where_they_are():
+    for lift in (0.0, 0.01):
+        data, _ = swept(
+            WLF, np.geomspace(0.3, 300.0, 16), [0.0, 10.0, 20.0, 30.0], 0.005, lift=lift
+        )
+        notes = "".join(kv.fit_foundation(data).notes)
+        assert ("Try `vertical`" in notes) == (lift > 0.0)
+        assert "Kramers" not in notes
+
+
+def test_reversed_shift_factors_are_recognised():
+    T = [0.0, 20.0, 40.0]
+    data, shifts = swept(WLF, np.geomspace(0.3, 300.0, 16), T, 0.01)
+    kv.fit_foundation(data, shift_factors={"T [degC]": T, "log_aT": shifts})
+    with pytest.raises(ValueError, match="are reversed"):
+        kv.fit_foundation(data, shift_factors={"T [degC]": T, "log_aT": -shifts})
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02, 0.1])
+def test_a_liquid_has_no_relaxed_modulus_whatever_the_noise(noise):
+    liquid = Series(0.0, np.array([1e5, 5e5]), np.array([1.0, 1e-2]))
+    with pytest.raises(ValueError, match="relax to zero within the data"):
+        kv.fit_foundation(dynamic(noise, 2, liquid, np.geomspace(0.01, 1e3, 40)))
+    solid = Series(1e4, liquid.modulus, liquid.time)
+    assert not kv.fit_foundation(dynamic(noise, 2, solid, np.geomspace(0.01, 1e3, 40))).notes
+
+
 def test_a_loss_of_a_thousandth_of_the_modulus_tells_the_shifts():
     """On the plateau of a rubber the storage modulus is nearly constant, and tells none."""
     rng, law = np.random.default_rng(1), shifting.Law("wlf", (8.86, 101.6))
@@ -515,3 +580,73 @@ def test_a_long_record_is_averaged_and_read_in_one_go(tmp_path):
     assert len(found.arms) == 3
     assert found.arms[1][0] == pytest.approx(3e6, rel=3e-3)
     assert "30,000 values were averaged to 1,200" in found.notes[0]
+
+
+def test_measured_shift_factors_hold_in_the_scene_where_the_law_misses_them(tmp_path):
+    """Of three temperatures two factors are known, too few for WLF's two constants: Arrhenius misses them."""
+    T = [0.0, 20.0, 60.0]
+    data, shifts = swept(WLF, np.geomspace(0.03, 3000.0, 26), T)
+    layer = {"thickness": "0.1 mm", "poisson_ratio": 0.3}
+    found = kv.fit_foundation(data, temperature="60 degC", **layer)
+    assert found.shift_law.startswith("Arrhenius")
+    assert found.reference_temperature == 333.15
+    assert "Prony series at 60 degC" in str(found)
+    path = tmp_path / "rubber.toml"
+    path.write_text(found.to_toml())
+    scene = kv.load_scene(path)
+    assert scene == found.scene
+    for each, shift in zip(T, shifts - shifts[-1], strict=True):
+        a_T = scene.replace({"foundation.temperature": f"{each} degC"}).foundation.shift_factor
+        assert np.log10(a_T) == pytest.approx(shift, abs=5e-3)
+    between = kv.fit_foundation(data, temperature="30 degC", **layer)
+    assert "a_T" in between.notes[-1]
+    assert "which hold at 20 degC" in between.notes[-1]
+    for factors, told in (
+        ([["20 degC", 1.0]], "log10 a_T = 0 at foundation.reference_temperature"),
+        ([["20 degC", 0.0], ["20 degC", 1.0]], "different temperatures"),
+        ("20 degC", "pairs of temperature"),
+    ):
+        with pytest.raises(kv.SceneError, match=told):
+            kv.Foundation(1e9, 1.0, reference_temperature="20 degC", activation_energy="80 kJ/mol",
+                          shift_factors=factors)  # fmt: skip
+    with pytest.raises(kv.SceneError, match=r"needs foundation.* and a law"):
+        kv.Foundation(1e9, 1.0, shift_factors=[["20 degC", 0.0]])
+
+
+@pytest.mark.parametrize("suffix", [".inp", ".mac"])
+def test_cards_of_other_programs_are_written_and_read_back(tmp_path, suffix):
+    path, card = written(tmp_path, HEAD + ROWS), tmp_path / f"card{suffix}"
+    layer = ["--thickness", "2 mm", "--poisson-ratio", "0.3"]
+    first = printed("foundation", path, *layer, "-o", card)
+    again = printed("foundation", card, "--thickness", "2 mm")
+    assert np.array(again["arms"]) == pytest.approx(np.array(first["arms"]), rel=1e-5)
+    for key in ("modulus", "stiffness"):
+        assert again[key] == pytest.approx(first[key], rel=1e-5)
+    assert again["misfit"] < 1e-5
+    text = card.read_text()
+    assert f"{first['modulus'] + sum(E for E, _ in first['arms']):.9g}" in text
+    card.write_text(text.replace("units", "unit is not told"))
+    refused(["foundation", card], ['expected a comment such as "units: MPa, s"'])
+
+
+def test_a_card_may_give_the_relaxed_modulus_in_other_units(tmp_path):
+    text = "** units: MPa, s\n*ELASTIC\n30, 0.45\n*VISCOELASTIC, TIME=PRONY\n0.5, 0., 1e-3\n0.3,0.,0.1\n"
+    found = kv.fit_foundation(written(tmp_path, text, "card.INP"), thickness="2 mm")
+    assert found.modulus == pytest.approx(30e6)
+    assert np.array(found.arms) == pytest.approx(np.array([[75e6, 1e-3], [45e6, 0.1]]))
+    assert "bulk modulus" in found.notes[0]
+    relative = {"modulus": "30 MPa", "thickness": "2 mm", "poisson_ratio": 0.45}
+    with pytest.raises(kv.SceneError, match="relative to the instantaneous modulus"):
+        kv.GeneralizedMaxwell(**relative, arms=[["0.5", "1 ms"]])
+
+
+def test_a_measured_stiffness_scales_the_arms():
+    data = dynamic()
+    found = kv.fit_foundation(data, stiffness="3.5 GN/m^3")
+    own = found.foundation
+    assert own.stiffness == 3.5e9
+    assert [arm.stiffness for arm in own.arms] == pytest.approx(3.5e3 * TRUE.modulus, rel=1e-4)
+    shear = {key.replace("E", "G"): values for key, values in data.items()}
+    assert kv.fit_foundation(shear, stiffness="3.5 GN/m^3").foundation == own
+    with pytest.raises(ValueError, match="takes the place of a layer"):
+        kv.fit_foundation(data, stiffness=1e9, thickness="2 mm", poisson_ratio=0.3)

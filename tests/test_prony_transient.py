@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from tests.spring_random import of_unit_scales
 
 RUBBER = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (1e10, 0.1)])
 ASKED = ["depth", "normal_force", "friction_force"]
@@ -76,3 +77,16 @@ def test_a_wrong_sign_is_named_on_arms_too():
     data = kv.elements(scene, per_length="100 /mm", certify=False)
     wrong = {"time": data.time, "depth": data.depth, "friction_force": -data.friction_force}
     assert kv.compare(scene, wrong).explanations[0].name == "sign of friction_force"
+
+
+def test_the_rate_of_a_light_mass_in_a_short_run_is_within_its_claim():
+    """It vibrates 200 times, which steps pass over; the tight solution takes many steps in each tenth."""
+    rubber = kv.GeneralizedMaxwell(0.75, arms=[(1.5, 100.0), (0.75, 2.0)])
+    scene = replace(of_unit_scales(1e-8, 0.0, kv.Drive(0.4), 0.05), foundation=rubber)
+    at, scale = np.linspace(0.05, 1.0, 12) * 0.05, rubber.retardation_time
+    found = kv.transient(scene, at=at, rtol=1e-4)
+    truth = kv.transient(scene, at=at, rtol=1e-8, certify=False)
+    off = scale * np.abs(found.depth_rate - truth.depth_rate).max()
+    claimed = found.certificate.relative_error["depth_rate"]
+    assert truth.steps > 5 * found.steps
+    assert off <= claimed <= 5.0 * off

@@ -26,7 +26,7 @@ from kvtheory.derivations.render import (
     pdf,
     write,
 )
-from kvtheory.derivations.render.edition import symbols_of
+from kvtheory.derivations.render.edition import Edition, symbols_of
 from kvtheory.derivations.render.inline import inline
 from kvtheory.derivations.render.text import Given, Line, blocks, by_section, sentence
 
@@ -54,8 +54,21 @@ def everything() -> tuple[Derivation, ...]:
 
 
 @pytest.fixture(scope="session")
-def page(everything) -> str:
-    return html.document(edition(everything, command="kvtheory derive"))
+def book(everything) -> Edition:
+    return edition(everything, command="kvtheory derive")
+
+
+@pytest.fixture(scope="session")
+def page(book) -> str:
+    return html.document(book)
+
+
+@pytest.fixture(scope="session")
+def as_tex(everything, tmp_path_factory) -> Path:
+    """A folder with everything as LaTeX."""
+    folder = tmp_path_factory.mktemp("everything")
+    write(everything, folder, ["tex"])
+    return folder
 
 
 def overfull(log: str) -> list[float]:
@@ -70,7 +83,7 @@ def test_labels_fit_file_names_and_every_status_has_a_meaning(everything):
     assert tuple(frame.VOCABULARY) == STATUSES
 
 
-def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(everything):
+def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(book, everything):
     listed = [symbol.latex for symbol in SYMBOLS]
     shown = {symbol: each.label for each in everything for symbol in symbols_of(each)}
     assert set(shown) == set(listed), shown
@@ -78,13 +91,11 @@ def test_each_symbol_is_in_the_nomenclature_once_with_a_meaning_and_a_unit(every
     assert [next(atoms(letter)).symbol for letter in listed] == listed
     assert all(symbol.meaning and symbol.unit for symbol in SYMBOLS)
     words = {"", "coordinate", "counter", "constant", "sign", "dimension"}
-    book = edition(everything)
     found = [*book.nomenclature, *(row for rows in book.chapters.values() for row in rows)]
     assert {symbol.source for symbol in found} <= {each.label for each in everything} | words
 
 
-def test_a_section_has_letters_of_its_own_without_accents_that_it_does_not_need(everything):
-    book = edition(everything)
+def test_a_section_has_letters_of_its_own_without_accents_that_it_does_not_need(book, everything):
     accented, shown = 0, 0
     for section, members in by_section(book.derivations).items():
         letters = {letter for each in members for letter in symbols_of(each)}
@@ -125,6 +136,8 @@ def told(block) -> str:
         (r"\frac{a + b}{c d} - \frac{1}{2}", "(a + b)/(c d) - 1/2"),
         (r"\frac{K}{3 R} \left(1 + \frac{l}{a}\right)", "K (1 + l/a)/(3 R)"),
         (r"\frac{a}{b} \frac{1}{c}", "a/(b c)"),
+        (r"\frac{a}{R} \frac{b}{4 - c}", "a b/(R (4 - c))"),
+        (r"\frac{G_2(c)}{G_1(c)} + \frac{1}{\sqrt[3]{z}}", r"G_2(c)/G_1(c) + 1/\sqrt[3]{z}"),
         (r"\frac{a/b}{c/d}", "(a/b)/(c/d)"),
         (r"\frac{W}{l_{\mathrm{r}}}", r"W/l_{\mathrm{r}}"),
         (r"\alpha \sqrt{\frac{\delta}{R}}", r"\alpha \sqrt{\delta/R}"),
@@ -202,8 +215,8 @@ def test_the_pages_of_the_site_have_each_derivation_once(everything, site):
 # JSON
 
 
-def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(everything):
-    book, records = edition(everything), {each.label: each for each in everything}
+def test_a_root_is_printed_with_its_equation_and_a_result_with_its_conditions(book, everything):
+    records = {each.label: each for each in everything}
     roots = [
         step for each in everything for step in each.steps
         if step.claim and step.claim.check == "root" and not step.source
@@ -234,16 +247,15 @@ ASSUMED = {
 """The records that assume a sign which they do not prove, and why they may."""
 
 
-def test_few_records_assume_a_sign_that_they_do_not_prove(everything):
-    book = edition(everything)
+def test_few_records_assume_a_sign_that_they_do_not_prove(book, everything):
     assert {each.label for each in everything if "ssumed" in book.domain(each)} == {*ASSUMED}
 
 
-def test_json_keeps_the_contract(everything, tmp_path):
+def test_json_keeps_the_contract(book, everything, tmp_path):
     write(everything, tmp_path, ["json"])
     entries = json.loads((tmp_path / "derivations.json").read_text(encoding="utf-8"))
     assert [entry["label"] for entry in entries] == [each.label for each in everything]
-    for entry, each in zip(entries, edition(everything).derivations, strict=True):
+    for entry, each in zip(entries, book.derivations, strict=True):
         assert entry["status"] in STATUSES
         assert (entry["equation"], entry["latex"]) == (each.equation, each.latex)
         assert entry["latex"]
@@ -313,9 +325,9 @@ def test_html_fits_a_phone(page, tmp_path):
 # LaTeX and PDF
 
 
-def test_article_compiles_without_loose_ends(everything):
+def test_article_compiles_without_loose_ends(book):
     required("pdflatex")
-    made, log = pdf.typeset(latex.article(edition(everything, command="kvtheory derive")))
+    made, log = pdf.typeset(latex.article(book))
     assert made.startswith(b"%PDF")
     assert not re.search(
         r"undefined|Rerun to get|Token not allowed|multiply.defined|LaTeX Warning", log
@@ -332,11 +344,13 @@ def test_article_escapes_text_and_is_reproducible():
     assert pdf.typeset(source)[0] == pdf.typeset(source)[0]
 
 
-def compiled(directory: Path, names: list[str], references: str = "") -> str:
+def compiled(
+    directory: Path, names: list[str], references: str = "", start: str = r"\documentclass{article}"
+) -> str:
     """Return the log of a bare document of these fragments."""
     inputs = "\n".join(rf"\input{{fragments/{name}}}" for name in names)
     (directory / "own.tex").write_text(
-        r"\documentclass{article}\usepackage{amsmath}\renewcommand\thepage{}\begin{document}"
+        rf"{start}\usepackage{{amsmath}}\renewcommand\thepage{{}}\begin{{document}}"
         f"{references}\n{inputs}\n\\end{{document}}\n"
     )
     options = ("-draftmode", "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error")
@@ -348,13 +362,12 @@ def compiled(directory: Path, names: list[str], references: str = "") -> str:
 
 
 @pytest.mark.parametrize("kind", ["", "-steps"])
-def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, tmp_path, kind):
-    write(everything, tmp_path, ["tex"])
+def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, as_tex, kind):
     names = [f"{each.label}{kind}.tex" for each in everything]
     references = " ".join(rf"\eqref{{kv:{each.label}}}" for each in everything)
-    written = {path.name for path in (tmp_path / "fragments").iterdir()}
+    written = {path.name for path in (as_tex / "fragments").iterdir()}
     assert written == {f"{each.label}{end}.tex" for each in everything for end in ("", "-steps")}
-    log = compiled(tmp_path, names, references)
+    log = compiled(as_tex, names, references)
     assert not re.search(r"LaTeX Warning", log)
     assert overfull(log) == []
 
@@ -375,11 +388,34 @@ def test_fragments_keep_to_labels_of_their_own(everything, tmp_path):
     assert r"\derivationref{nk-eq28}" in text
 
 
-def test_the_document_counts_the_equations_of_a_fragment(everything):
-    printing = edition(everything)
-    texts = {each.label: fragments.with_steps(each, printing) for each in everything}
+@pytest.mark.parametrize("kind", ["article", "amsart"])
+def test_two_editions_share_an_article_of_somebody_else(everything, tmp_path, kind):
+    """It has sections, equations and a theorem of the same names, and links."""
+    labels, names = ["eq27", "F3", "F11", "F24-damper"], []
+    (tmp_path / "fragments").mkdir()
+    for prefix in "ab":
+        printing = edition(everything, labels, label_prefix=f"{prefix}:")
+        for each in printing.derivations:
+            if each.label in labels:
+                names.append(f"{prefix}-{each.label}.tex")
+                text = fragments.with_steps(each, printing)
+                (tmp_path / "fragments" / names[-1]).write_text(text)
+    references = " ".join(rf"\eqref{{{one}:{each}}}" for one in "ab" for each in labels)
+    own = (
+        r"\title{Sliding}\author{A. Nother}\maketitle\section{Load}\label{load}"
+        r"\begin{equation}\label{eq27}W = 1\end{equation}\begin{lemma}\label{F3}By \eqref{eq27},"
+        rf" Section~\ref{{load}}, Lemma~\ref{{F3}} and {references}.\end{{lemma}}"
+    )
+    packages = r"\usepackage{amssymb,amsthm}\usepackage{hyperref}\newtheorem{lemma}{Lemma}"
+    log = compiled(tmp_path, names, own, rf"\documentclass{{{kind}}}{packages}")
+    assert not re.search(r"Warning|undefined|multiply", log)
+    assert max(overfull(log), default=0.0) <= 1
+
+
+def test_the_document_counts_the_equations_of_a_fragment(book, everything):
+    texts = {each.label: fragments.with_steps(each, book) for each in everything}
     for each in everything:
-        for text in (fragments.equation(each, printing), texts[each.label]):
+        for text in (fragments.equation(each, book), texts[each.label]):
             assert r"\tag" not in text
             assert text.count(rf"\label{{kv:{each.label}}}") == 1
     assert r"\derivationref{kv:eq28}{(28 of Nakano and Kono)}" in texts["eq27"]

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.chapters import damped_arms, few_arms, rubber_transient, viscoelastic
+from kvtheory.derivations.chapters import (
+    damped_arms,
+    few_arms,
+    rubber_drive,
+    rubber_transient,
+    viscoelastic,
+)
 from kvtheory.derivations.engine import book
 from kvtheory.derivations.engine.book import established
 from scipy.optimize import brentq, minimize_scalar
@@ -263,3 +269,24 @@ def test_f33_relaxes_behind_the_contact_with_the_rates_of_its_polynomial(by_labe
     values = [float(form.subs(scene).subs(damped_arms.fades, rate)) for rate in rates]
     assert values == pytest.approx([0, 0], abs=1e-9 * K / time)
     assert rates[0] < 1 / time < rates[1]
+
+
+def test_f24_changes_the_forces_of_a_damper_as_its_pressure_between_moving_edges_does():
+    c, speed, eta, s = map(mp.mpf, ("2e-3", "0.05", "0.21", "13"))
+    half = c * (mp.mpf(1) / 2 + eta)
+    depth, sinks, drags = half**2 / (2 * RADIUS), mp.mpf("3e-6"), mp.mpf("2e-5")
+
+    def force(small, lever):
+        edge = -mp.sqrt(2 * RADIUS * (depth + small * sinks))
+        rate = lambda x: small * s * sinks - x / RADIUS * (speed - small * s * drags)  # noqa: E731
+        return mp.quad(lambda x: DAMPING * rate(x) * lever(x), [edge, c - half])
+
+    unit, sigma, e = DAMPING * speed, s * c / speed, rubber_drive.excess_share
+    for lever, arm, per_depth, per_drag in (
+        (lambda x: 1, 1, rubber_drive.normal_per_depth, rubber_drive.normal_per_drag),
+        (lambda x: -x / RADIUS, c / RADIUS, rubber_drive.rubbing_per_depth, rubber_drive.rubbing_per_drag),
+    ):  # fmt: skip
+        known = {rubber_drive.sigma: sigma, e: eta}
+        shares = [rubber_drive.DAMPED[name].subs(known) for name in (per_depth, per_drag)]
+        told = unit * arm * (shares[0] * sinks + shares[1] * drags * c / RADIUS)
+        assert mp.diff(lambda h, lever=lever: force(h, lever), 0) == pytest.approx(told, rel=1e-6)

@@ -15,20 +15,8 @@ from .asymptotics import F_high, F_low, W_high, W_low, mu_high, mu_low
 from .model import V, delta
 from .steady import F, W, l, l_r, mu, q
 from .theorems import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
-    NUMBER,
-    UNIT,
-    A,
-    B,
-    f,
-    kappa,
-    m,
-    phi,
-    s,
-    w,
-)
+    FRICTION_COEFFICIENT, FRICTION_FORCE, LOAD, NUMBER, UNIT, A, B, f, kappa, m, phi, s, w,
+)  # fmt: skip
 
 (
     gap, e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high,
@@ -149,8 +137,7 @@ def _recall(proof: Proof, ratio: sp.Expr) -> None:
 def _dimensional(proof: Proof, equation: str, of: sp.Symbol, term: sp.Symbol) -> None:
     """Recall an asymptote, and the quantities that are in it and in what it approaches."""
     leading = proof.asymptote(equation, of, term)
-    proof.recall("eq28", delta)
-    proof.recall("scaling", V, l_r)
+    proof.recall("eq28", delta, "scaling", V, l_r)
     wanted = {W, F, mu} & {of, *leading.free_symbols}
     for part in sorted(wanted, key=str):
         proof.recall("F1", part)
@@ -247,8 +234,6 @@ def _suspended(proof: Proof) -> None:
     """
     form = 4 * kappa / (3 * s * w)
     proof.recall("scaled-load", (f, 3 * s**3 * w / 4))
-    proof.define(
-        e_load_spring, (f + kappa * s**2) / f - 1, r"balance: $1 + \kappa = f + \kappa s^2$"
-    )
+    proof.define(e_load_spring, (f + kappa * s**2) / f - 1, r"as $1 + \kappa = f + \kappa s^2$")
     proof.equal(e_load_spring, form, "the part that the spring still carries")
     proof.done(e_load_spring, form)

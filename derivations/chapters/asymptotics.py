@@ -16,8 +16,8 @@ from .steady import F, W, a, l, l_r, mu, q
 load_excess, V_star, mu_low, mu_high, mu_high_weight, W_low, W_high, F_low, F_high = symbols(r"""
     W_e      W_{\mathrm{e}}     N/m  elastic part of the load  real
     V_star   V^{*}              m/s  crossing velocity, where the two asymptotes meet  from critical-fixed
-    mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity
-    mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity
+    mu_low   \mu_{\mathrm{L1}}  1    asymptote of the friction coefficient for low velocity  from eq42
+    mu_high  \mu_{\mathrm{L2}}  1    asymptote of the friction coefficient for high velocity  from eq45
     mu_high_weight  \mu_{\mathrm{L2\text{-}MI}}  1  asymptote for high velocity, dead weight
     W_low       W_{\mathrm{L1}}   N/m  asymptote of the load for low velocity
     W_high      W_{\mathrm{L2}}   N/m  asymptote of the load for high velocity
@@ -48,10 +48,8 @@ result = Chapter("Asymptotes")
 
 def _recall_exact(proof: Proof) -> None:
     """Let half length, velocity, load and friction be expressions in q."""
-    proof.recall("eq28")
-    proof.recall("scaling", l, l_r, V)
-    proof.recall("load")
-    proof.recall("F21-steady", (F, friction_identity.FRICTION))
+    proof.recall("eq28", "scaling", l, l_r, V, "load", "F21-steady",
+                 (F, friction_identity.FRICTION))  # fmt: skip
 
 
 def _recall_coefficient(proof: Proof) -> None:
@@ -66,10 +64,8 @@ def _estimate(
     proof.recall("eq3")
     _recall_exact(proof)
     over = (x, -a, a if low else sp.S.Zero)
-    inner = sp.Poly(integrand.subs(h(x), _SHAPE).doit(), x)
     reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
-    proof.integral(sp.Integral(integrand, over), integrand, over, inner.integrate(x).as_expr(), reason,
-                   value=leading)  # fmt: skip
+    proof.integral(sp.Integral(integrand, over), integrand, over, reason, value=leading)
     point, small = (_low, l_r / a) if low else (_high, a / l_r)
     if force == F:
         spring = low_load if low else low_load / 2

@@ -33,7 +33,7 @@ from .theorems import kappa, lam, s
     g_b         \tilde g          1  $(\pi + \tilde T)/4$
     K_b         \tilde K          1  $\frac{2}{15} - l^2 \tilde D$
     M_b         \tilde M          1  $\tilde D - \tilde N$
-    N_b         \tilde N          1  half of $- l \frac{d \tilde D}{d l}$
+    N_b         \tilde N          1  half of $-l\, d \tilde D/d l$
     T_b         \tilde T          1  part of the load of a ball that vanishes at high velocity
     D_b         \tilde D          1  integral by which a ball leaves energy behind
     a_b         \tilde a          m  half length of a strip of a ball
@@ -120,8 +120,9 @@ def _tail(proof: Proof) -> None:
     _angle(proof)
     positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
     primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
-    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=TAIL)
-    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
+    proof.integral(T, positive, UNIT, "of a positive function", value=TAIL,
+                   antiderivative=primitive)  # fmt: skip
+    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity")
     proof.done(T, TAIL)
 
 
@@ -146,8 +147,7 @@ def _strip(proof: Proof) -> None:
     proof.recall("eq27", (x_te, trailing_edge), at=strip)
     proof.recall("eq26", at=strip)
     proof.recall("pressure", (p, any_pressure), at={delta: delta * width})
-    proof.recall("eq3")
-    proof.recall("eq29", C)
+    proof.recall("eq3", "eq29", C)
     proof.recall("F21", at={delta_t: delta * width})
     for edge, place in ((p_te, x_te), (p_le, x_le)):
         proof.define(edge, sp.Subs(p, x, place), "the pressure of steady sliding")
@@ -171,8 +171,9 @@ def _load(proof: Proof) -> None:
     """
     known(proof)
     proof.recall("F20-strip", strip_load(y))
-    proof.integral(w, strip_load(y), UNIT, STRIPS, r"all strips: $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$",
-                   value=LOAD)  # fmt: skip
+    proof.integral(w, strip_load(y), UNIT,
+                   r"all strips: $W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$", value=LOAD,
+                   antiderivative=STRIPS)  # fmt: skip
 
 
 @result("F20-loss")
@@ -185,10 +186,11 @@ def _loss(proof: Proof) -> None:
     primitive = -(y**3) / 3 + (1 + l**2) * y - l * (1 + l**2) * sp.atan(y / l)
     closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * theta
     known(proof)
-    proof.integral(D, positive, UNIT, primitive, "of a positive function", value=closed)
+    proof.integral(D, positive, UNIT, "of a positive function", value=closed,
+                   antiderivative=primitive)  # fmt: skip
     proof.equal(D, LOSS, "from the same tail")
     proof.equal(sp.Derivative(T, l), -8 * D, "so the tail falls")
-    proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity", eps=1 / l)
+    proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity")
     proof.done(D, LOSS)
 
 
@@ -205,8 +207,9 @@ def _friction(proof: Proof) -> None:
     _sums(proof)
     proof.recall("F20-strip", strip_load(y), strip_friction(y))
     depth = 2 * y - 2 * y**3 / 3
-    proof.integral(phi, strip_friction(y), UNIT, l * (STRIPS - l * depth),
-                   r"all strips: $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$", value=FRICTION)  # fmt: skip
+    proof.integral(phi, strip_friction(y), UNIT,
+                   r"all strips: $F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$", value=FRICTION,
+                   antiderivative=l * (STRIPS - l * depth))  # fmt: skip
     proof.equal(phi / w, COEFFICIENT, "friction coefficient")
     proof.define(m, COEFFICIENT, r"$\mu R/a$")
 
@@ -221,12 +224,10 @@ def _energy(proof: Proof) -> None:
     """
     primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
     known(proof)
-    proof.recall("F20-loss")
-    proof.recall("F20-strip", strip_loss(y))
+    proof.recall("F20-loss", "F20-strip", strip_loss(y))
     lost = sp.Integral(strip_loss(y), UNIT)
-    proof.integral(
-        lost, strip_loss(y), UNIT, 2 * l**2 * primitive, "all strips", value=2 * l**2 * D
-    )
+    proof.integral(lost, strip_loss(y), UNIT, "all strips", value=2 * l**2 * D,
+                   antiderivative=2 * l**2 * primitive)  # fmt: skip
     proof.recall("F20", phi)
     share = 1 - 8 * l * D / (PI + T)
     proof.define(ball_share, 1 - lost / phi, r"the rest of $F V$ relaxes behind")
@@ -324,9 +325,7 @@ def _slip(proof: Proof) -> None:
     1.842345$, beside the $\sqrt{3}$ of a cylinder (F3).
     """
     known(proof)
-    proof.recall("F20-loss")
-    proof.recall("F20-load")
-    proof.recall("F20", phi)
+    proof.recall("F20-loss", "F20-load", "F20", phi)
     gain = l * (sp.Rational(4, 3) - 2 * D)
     proof.equal(l * sp.Derivative(w, l), gain, "a faster ball carries more")
     proof.equal(l * sp.Derivative(phi, l), phi - 2 * l**2 * D, "and rubs more")
@@ -352,18 +351,17 @@ def _unique(proof: Proof) -> None:
     lose = y**3 / 3 - whole * y + l * whole * arc
     forget = l * (-l * y + (1 + 3 * l**2) * arc / 2 - l * whole * y / (2 * wide))
     known(proof)
-    proof.integral(rest, y**2 * square / wide, UNIT, y**3 / 3 - y**5 / 5 + l**2 * lose,
-                   r"$\frac{2}{15} - l^2 \tilde D$", value=REST)  # fmt: skip
+    proof.integral(rest, y**2 * square / wide, UNIT, r"$\frac{2}{15} - l^2 \tilde D$", value=REST,
+                   antiderivative=y**3 / 3 - y**5 / 5 + l**2 * lose)  # fmt: skip
     for name, form, primitive, what in (
         (lost, l**2 * square / wide**2, forget, r"$-\frac{l}{2}$ times the slope of $\tilde D$"),
         (kept, y**2 * square / wide**2, -lose - forget, "what remains"),
     ):
-        proof.integral(name, form, UNIT, primitive, what)
+        proof.integral(name, form, UNIT, what, antiderivative=primitive)
     proof.recall("F20-loss")
     proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$")
     shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
-    proof.recall("F20-load")
-    proof.recall("F20-peak")
+    proof.recall("F20-load", "F20-peak")
     proof.equal(ball_slip / l, shape, "over $l$")
     size = (
         g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * rest

@@ -13,7 +13,7 @@ from .ball import EDGE, PI, SECTION, UNIT, ball_angle, ball_tail, known, y
 from .steady import l
 
 ball_edges = symbol(
-    "P_b", "integral of the trailing edges of the strips of a ball", latex=r"\tilde P"
+    "P_b", "integral of the trailing edges of all strips of a ball", latex=r"\tilde P"
 )
 ball_cubes = symbol("Q_b", "integral of their cubes", latex=r"\tilde Q", real=True)
 
@@ -35,15 +35,14 @@ def _slopes(proof: Proof) -> None:
     cubed = y * (5 * whole - 2 * y**2) * EDGE / 8 + sp.Rational(3, 8) * whole**2 * arc
     line = (y * EDGE + whole * arc) / 2
     at_rest = sp.Integral(width, UNIT)
-    proof.integral(at_rest, width, UNIT, (y * width + sp.asin(y)) / 2, "half lengths", value=PI / 4)
-    proof.integral(
-        sp.Integral(width**3, UNIT), width**3, UNIT,
-        y * (5 - 2 * y**2) * width / 8 + sp.Rational(3, 8) * sp.asin(y), "and their cubes",
-        value=3 * PI / 16,
-    )  # fmt: skip
+    proof.integral(at_rest, width, UNIT, "half lengths", value=PI / 4,
+                   antiderivative=(y * width + sp.asin(y)) / 2)  # fmt: skip
+    of_cube = y * (5 - 2 * y**2) * width / 8 + sp.Rational(3, 8) * sp.asin(y)
+    proof.integral(sp.Integral(width**3, UNIT), width**3, UNIT, "and their cubes", value=3 * PI / 16,
+                   antiderivative=of_cube)  # fmt: skip
     powers = cubed - 3 * l * (whole * y - y**3 / 3) + 3 * l**2 * line - l**3 * y
     known(proof)
-    proof.integral(
-        ball_edges, EDGE - l, UNIT, line - l * y, "trailing edges, positive", value=EDGES
-    )
-    proof.integral(ball_cubes, (EDGE - l) ** 3, UNIT, powers, "and their cubes", value=CUBES)
+    proof.integral(ball_edges, EDGE - l, UNIT, "trailing edges, positive", value=EDGES,
+                   antiderivative=line - l * y)  # fmt: skip
+    proof.integral(ball_cubes, (EDGE - l) ** 3, UNIT, "and their cubes", value=CUBES,
+                   antiderivative=powers)  # fmt: skip

@@ -67,11 +67,10 @@ def _slowly(proof: Proof) -> None:
     """
     _modulus(proof)
     proof.define(mean_time, (arm_1 * time_1 + arm_2 * time_2) / modulus, "of the arms")
-    proof.leading_order(answer, modulus, rate, 0, "slow", eps=rate)
+    proof.leading_order(answer, modulus, rate, 0, "slow")
     c = mean_time * modulus
-    proof.leading_order(
-        answer - modulus, c * rate, rate, 0, "so the modulus is $E_0 (1 + \\tau_E s_E)$", eps=rate
-    )
+    proof.leading_order(answer - modulus, c * rate, rate, 0,
+                        "so the modulus is $E_0 (1 + \\tau_E s_E)$")  # fmt: skip
 
 
 @result("F29-modulus")
@@ -83,20 +82,19 @@ def _quickly(proof: Proof) -> None:
     _modulus(proof)
     proof.define(glassy, modulus + arm_1 + arm_2, "nothing has relaxed")
     proof.define(fading_rate, (arm_1 / time_1 + arm_2 / time_2) / glassy, "of the arms")
-    proof.leading_order(answer, glassy, rate, sp.oo, "quick", eps=1 / rate)
+    proof.leading_order(answer, glassy, rate, sp.oo, "quick")
     proof.leading_order(glassy - answer, fading_rate * glassy / rate, rate, sp.oo,
-                        "so the modulus is $E_{\\mathrm{g}} (1 - r_E/s_E)$", eps=1 / rate)  # fmt: skip
+                        "so the modulus is $E_{\\mathrm{g}} (1 - r_E/s_E)$")  # fmt: skip
 
 
 def _symmetric(proof: Proof, *vanishing: sp.Expr) -> None:
     """Prove that a symmetric body without memory gives no friction."""
     for end in vanishing:
-        proof.define(
-            end, sp.S.Zero, "outside of the contact" if end.func == pressure else "far away"
-        )
+        proof.define(end, sp.S.Zero, "outside the contact" if end.func == pressure else "far away")
     half = (_d(w, x) * P + w * _d(P, x)) / 2
     proof.define(kept, sp.Integral(half, ALL), r"$\int w_0' p_0 \, dx$, as $A$ is symmetric")
-    proof.integral(kept, half, ALL, w * P / 2, "a body without memory makes no friction")
+    proof.integral(kept, half, ALL, "a body without memory makes no friction",
+                   antiderivative=w * P / 2)  # fmt: skip
 
 
 @result("F28")
@@ -116,15 +114,11 @@ def _slow(proof: Proof) -> None:
     parts = _d(w, x) * _d(P, x) + _d(w, (x, 2)) * P
     whole, rest = sp.Integral(parts, ALL), sp.Integral(_d(w, (x, 2)) * P, ALL)
     proof.define(damped, whole - rest, "by parts")
-    proof.equal(
-        damped, sp.Integral(_d(w, x) * _d(P, x), ALL), "for a pressure that goes as the rate"
-    )
-    proof.integral(whole, parts, ALL, _d(w, x) * P, "no pressure at the ends", value=sp.S.Zero)
-    proof.define(
-        F,
-        kept + V * change / (modulus * rate) * damped,
-        r"$\int w_0' p \, dx$ with $p = p_0 + V \tau_E p_0'$",
-    )
+    proof.equal(damped, sp.Integral(_d(w, x) * _d(P, x), ALL), "for a pressure that is as the rate")
+    proof.integral(whole, parts, ALL, "no pressure at the ends", value=sp.S.Zero,
+                   antiderivative=_d(w, x) * P)  # fmt: skip
+    proof.define(F, kept + V * change / (modulus * rate) * damped,
+                 r"$\int w_0' p \, dx$ with $p = p_0 + V \tau_E p_0'$")  # fmt: skip
     proof.define(_d(w, (x, 2)), -_d(h(x), (x, 2)), r"in the contact, $w_0 = \delta - h$")
     proof.equal(F, V * mean_time * BENDING, "friction force")
     proof.define(W, sp.Integral(P, ALL), "the load")
@@ -142,10 +136,9 @@ def _parabola(proof: Proof) -> None:
     proof.define(_d(h(x), (x, 2)), 1 / R, "Eq. (3)")
     proof.define(_d(Q, x), P, "a primitive of the pressure")
     ends = summed(last) - summed(first)
-    proof.integral(
-        BENDING, _d(h(x), (x, 2)) * P, ALL, Q / R, "of a constant curvature", value=ends / R
-    )
-    proof.integral(W, P, ALL, Q, "the load", value=ends)
+    proof.integral(BENDING, _d(h(x), (x, 2)) * P, ALL, "of a constant curvature", value=ends / R,
+                   antiderivative=Q / R)  # fmt: skip
+    proof.integral(W, P, ALL, "the load", value=ends, antiderivative=Q)
     proof.equal(F, V * mean_time / R * W, "a constant is its own mean")
     proof.recall("eq37")
     proof.equal(mu, V * mean_time / R, "the friction coefficient")
@@ -169,12 +162,10 @@ def _fast(proof: Proof) -> None:
     whole, rest = sp.Integral(parts, ALL), sp.Integral(w * P, ALL)
     proof.define(faded, whole - rest, "by parts")
     proof.equal(faded, sp.Integral(_d(w, x) * Q, ALL), "for a pressure that goes as the integral")
-    proof.integral(whole, parts, ALL, w * Q, "no displacement at the ends", value=sp.S.Zero)
-    proof.define(
-        F,
-        kept - change * rate / (glassy * V) * faded,
-        r"$\int w_0' p \, dx$ with $p = p_0 - (r_E/V) q_0$",
-    )
+    proof.integral(whole, parts, ALL, "no displacement at the ends", value=sp.S.Zero,
+                   antiderivative=w * Q)  # fmt: skip
+    proof.define(F, kept - change * rate / (glassy * V) * faded,
+                 r"$\int w_0' p \, dx$ with $p = p_0 - (r_E/V) q_0$")  # fmt: skip
     proof.define(rest, 2 * stored, "the elastic energy")
     proof.equal(F, 2 * stored * fading_rate / V, "friction force")
     proof.recall("eq37")
@@ -190,10 +181,7 @@ def _of_depth(proof: Proof) -> None:
     proof.recall("F29")
     ratio = depth / delta
     proof.define(W, stiff, r"the load, which goes with $\delta^{m_E}$")
-    primitive = stiff * delta * ratio ** (power + 1) / (power + 1)
-    proof.integral(
-        stored, stiff * ratio**power, (depth, 0, delta), primitive, "the work of the load"
-    )
+    proof.integral(stored, stiff * ratio**power, (depth, 0, delta), "the work of the load")
     proof.equal(mu, fading_rate / V * 2 * delta / (power + 1), "the friction coefficient")
 
 

@@ -14,19 +14,8 @@ from ..engine.step import Proof
 from .model import R, delta, x
 from .steady import a, l, q
 from .theorems import (
-    FRICTION_COEFFICIENT,
-    NUMBER,
-    UNIT,
-    A,
-    B,
-    f,
-    f_s,
-    m,
-    phi,
-    s,
-    w,
-    xi,
-)
+    FRICTION_COEFFICIENT, NUMBER, UNIT, A, B, f, f_s, m, phi, s, w, xi,
+)  # fmt: skip
 
 (
     eps, steeper, recedes, W_1, F_1, c_w, c_f, c_mu, deeper, c_delta_load, c_mu_load, tilt, circle_number,
@@ -80,15 +69,13 @@ def _shape(proof: Proof) -> None:
     Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.
     """
     first = eps * xi**4 / 4
-    proof.leading_order(
-        STEEPER, first, eps, 0, "by this the circle is higher than the parabola", eps=eps
-    )
-    proof.leading_order(RECEDES, eps / 8, eps, 0, "and by this its leading edge recedes", eps=eps)
+    proof.leading_order(STEEPER, first, eps, 0, "by this the circle is higher than the parabola")
+    proof.leading_order(RECEDES, eps / 8, eps, 0, "and by this its leading edge recedes")
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.recall("eq28", delta)
     proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
     proof.equal(
-        (R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, xi**2 + STEEPER, r"$h/\delta$ of the circle"
+        (R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, xi**2 + STEEPER, r"$h/\delta$ of a circle"
     )
     reason = (
         r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
@@ -111,12 +98,9 @@ def _fixed(proof: Proof) -> None:
     change = -steeper - l * sp.Derivative(steeper, xi)
     proof.equal(change, eps * CORRECTION, "what it adds to the pressure")
     proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
-    proof.sign(
-        sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
-    )
+    proof.sign(sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "simple zero: the edge is analytic")
     proof.equal(sp.Subs(PARABOLA, xi, -1), 2 * l, "pressure at the leading edge")
-    proof.recall("F1", w)
-    proof.recall("F1", phi)
+    proof.recall("F1", w, "F1", phi)
     moved = (xi, -1 + recedes, q + _shift * eps)
     slope = sp.Derivative(xi**2 + steeper, xi) / 2
     for total, weight, scale, coefficient, value, name in (
@@ -127,12 +111,9 @@ def _fixed(proof: Proof) -> None:
         known = density.xreplace({steeper: eps * xi**4 / 4}).doit()
         primitive = sp.integrate(sp.expand(known), xi)
         low, high = (sp.Subs(primitive, xi, end) for end in moved[1:])
-        proof.integral(total, density, moved, primitive, _MOVED, value=high - low)
-        proof.define(
-            coefficient,
-            _per_eps(total / scale),
-            r"the change per $\varepsilon$, over that of the parabola",
-        )
+        proof.integral(total, density, moved, _MOVED, value=high - low, antiderivative=primitive)
+        proof.define(coefficient, _per_eps(total / scale),
+                     r"the change per $\varepsilon$, over that of the parabola")  # fmt: skip
         proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
     proof.sign(c_f, ">", 0, UNIT, "and has more friction")
@@ -155,11 +136,8 @@ def _dead_weight(proof: Proof) -> None:
     """
     change = sp.Symbol("m_l", real=True)
     slipping = l * sp.Derivative(FRICTION_COEFFICIENT, q) / sp.Derivative(NUMBER, q) / m
-    proof.recall("scaling", l)
-    proof.recall("F1", m)
-    proof.recall("balance", s * f_s / f)
-    proof.recall("circle-fixed", c_w, c_f)
-    proof.recall("circle-fixed")
+    proof.recall("scaling", l, "F1", m, "balance", s * f_s / f, "circle-fixed", c_w, c_f,
+                 "circle-fixed")  # fmt: skip
     kept = c_w + s * f_s / f / 2 * deeper
     reason = r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order"
     proof.root(kept, deeper, -c_w * A / 3, reason, name=c_delta_load)
@@ -190,7 +168,8 @@ def _steepness(proof: Proof) -> None:
     proof.equal(sp.Derivative(place, y), R / size, r"how $x$ grows with the slope")
     closed = sp.asinh(y) - y / sp.sqrt(1 + y**2)
     value = closed.subs(y, tilt)
-    proof.integral(slope_square, y**2 / size, (y, 0, tilt), closed, _SQUARE, value=value)
+    proof.integral(slope_square, y**2 / size, (y, 0, tilt), _SQUARE, value=value,
+                   antiderivative=closed)  # fmt: skip
 
 
 _SQUARE = "the slope as variable"

@@ -12,15 +12,8 @@ from ..engine.step import Proof
 from .model import R
 from .power_law import L, excess
 from .transient_memory import (
-    SECTION,
-    compression,
-    contact_condition,
-    earlier,
-    indenter,
-    sigma,
-    time,
-    zeta,
-)
+    SECTION, compression, contact_condition, earlier, indenter, sigma, time, zeta,
+)  # fmt: skip
 from .wedge import inclination
 
 letter(r"\bar k", r"relaxed depth less the present one, $E \bar d_1 - d$")
@@ -96,8 +89,7 @@ def _interval(proof: Proof) -> None:
     integral.
     """
     relaxed = E * _h(place - m) - _h(place)
-    proof.recall("F9-difference", E)
-    proof.recall("F9-difference")
+    proof.recall("F9-difference", E, "F9-difference")
     proof.equal(sp.Derivative(DIFFERENCE, place), sp.exp(time) * sp.Derivative(relaxed, place),
                 "$D_1$ rises and falls with $f$")  # fmt: skip
     between = -_height(y) + E * _height(m - y)
@@ -116,9 +108,12 @@ def _interval(proof: Proof) -> None:
                 "negative, because $h'$ does not fall, and the second is positive")  # fmt: skip
     rate = sp.Derivative(slope_rate(zeta), zeta)
     proof.integral(
-        *(_gain, rate, (zeta, y, y + m), slope_rate(zeta)),
+        _gain,
+        rate,
+        (zeta, y, y + m),
         r"$J$ is the slope of $\ln \rho$, with $\chi = (\ln h')'$: not positive, as $\ln h'$ is concave",
-    )  # fmt: skip
+        antiderivative=slope_rate(zeta),
+    )
     proof.done(TURNING, turning)
 
 
@@ -135,22 +130,12 @@ def _shape(proof: Proof, slope: sp.Expr, rate: sp.Expr, gain: sp.Expr) -> None:
 
 
 for _label, _name, _text, _rise, _rate, _form in (
-    (
-        "power",
-        "every power law",
-        r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
-        (y / L) ** excess,
-        excess / y,
-        -excess * m / (y * (y + m)),
-    ),
-    (
-        "catenary",
-        "a catenary",
-        r"$h = L (\cosh(x/L) - 1)$.",
-        sp.sinh(y / L),
-        sp.cosh(y / L) / (L * sp.sinh(y / L)),
-        -sp.sinh(m / L) / (L * sp.sinh(y / L) * sp.sinh((y + m) / L)),
-    ),
+    ("power", "every power law",
+     r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.", (y / L) ** excess,
+     excess / y, -excess * m / (y * (y + m))),
+    ("catenary", "a catenary", r"$h = L (\cosh(x/L) - 1)$.", sp.sinh(y / L),
+     sp.cosh(y / L) / (L * sp.sinh(y / L)),
+     -sp.sinh(m / L) / (L * sp.sinh(y / L) * sp.sinh((y + m) / L))),
     (
         "wedge",
         "the wedge",
@@ -160,7 +145,7 @@ for _label, _name, _text, _rise, _rate, _form in (
         sp.S.Zero,
         sp.S.Zero,
     ),
-):
+):  # fmt: skip
     result(f"F9-{_label}", title=f"Concave logarithm of the slope: {_name}", text=f"{_text} {_CASE}",
            slope=_rise, rate=_rate, gain=_form)(_shape)  # fmt: skip
 
@@ -235,11 +220,8 @@ def _two_slopes(proof: Proof) -> None:
     later = sp.log(2)
     proof.define(indenter(sp.S.Zero), 4 - height(place - half), "at rest")
     proof.recall("F8", at={sigma: sp.S.Zero, time: later})
-    proof.define(
-        _ahead,
-        sp.Rational(15, 8) - height(place) - compression(later),
-        "how far it is below the surface",
-    )
+    proof.define(_ahead, sp.Rational(15, 8) - height(place) - compression(later),
+                 "how far it is below the surface")  # fmt: skip
     for spot, value, what in (
         (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
         (0, "1/8", "in contact again"),

@@ -14,25 +14,9 @@ from .model import C, K, R, V, delta
 from .relaxation import arm_ratio, spring_1
 from .steady import W, a
 from .viscoelastic import (
-    SECTION,
-    A,
-    B,
-    D,
-    E,
-    P,
-    arm_load,
-    arm_work,
-    c,
-    dashpots,
-    e,
-    edge_pressure,
-    from_moments,
-    half,
-    springpot,
-    springs,
-    twelfth,
-    z,
-)
+    SECTION, A, B, D, E, P, arm_load, arm_work, c, dashpots, e, edge_pressure, from_moments, half,
+    springpot, springs, twelfth, z,
+)  # fmt: skip
 
 tau_1, damping_share, whole_load, whole_work, slow, fast, C_all, fades = symbols(r"""
     tau_1   -                   s        relaxation time of an arm  from scene
@@ -65,8 +49,7 @@ def _steady(proof: Proof) -> None:
     \breve P/K$, and so on. Without a damper this is F17-parts, without arms F17-kelvin-voigt.
     """
     from_moments(proof)
-    for label in ("F17-edge", "F17-load", "F17"):
-        proof.recall(label)
+    proof.recall("F17-edge", "F17-load", "F17")
     for name, of_spring in zip((edge_pressure, arm_load, arm_work), springs, strict=True):
         proof.asymptote("F17-limits", name, of_spring, "of a spring")
     for name, of_damper in zip((edge_pressure, arm_load, arm_work), dashpots, strict=True):
@@ -102,14 +85,8 @@ def _low(proof: Proof) -> None:
     foundation.
     """
     _over_velocity(proof)
-    proof.leading_order(
-        whole_work / whole_load,
-        (damping_share + arm_ratio) / z,
-        z,
-        sp.oo,
-        r"$\mu R/\breve c$",
-        eps=1 / z,
-    )
+    proof.leading_order(whole_work / whole_load, (damping_share + arm_ratio) / z, z, sp.oo,
+                        r"$\mu R/\breve c$")  # fmt: skip
 
 
 @result("F33-high")
@@ -120,13 +97,9 @@ def _high(proof: Proof) -> None:
     """
     _over_velocity(proof)
     edge = (1 + arm_ratio) * z / (2 * damping_share)
-    proof.leading_order(
-        half - e, edge, z, 0, r"$x_{\mathrm{TE}}/\breve c$, so $\breve c \to a$", eps=z
-    )
-    proof.leading_order(whole_load, damping_share / (2 * z), z, 0, r"$W R/(K \breve c^3)$", eps=z)
-    proof.leading_order(
-        whole_work / whole_load, sp.Rational(2, 3), z, 0, r"$\mu R/\breve c$", eps=z
-    )
+    proof.leading_order(half - e, edge, z, 0, r"$x_{\mathrm{TE}}/\breve c$, so $\breve c \to a$")
+    proof.leading_order(whole_load, damping_share / (2 * z), z, 0, r"$W R/(K \breve c^3)$")
+    proof.leading_order(whole_work / whole_load, sp.Rational(2, 3), z, 0, r"$\mu R/\breve c$")
 
 
 def _critical(proof: Proof, *, at_load: bool) -> None:
@@ -171,7 +144,7 @@ def _free(proof: Proof) -> None:
     form = C * rate**2 - (K + spring_1 + C / tau_1) * rate + K / tau_1
     proof.equal(law, form, r"it vanishes where $u, s_1 \sim e^{-\breve \varrho t}$")
     proof.holds(
-        form.subs(rate, 1 / tau_1), "<", 0, "at the rate of the arm, positive at 0 and far away"
+        form.subs(rate, 1 / tau_1), "<", 0, "at the rate of the arm; positive at 0 and beyond"
     )
     spread = (K + spring_1 - C / tau_1) ** 2 + 4 * C * spring_1 / tau_1
     proof.equal((K + spring_1 + C / tau_1) ** 2 - 4 * C * K / tau_1, spread, "the discriminant")

@@ -11,36 +11,15 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import (
-    C,
-    F_z,
-    K,
-    M,
-    N,
-    R,
-    c,
-    compression_rate,
-    delta_t,
-    depth_rate,
-    f_z,
-    h,
-    k,
-    t,
-    tau,
-    u_i,
-    x,
-    x_i,
-)
+    C, F_z, K, M, N, R, c, compression_rate, delta_t, depth_rate, f_z, h, k, t, tau, u_i, x, x_i,
+)  # fmt: skip
 from .steady import CONTACT, p, x_le, x_te
 
 height_there = symbol("h_i", "height of the indenter at a free element over its lowest point", "m")
 ball_depth = symbol("delta_b", "depth of a ball", "m", latex=r"\delta_{\mathrm{B}}")
 ball_rate = symbol("delta_b'", latex=r"\dot\delta_{\mathrm{B}}", real=True)
-ball_relaxed = symbol(
-    "w_bin",
-    r"depth of an elastic contact with the edges of a ball coming out",
-    "m",
-    latex=r"w_{\mathrm{B}}",
-)
+ball_relaxed = symbol("w_bin", r"depth of an elastic contact with the edges of a ball coming out",
+                      "m", latex=r"w_{\mathrm{B}}")  # fmt: skip
 ball_mass = symbol("M_ball", "mass of a ball", "kg", latex=r"M_{\mathrm{B}}")
 radius_across = symbol("R_y", latex=r"R_{\mathrm{y}}")
 (
@@ -102,8 +81,7 @@ def _pressure(proof: Proof) -> None:
     proof.recall("eq6")
     proof.define(x_i.diff(t), sp.S.Zero, "no sliding")
     proof.equal(compression_rate, depth_rate, "an element under the indenter follows it")
-    proof.recall("eq12")
-    proof.recall("eq22", k, c)
+    proof.recall("eq12", "eq22", k, c)
     proof.define(p, K * (delta_t - h(x)) + C * depth_rate, "force per area of a dense row")
     proof.equal(sp.Subs(p, x, x_i), N * f_z, "$N$ elements per length, each with this force")
 
@@ -114,14 +92,10 @@ def _going_in(proof: Proof) -> None:
 
     The edges are where the indenter meets the undisturbed surface. The pressure is positive up to them.
     """
-    proof.recall("F32-pressure", p)
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("dense-row", F_z)
+    proof.recall("F32-pressure", p, "eq3", "eq22", "dense-row", F_z)
     proof.define(x_te, sp.sqrt(2 * R * delta_t), "undisturbed ground, Eq. (3)")
     proof.define(x_le, -sp.sqrt(2 * R * delta_t), "by symmetry")
-    primitive = K * (delta_t * x - x**3 / (6 * R)) + C * depth_rate * x
-    proof.integral(F_z, p, CONTACT, primitive, "Eq. (14) for a dense row", value=FORCE_IN)
+    proof.integral(F_z, p, CONTACT, "Eq. (14) for a dense row", value=FORCE_IN)
 
 
 @result("F32-edge")
@@ -138,9 +112,7 @@ def _edge(proof: Proof) -> None:
 
 
 def _coming_out(proof: Proof) -> None:
-    proof.recall("F32-pressure", p)
-    proof.recall("eq3")
-    proof.recall("eq22")
+    proof.recall("F32-pressure", p, "eq3", "eq22")
     proof.define(
         depth_rate, (relaxed - delta_t) / tau, r"$w_{\mathrm{in}} = \delta + \tau \dot\delta$"
     )
@@ -153,11 +125,9 @@ def _out(proof: Proof) -> None:
     With $w_{\mathrm{in}} = \delta + \tau \dot\delta$; it vanishes with $w_{\mathrm{in}}$.
     """
     _coming_out(proof)
-    proof.recall("dense-row", F_z)
-    proof.recall("F32-edge", x_te)
+    proof.recall("dense-row", F_z, "F32-edge", x_te)
     proof.define(x_le, -sp.sqrt(2 * R * relaxed), "by symmetry")
-    primitive = K * (relaxed * x - x**3 / (6 * R))
-    proof.integral(F_z, p, CONTACT, primitive, "Eq. (14) for a dense row", value=FORCE_OUT)
+    proof.integral(F_z, p, CONTACT, "Eq. (14) for a dense row", value=FORCE_OUT)
 
 
 @result("F32-apart")
@@ -189,9 +159,8 @@ def _all_strips(proof: Proof, name: str, depth: sp.Expr, value: sp.Expr) -> None
     if name == "F32-in":
         primitive += 2 * K * tau * ROOT * width * sp.sqrt(depth) * ball_rate * plain
     proof.recall(name)
-    proof.integral(
-        ball_force, F_z * width, (y, -1, 1), primitive, "the sum of the strips", value=value
-    )
+    proof.integral(ball_force, F_z * width, (y, -1, 1), "the sum of the strips", value=value,
+                   antiderivative=primitive)  # fmt: skip
 
 
 @result("F32-ball-in")
@@ -292,17 +261,16 @@ def _loss(proof: Proof, factor: sp.Expr, power: sp.Expr) -> None:
     proof.define(deepest, ((power + 1) / (2 * factor)) ** (1 / (power + 1)),
                  "there the springs hold all energy")  # fmt: skip
     proof.define(deep, deepest * z ** (1 / (power + 1)), "where they hold the share $z_d$")
-    proof.define(
-        speed, sp.sqrt(1 - 2 * factor * deep ** (power + 1) / (power + 1)), "without dampers"
-    )
+    proof.define(speed, sp.sqrt(1 - 2 * factor * deep ** (power + 1) / (power + 1)), "no dampers")
     proof.equal(speed, sp.sqrt(1 - z), "the rest is kinetic energy")
     proof.define(force_at_top, factor * deepest**power, "the greatest force")
     density = factor * power * deep ** (power - 1) * speed * sp.Derivative(deep, z)
     proof.equal(density, part * force_at_top * weight, "of the damper, with $z_d$ as the variable")
-    proof.define(sp.Derivative(incomplete(z), z), weight, "the incomplete beta function")
+    proof.define(sp.Derivative(incomplete(z), z), weight, "incomplete beta function")
     proof.define(incomplete(0), sp.S.Zero, "an integral from 0 on")
-    proof.integral(loss, part * force_at_top * weight, (z, 0, 1), part * force_at_top * incomplete(z),
-                   "what the dampers take", value=part * force_at_top * incomplete(1))  # fmt: skip
+    proof.integral(loss, part * force_at_top * weight, (z, 0, 1), "what the dampers take",
+                   value=part * force_at_top * incomplete(1),
+                   antiderivative=part * force_at_top * incomplete(z))  # fmt: skip
 
 
 def _second(proof: Proof, family: str, factor: sp.Expr, power: sp.Expr) -> None:
@@ -311,13 +279,13 @@ def _second(proof: Proof, family: str, factor: sp.Expr, power: sp.Expr) -> None:
     proof.recall(f"{family}-loss")
     shape = z ** (part - 1)
     proof.define(
-        sp.Derivative(incomplete(z), z), shape * sp.sqrt(1 - z), "the incomplete beta function"
+        sp.Derivative(incomplete(z), z), shape * sp.sqrt(1 - z), "incomplete beta function"
     )
     proof.define(incomplete(0), sp.S.Zero, "an integral from 0 on")
     whole = loss * part * force_at_top
     primitive = whole * ((2 * part + 1) * incomplete(z) - 2 * z**part * sp.sqrt(1 - z))
-    proof.integral(slowed, whole * shape / sp.sqrt(1 - z), (z, 0, 1), primitive,
-                   "less, as the drop is slower", value=(2 * part + 1) * loss**2)  # fmt: skip
+    proof.integral(slowed, whole * shape / sp.sqrt(1 - z), (z, 0, 1), "less, as the drop is slower",
+                   value=(2 * part + 1) * loss**2, antiderivative=primitive)  # fmt: skip
     proof.where(sp.Gt(1 - 2 * eta * loss, 0), "a drop that comes out")
     lower = (1 - 2 * eta * loss) ** (part + sp.Rational(1, 2))
     proof.equal(sp.Subs(sp.Derivative(lower, eta), eta, 0), -slowed / loss,
@@ -326,7 +294,7 @@ def _second(proof: Proof, family: str, factor: sp.Expr, power: sp.Expr) -> None:
     proof.define(force_at_top, factor * deepest**power, "the greatest force")
     elastic, left = factor * deep**power, 1 - 2 * factor * deep ** (power + 1) / (power + 1)
     primitive = sp.diff(elastic, deep) * left + elastic**2
-    proof.integral(bending, sp.diff(elastic, deep, 2) * left, (deep, 0, deepest), primitive,
+    proof.integral(bending, sp.diff(elastic, deep, 2) * left, (deep, 0, deepest),
                    "less coming out, as the force is curved", value=force_at_top**2)  # fmt: skip
     proof.done(slowed, (2 * part + 1) * loss**2)
 
@@ -337,7 +305,7 @@ def _series(proof: Proof, family: str) -> None:
     proof.recall(f"{family}-second", slowed, bending)
     squared = 1 - 4 * eta * loss + eta**2 * (4 * slowed + bending)
     proof.define(restitution, sp.sqrt(squared), "from the energy that is left, to second order")
-    proof.leading_order(1 - restitution, 2 * loss * eta, eta, 0, "what is lost", eps=eta)
+    proof.leading_order(1 - restitution, 2 * loss * eta, eta, 0, "what is lost")
 
 
 for _shape, _family, _law, _euler, _values in (

@@ -50,19 +50,15 @@ def _arm(proof: Proof) -> None:
     end, ends = sp.Subs(_stress, _y, 1), _first * sp.exp(-_z) + _rise * END
     proof.equal(end, ends, "stress at the end of the step")
     over = (_y, 0, 1)
-    falling = -_first * sp.exp(-_z * _y) / _z
-    rising = _rise * (_y + sp.exp(-_z * _y) / _z) / _z
-    proof.integral(
-        *(sp.Integral(_stress, over), _stress, over, falling + rising), "mean stress",
-        value=_first * END + _rise * MEAN,
-    )  # fmt: skip
+    proof.integral(sp.Integral(_stress, over), _stress, over, "mean stress",
+                   value=_first * END + _rise * MEAN)  # fmt: skip
     reason = "the power that goes in is stored in the spring or lost in the damper"
     proof.equal(_rise * _stress, _stress * grows + _z * _stress**2, reason)
     proof.define(_spring, 2 * (END - MEAN), "the spring that replaces the arm on a ramp")
     proof.define(_damper, 2 * MEAN - END, "and the damper beside it")
     proof.equal(_spring + _damper, END, "the same stress at the end of the ramp")
     proof.equal(_spring / 2 + _damper, MEAN, "and the same mean")
-    proof.leading_order(_damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
+    proof.leading_order(_damper, _z / 6, _z, 0, "the damper of a slow arm")
     reason = r"in units of $K_i \tau_i$: 1 for a fast arm"
     proof.equal(_z * _damper, 1 + sp.exp(-_z) - 2 * END, reason)
     proof.done(end, ends)

@@ -13,11 +13,9 @@ from .element_schemes import SECTION
 from .model import C, V, x
 
 letter("x_k", "position of an element behind the leading edge", "m")
-letter(
-    r"\vartheta",
-    "position of an edge between two elements, or of a rim between two strips, in spacings",
-    source="F15-sawtooth",
-)
+letter(r"\vartheta",
+       "position of an edge between two elements, or of a rim between two strips, in spacings",
+       source="F15-sawtooth")  # fmt: skip
 letter(r"m_{\mathrm{k}}", "slope difference of two surfaces where they meet")
 letter(r"\hat w_0", "depth of the indenter below the free surface at the last element outside", "m")
 letter(r"\hat w_1", "depth of the indenter below the free surface at the first element inside", "m")
@@ -57,10 +55,8 @@ def _sawtooth(proof: Proof) -> None:
     first = (_share - sp.Rational(1, 2)) * _spacing
     line = _end + _rise * x
     missed = -(_end * first + _rise * first**2 / 2)
-    proof.integral(
-        *(_surplus, line, (x, first, 0), _end * x + _rise * x**2 / 2),
-        "the excess of the sum over elements", value=missed,
-    )  # fmt: skip
+    proof.integral(_surplus, line, (x, first, 0), "the excess of the sum over elements",
+                   value=missed)  # fmt: skip
     largest = _end * _spacing / 2 - _rise * _spacing**2 / 8
     just_in, about_to = (sp.Subs(missed, _share, place) for place in (0, 1))
     proof.equal(just_in, largest, r"an element has just entered, $\vartheta = 0$")
@@ -94,15 +90,12 @@ def _trapezoids(proof: Proof) -> None:
     proof.define(lacks, _spacing**2 / 12 * begins, "what is lacking because of it")
     value = _spacing**2 / 12 * slopes[1] - lacks - _spacing * (_u(0) + _u(_spacing)) / 2
     integrand = kernel * derivatives[0] - _u(x)
-    proof.integral(
-        sp.Integral(integrand, over), integrand, over, parts, "by parts, four times", value=value
-    )
+    proof.integral(sp.Integral(integrand, over), integrand, over, "by parts, four times",
+                   value=value, antiderivative=parts)  # fmt: skip
     proof.holds(kernel, ">=", 0, "so the error depends on the mean of $u''''$")
-    proof.integral(
-        *(sp.Integral(kernel, over), kernel, over, sp.integrate(kernel, x)),
-        r"the remaining error per element is at most this times the greatest $|u''''|$",
-        value=_spacing**5 / 720,
-    )  # fmt: skip
+    proof.integral(sp.Integral(kernel, over), kernel, over,
+                   r"the remaining error per element is at most this times the greatest $|u''''|$",
+                   value=_spacing**5 / 720)  # fmt: skip
     proof.done(sp.Integral(integrand, over), value)
 
 
@@ -118,11 +111,8 @@ def _kink(proof: Proof) -> None:
     line = _outside + (_inside - _outside) * x / _spacing
     meets = -_outside * _spacing / (_inside - _outside)
     area = _spacing * _inside**2 / (2 * (_inside - _outside))
-    proof.integral(
-        *(sp.Integral(line, (x, meets, _spacing)), line, (x, meets, _spacing)),
-        _outside * x + (_inside - _outside) * x**2 / (2 * _spacing),
-        "the larger of both surfaces, above the free one", value=area,
-    )  # fmt: skip
+    proof.integral(sp.Integral(line, (x, meets, _spacing)), line, (x, meets, _spacing),
+                   "the larger of both surfaces, above the free one", value=area)  # fmt: skip
     trapezoid = _spacing * _inside / 2
     proof.equal(area - trapezoid, KINK, r"without the trapezoid of the elements, $\Delta w_1/2$")
     proof.define(begins, sp.diff(line, x), "where the trapezoids begin")
@@ -135,12 +125,8 @@ def _kink(proof: Proof) -> None:
     proof.define(_inside, inside, r"surfaces at the angle $m$ that meet at $\vartheta \Delta$")
     proof.define(_outside, outside)
     proof.equal(KINK, in_cell, "the kink at its place within the element")
-    proof.sign(
-        in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "second order in the spacing"
-    )
-    proof.define(
-        _end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$"
-    )
+    proof.sign(in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "of second order")
+    proof.define(_end, C * V * _slope, "pressure at a leading edge, its elements met with $m V$")
     proof.define(_rise, sp.S.Zero, "to first order")
     proof.recall("F15-sawtooth", _surplus)
     reason = r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth"
@@ -159,17 +145,14 @@ def _bent(proof: Proof) -> None:
     overlap = _slope * (x - _share * _spacing) + _bend * (x - _share * _spacing) ** 2 / 2
     over = (x, _share * _spacing, _spacing)
     area = sp.Integral(overlap, over)
-    proof.integral(area, overlap, over, sp.integrate(overlap, x), "its area inside")
+    proof.integral(area, overlap, over, "its area inside")
     proof.where(_share < 1, "the contact ends between two elements")
-    proof.where(
-        2 * _slope + _spacing * (1 - _share) * _bend > 0, "the first element inside overlaps"
-    )
+    proof.where(2 * _slope + _spacing * (1 - _share) * _bend > 0, "the first one inside overlaps")
     proof.define(_inside, overlap.subs(x, _spacing), "at the first element inside")
     proof.define(_outside, overlap.subs(x, 0), "at the last one outside")
     end = sp.diff(overlap, x).subs(x, _spacing)
     proof.define(begins, end, "where the trapezoids begin")
-    proof.recall("element-trapezoids", lacks)
-    proof.recall("element-kink", (added, KINK + END))
+    proof.recall("element-trapezoids", lacks, "element-kink", (added, KINK + END))
     due = area - _spacing * _inside / 2 + lacks - added
     rest = (
         2 * _slope * (4 * _share**3 - 6 * _share**2 + 1),

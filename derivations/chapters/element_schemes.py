@@ -86,9 +86,7 @@ def _runge_kutta(proof: Proof) -> None:
     proof.recall("F12-linear", quadratic)
     proof.define(b, DAMPING, "of the length of the contact")
     fast = (quadratic - STIFFNESS) / sigma
-    proof.root(
-        fast, sigma, -b / eps, "the fast mode: the mass is stopped before the spring is felt"
-    )
+    proof.root(fast, sigma, -b / eps, "fast mode: the mass is stopped before the spring is felt")
     for stage, at in ((_k1, 0), (_k2, _k1 / 2), (_k3, _k2 / 2), (_k4, _k3)):
         proof.define(stage, -_z * (1 + at), "slope of the velocity")
     proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
@@ -131,9 +129,7 @@ def _mean_force(proof: Proof) -> None:
     proof.recall("F8", pushed_by(), at={earlier: time, time: time + _h})
     weights = sp.Integral(sp.exp(zeta), over)
     whole = sp.exp(time + _h) - sp.exp(time)
-    proof.integral(
-        *(weights, sp.exp(zeta), over, sp.exp(zeta), "the weights"), value=whole,
-    )  # fmt: skip
+    proof.integral(weights, sp.exp(zeta), over, "the weights", value=whole)
     mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
     proof.equal(pushed / weights, mean, "the mean, which is zero for an element without contact")
     _centre(proof)
@@ -152,30 +148,19 @@ def _centre(proof: Proof) -> None:
     first = zeta * sp.exp(zeta)
     weights = sp.exp(_h) - 1
     moment = 1 + (_h - 1) * sp.exp(_h)
-    proof.integral(
-        *(sp.Integral(first, over), first, over, (zeta - 1) * sp.exp(zeta)),
-        "the moment of the weights", value=moment,
-    )  # fmt: skip
+    proof.integral(sp.Integral(first, over), first, over, "the moment of the weights", value=moment)
     centre = _h * WEIGHT - 1
     proof.equal(moment / weights, centre, "the centre of the weights")
-    proof.leading_order(
-        *(centre - _h / 2, _h**2 / 12, _h, 0, "its distance behind the middle of the step"), eps=_h
-    )
+    proof.leading_order(centre - _h / 2, _h**2 / 12, _h, 0,
+                        "its distance behind the middle of the step")  # fmt: skip
     line = _end + _pressure_rate * zeta
-    proof.integral(
-        *(sp.Integral(line, over), line, over, _end * zeta + _pressure_rate * zeta**2 / 2),
-        "a pressure that changes linearly", value=_h * (_end + _pressure_rate * _h / 2),
-    )  # fmt: skip
+    proof.integral(sp.Integral(line, over), line, over, "a pressure that changes linearly",
+                   value=_h * (_end + _pressure_rate * _h / 2))  # fmt: skip
     weighted = sp.exp(zeta) * line
-    proof.integral(
-        *(sp.Integral(weighted, over), weighted, over),
-        sp.exp(zeta) * (line - _pressure_rate), "and with the weights",
-        value=weights * (_end + _pressure_rate * centre),
-    )  # fmt: skip
-    proof.leading_order(
-        *((_end + _pressure_rate * centre) - (_end + _pressure_rate * _h / 2),),
-        *(_pressure_rate * _h**2 / 12, _h, 0, "the difference of the two means"), eps=_h,
-    )  # fmt: skip
+    proof.integral(sp.Integral(weighted, over), weighted, over, "and with the weights",
+                   value=weights * (_end + _pressure_rate * centre))  # fmt: skip
+    proof.leading_order((_end + _pressure_rate * centre) - (_end + _pressure_rate * _h / 2),
+                        _pressure_rate * _h**2 / 12, _h, 0, "the difference of the two means")  # fmt: skip
 
 
 @result("element-fit")
@@ -193,7 +178,7 @@ def _fitted(proof: Proof) -> None:
     for difference, gap in ((_theta - sp.S.Half, below), (1 - _theta, above)):
         proof.equal(difference, gap / (_z * (1 - sp.exp(-_z))), "to compare")
         proof.holds(gap, ">", 0, "it begins at 0 and rises")
-    proof.leading_order(_theta, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z)
+    proof.leading_order(_theta, sp.Rational(1, 2), _z, 0, "the trapezoidal rule")
     proof.recall("F15-runge-kutta", sigma)
     proof.define(_z, _h * b / eps, "the step of that mode")
     proof.equal(sp.exp(-_z), sp.exp(sigma * _h), "its exact decay")
@@ -248,10 +233,8 @@ def _routh(proof: Proof) -> None:
     slope = 2 * leads[0] * real + leads[1]
     factor = (1 + _w) / (1 - _w)
     proof.equal(1 + 2 * _w / (1 - _w), factor, r"$1 + D$, the factor of a step")
-    proof.equal(
-        *((1 + real) ** 2 - (1 - real) ** 2, 4 * real),
-        r"$|1 + w|^2 - |1 - w|^2$ at $w = x + i y$: a mode grows only if $x > 0$",
-    )
+    proof.equal((1 + real) ** 2 - (1 - real) ** 2, 4 * real,
+                r"$|1 + w|^2 - |1 - w|^2$ at $w = x + i y$: a mode grows only if $x > 0$")  # fmt: skip
     proof.equal(parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ there")
     proof.holds(slope, ">", 0, r"so for $x \ge 0$ it vanishes for $y = 0$ only")
     proof.equal(parts[0], shown, "real part")
@@ -267,10 +250,10 @@ def _orders(proof: Proof) -> None:
     0$ with $D = e^{\sigma h} - 1$. The residual $r$ is of the order of the scheme in $h$.
     """
     growth = sp.exp(sigma * _h) - 1
-    proof.leading_order(growth, sigma * _h, _h, 0, "$D$", eps=_h)
-    proof.leading_order(WEIGHT, 1 / _h, _h, 0, r"$\eta$", eps=_h)
+    proof.leading_order(growth, sigma * _h, _h, 0, "$D$")
+    proof.leading_order(WEIGHT, 1 / _h, _h, 0, r"$\eta$")
     trapezoid = sp.Rational(1, 2) + _z / 12
-    proof.leading_order(FIT, trapezoid, _z, 0, r"$\theta$, with $z = h b/\varepsilon$", eps=_z)
+    proof.leading_order(FIT, trapezoid, _z, 0, r"$\theta$, with $z = h b/\varepsilon$")
     D = sigma * _h * (1 + sigma * _h / 2 + (sigma * _h) ** 2 / 6 + _h**3 * _rest[0])
     weight = (1 + _h / 2 + _h**2 / 12 + _h**3 * _rest[1]) / _h
     fit = sp.Rational(1, 2) + b * _h / (12 * eps) + _h**3 * _rest[2]
@@ -291,4 +274,4 @@ def _orders(proof: Proof) -> None:
         (fit, second, r"order two, fitted $\theta$ with a bounded $r_3$"),
     ):
         step = sp.Subs(polynomial, _theta, theta)
-        proof.leading_order(step, leading, _h, 0, why, eps=_h, short=True)
+        proof.leading_order(step, leading, _h, 0, why, short=True)

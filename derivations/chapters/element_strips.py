@@ -59,11 +59,11 @@ def _rim(proof: Proof) -> None:
     proof.recall("eq28", delta)
     own = W / (K * delta * a)
     proof.equal(own * width**POWER, load, r"F21-load; $\delta$ and $a$ are those of the strip")
-    proof.leading_order(load, 2 * l * _root**2, _root, 0, "in sliding", eps=_root)
+    proof.leading_order(load, 2 * l * _root**2, _root, 0, "in sliding")
     at_rest, begun = sp.Rational(4, 3) * width**POWER, 8 * sp.sqrt(2) / 3 * _root**3
-    proof.leading_order(at_rest, begun, _root, 0, "at rest, $l = 0$", eps=_root)
+    proof.leading_order(at_rest, begun, _root, 0, "at rest, $l = 0$")
     over, line = (_y, 0, _root**2), 2 * l * _y
-    proof.integral(sp.Integral(line, over), line, over, l * _y**2,
+    proof.integral(sp.Integral(line, over), line, over,
                    "what all strips nearer to the rim carry, in sliding", value=l * _root**4)  # fmt: skip
     proof.done(load, 2 * l * _root**2)
 
@@ -87,7 +87,7 @@ def _rule(proof: Proof) -> None:
     over = (_y, 0, _share * _spacing)
     line = sp.Integral(_y, over)
     begun = _share**2 * _spacing**2 / 2
-    proof.integral(line, _y, over, _y**2 / 2, "before the first strip", value=begun)
+    proof.integral(line, _y, over, "before the first strip", value=begun)
     surplus = _share * _spacing**2 / 2 - _spacing**2 / 12 - line
     lacks = -(_spacing**2) * BERNOULLI / 2
     proof.equal(surplus, lacks, r"error of the rule for the load $y$")
@@ -98,11 +98,8 @@ def _rule(proof: Proof) -> None:
     proof.equal(grown, _spacing ** (POWER + 1) * SECOND, r"the same for the load $y^{3/2}$")
     _cell(proof)
     later = START.subs(_v, _v + 1)
-    proof.equal(
-        START - later - _rest,
-        _v**POWER,
-        r"the difference equation of $\zeta_{\mathrm{H}}(-\frac{3}{2}, v)$",
-    )
+    proof.equal(START - later - _rest, _v**POWER,
+                r"the difference equation of $\zeta_{\mathrm{H}}(-\frac{3}{2}, v)$")  # fmt: skip
 
 
 _MORE = r"\frac{\Delta (\vartheta^2 - \vartheta + \frac{1}{6})}{2 (1 + \vartheta)}"
@@ -117,11 +114,10 @@ def _cell(proof: Proof) -> None:
         (-1) ** order * sp.diff(kernel, _x, order) * sp.diff(u, _x, 3 - order) for order in range(4)
     ) + sp.Rational(2, 5) * (_v + _x) ** sp.Rational(5, 2)
     value = START - START.subs(_v, _v + 1) - _v**POWER
-    proof.holds(
-        integrand, ">=", 0, "integrand of the error between two strips, by element-trapezoids"
-    )
-    proof.integral(_rest, integrand, over, primitive, "by parts, four times", value=value)
+    proof.holds(integrand, ">=", 0, "of the error between two strips, by element-trapezoids")
+    proof.integral(_rest, integrand, over, "by parts, four times", value=value,
+                   antiderivative=primitive)  # fmt: skip
     proof.equal(sp.Subs(value, _v, 0), sp.Rational(1, 40), "its greatest value: it falls with $v$")
     least = 9 * kernel / 16
-    proof.integral(sp.Integral(least, over), least, over, sp.integrate(least, _x),
-                   r"so that $Q < \frac{1}{1280} v^{-5/2}$", value=sp.Rational(1, 1280))  # fmt: skip
+    proof.integral(sp.Integral(least, over), least, over, r"so that $Q < \frac{1}{1280} v^{-5/2}$",
+                   value=sp.Rational(1, 1280))  # fmt: skip

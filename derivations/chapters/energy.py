@@ -43,7 +43,7 @@ def _split(proof: Proof) -> None:
     whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
     proof.recall("eq29", C)
     proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
-    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
+    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over $V$")
     proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
     proof.define(F, F_elastic + F_viscous, "the friction force")
 
@@ -58,15 +58,12 @@ def _relaxation(proof: Proof) -> None:
     u_te = delta - h(x_te)
     surface = u_i.subs(t, t_0 + (x - x_te) / V)
     proof.define(u_i.subs(t, t_0), u_te, "where it leaves the contact")
-    proof.recall("eq29", surface)
-    proof.recall("eq29", C)
+    proof.recall("eq29", surface, "eq29", C)
     integrand = C / V * (V * sp.Derivative(surface, x)) ** 2
     behind = sp.Integral(integrand, (x, x_te, sp.oo))
-    proof.integral(
-        *(behind, integrand, (x, x_te, sp.oo), -K * surface**2 / 2),
-        r"$C \dot{u}^2/V$ behind the contact: all that was stored at the trailing edge",
-        value=K * u_te**2 / 2,
-    )
+    proof.integral(behind, integrand, (x, x_te, sp.oo),
+                   r"$C \dot{u}^2/V$ behind the contact: all that was stored at the trailing edge",
+                   value=K * u_te**2 / 2, antiderivative=-K * surface**2 / 2)  # fmt: skip
 
 
 @result("energy-any-shape", text=_ASSUMPTIONS)
@@ -78,12 +75,12 @@ def _any_shape(proof: Proof) -> None:
     """
     result = K * (delta - h(x_te)) ** 2 / 2 + _INSIDE
     difference = K * (delta - h(x_te)) ** 2 / 2 - K * (delta - h(x_le)) ** 2 / 2
-    proof.recall("energy-split")
-    proof.recall("energy-split", F_viscous)
+    proof.recall("energy-split", "energy-split", F_viscous)
     # u is continuous and piecewise smooth, so that kinks of the shape change nothing here.
     elastic = -K * (delta - _shape) * _slope
     stored = K * (delta - _shape) ** 2 / 2
-    proof.integral(F_elastic, elastic, _contact, stored, "$u u' = (u^2/2)'$", value=difference)
+    proof.integral(F_elastic, elastic, _contact, "$u u' = (u^2/2)'$", value=difference,
+                   antiderivative=stored)  # fmt: skip
     proof.define(h(x_le), delta, r"$u(x_{\mathrm{LE}}) = 0$")
     proof.equal(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$")
 
@@ -97,26 +94,15 @@ def _parabola(proof: Proof) -> None:
     """
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.recall("eq28", delta)
-    proof.recall("scaling")
-    proof.recall("F1", phi)
-    proof.recall("F1", F)
-    proof.integral(
-        *(F_viscous, dissipation, (x, -a, q * a), K * l_r * x**3 / (3 * R**2)),
-        "inside the contact",
-        value=K * l_r * a**3 * (1 + q**3) / (3 * R**2),
-    )
-    proof.equal(
-        F - F_viscous,
-        K * (delta - (q * a) ** 2 / (2 * R)) ** 2 / 2,
-        r"behind: $K u_{\mathrm{TE}}^2/2$",
-    )
+    proof.recall("eq28", delta, "scaling", "F1", phi, "F1", F)
+    proof.integral(F_viscous, dissipation, (x, -a, q * a), "inside the contact",
+                   value=K * l_r * a**3 * (1 + q**3) / (3 * R**2))  # fmt: skip
+    proof.equal(F - F_viscous, K * (delta - (q * a) ** 2 / (2 * R)) ** 2 / 2,
+                r"behind: $K u_{\mathrm{TE}}^2/2$")  # fmt: skip
     proof.define(eta, F_viscous / F, "by definition")
     proof.equal(eta, FRACTION, "fraction inside")
     proof.sign(eta, ">=", sp.Rational(4, 5), UNIT, "never less than four fifths")
-    proof.equal(
-        eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), r"least at $q = \frac{1}{2}$"
-    )
+    proof.equal(eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), "least at $q = 1/2$")
     there = sp.Subs(l, q, sp.Rational(1, 2))
     proof.equal(there, sp.Rational(3, 4), "the retardation length there")
     proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")

@@ -12,31 +12,17 @@ from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import F_x, F_z, R
 from .relaxation import (
-    FALLS,
-    LOADED,
-    WORKED,
-    G,
-    a,
-    arm_ratio,
-    by_fall,
-    c,
-    fading,
-    name_integrals,
-    spare_1,
-    spare_2,
-    weighted,
-    y,
-)
+    FALLS, LOADED, WORKED, G, a, arm_ratio, by_fall, c, fading, name_integrals, spare_1, spare_2,
+    weighted, y,
+)  # fmt: skip
 from .viscoelastic import SECTION, A, B, D, E, P, e, w
 from .viscoelastic_limits import slowing, spare_3, weight_at
 
 relative = symbol("rho_v", "relative difference of the falls of two series", latex=r"\breve \rho")
 other_fading = function(
-    "H_w", "fall of another series", "Pa/m²", printed=r"\breve H_1", nonnegative=True
+    "H_w", "fall of another one", "Pa/m²", printed=r"\breve H_1", nonnegative=True
 )
-part_at = function(
-    "n_v", "place of a value between two bounds", printed=r"\breve n", nonnegative=True
-)
+part_at = function("n_v", "place between two bounds", printed=r"\breve n", nonnegative=True)
 
 force_slope, power, slowed, left, *differences = symbols(r"""
     f_v    \breve f    1  slope of the friction force over the load, at one velocity  real
@@ -97,7 +83,8 @@ def _kernel(proof: Proof) -> None:
     proof.define(slowed, SLOWED, "one part")
     proof.define(left, LEFT, "the other one")
     proof.equal(E, IN_PARTS, "both")
-    proof.integral(left, LEFT.function, (y, 0, c), _gained * fading(y), "by parts", value=sp.S.Zero)
+    proof.integral(left, LEFT.function, (y, 0, c), "by parts", value=sp.S.Zero,
+                   antiderivative=_gained * fading(y))  # fmt: skip
     proof.holds(slowed, ">=", 0, r"so $\breve B \le 10 \breve E$")
     for name in (A, D):
         proof.define(name, weighted(name), "a moment")
@@ -112,8 +99,7 @@ def _steepest(proof: Proof) -> None:
     $\mathrm{d} \ln F_x/\mathrm{d} \ln F_z$ at one velocity.
     """
     half = sp.Rational(1, 2)
-    proof.recall("F27-slope", force_slope)
-    proof.recall("F17-parts", (a, c * (e + half)), e, F_z, F_x)
+    proof.recall("F27-slope", force_slope, "F17-parts", (a, c * (e + half)), e, F_z, F_x)
     proof.where(E > 0, "$G$ is not constant")
     ratio = 2 * e * (D + e * P) / (E + e**2 * P)
     proof.equal(force_slope * F_z / F_x, ratio, "by the moments")
@@ -152,9 +138,7 @@ def _close(proof: Proof) -> None:
     ):  # fmt: skip
         most = up * own / one + (up * B / (low * A * two)) ** power * up * P / three
         least = low * own * one + (low * B * two / (up * A)) ** power * low * P * three
-        proof.define(
-            most_of, up ** (1 + power) / low**power, f"the most by which the {what} differs"
-        )
+        proof.define(most_of, up ** (1 + power) / low**power, f"most by which the {what} differs")
         proof.define(least_of, low ** (1 + power) / up**power, "and the least")
         proof.holds(
             most_of * form, ">=", most, f"{what} of the other series at the same length, at most"
@@ -172,8 +156,7 @@ def _enough(proof: Proof) -> None:
     Argued: So $\mu$ under a dead weight differs by less than $14 \breve \rho$ of it, for $\breve \rho <
     \frac{1}{100}$, at every velocity: a series may be replaced by one with fewer arms.
     """
-    proof.recall("F27-close", *loads, *frictions)
-    proof.recall("F27-steepest", power)
+    proof.recall("F27-close", *loads, *frictions, "F27-steepest", power)
     most, least = (
         (friction / load**power) ** 2
         for friction, load in zip(frictions, reversed(loads), strict=True)

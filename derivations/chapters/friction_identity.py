@@ -51,15 +51,12 @@ def _instant(proof: Proof) -> None:
     ends of the contact, whichever way they move, and $V$ has its sign.
     """
     _recall_pressure(proof)
-    proof.recall("eq3")
-    proof.recall("eq29", C)
+    proof.recall("eq3", "eq29", C)
     slope = -K / R * (x + l_r)
     reason = r"neither $\delta$ nor $\dot\delta$ matters"
     proof.equal(sp.Derivative(p, x), slope, reason)
-    proof.equal(
-        *(-x / R * p, slope * p / K + l_r / R * p,
-          r"the integrand of Eq. (15); the first term is $p\, p'/K$"),
-    )  # fmt: skip
+    proof.equal(-x / R * p, slope * p / K + l_r / R * p,
+                r"the integrand of Eq. (15); the first term is $p\, p'/K$")  # fmt: skip
     terms = (K * delta_t + C * depth_rate, 0), (-C * V / R, 1), (-K / (2 * R), 2)
     for force, power, factor, density, reason in (
         (F_z, 1, sp.S.One, p, "for a dense row, a polynomial of the edges"),
@@ -67,9 +64,8 @@ def _instant(proof: Proof) -> None:
     ):
         proof.recall("dense-row", force)
         parts = [(factor * each / (power + order), power + order) for each, order in terms]
-        primitive = sum(part * x**n for part, n in parts)
         value = sum(part * (x_te**n - x_le**n) for part, n in parts)
-        proof.integral(force, density, steady.CONTACT, primitive, reason, value=value)
+        proof.integral(force, density, steady.CONTACT, reason, value=value)
     proof.define(p_le, sp.Subs(p, x, x_le), "at the leading edge")
     proof.define(p_te, sp.Subs(p, x, x_te), "at the trailing edge")
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)
@@ -83,19 +79,13 @@ def _recall_pressure(proof: Proof) -> None:
 
 @result("F21-load")
 def _load(proof: Proof) -> None:
-    r"""Load of steady sliding in one line.
-
-    With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$.
-    """
-    for label in ("eq26", "eq27", "pressure"):
-        proof.recall(label)
-    proof.recall("eq28", delta)
+    """Load of steady sliding in one line."""
+    proof.recall("eq26", "eq27", "pressure", "eq28", delta)
     proof.define(r, sp.sqrt(a**2 + l_r**2), r"$x_{\mathrm{TE}} = r - l_{\mathrm{r}}$, Eq. (27)")
     centred = K / (2 * R) * (r**2 - (x + l_r) ** 2)
     proof.equal(p, centred, "the pressure of steady sliding")
-    primitive = K / (2 * R) * ((a**2 + l_r**2) * x - (x + l_r) ** 3 / 3)
     proof.recall("dense-row", F_z)
-    proof.integral(F_z, p, steady.CONTACT, primitive, "Eq. (14) for a dense row", value=LOAD)
+    proof.integral(F_z, p, steady.CONTACT, "Eq. (14) for a dense row", value=LOAD)
     proof.define(W, F_z, "in steady sliding")
     proof.equal(W, LOAD, "the load")
 
@@ -104,14 +94,10 @@ def _load(proof: Proof) -> None:
 def _steady(proof: Proof) -> None:
     r"""Friction force of steady sliding in one line.
 
-    With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding.
+    With the load of F21-load this is all of steady sliding.
     """
     proof.recall("F21", at={delta_t: delta})
-    proof.recall("eq26")
-    proof.recall("pressure")
-    proof.recall("eq28", delta)
-    proof.recall("eq29", C)
-    proof.recall("scaling", x_te, l_r, l)
+    proof.recall("eq26", "pressure", "eq28", delta, "eq29", C, "scaling", x_te, l_r, l)
     for edge, place in ((p_te, x_te), (p_le, x_le)):
         proof.define(edge, sp.Subs(p, x, place), "the pressure of steady sliding")
     proof.equal(p_te, sp.S.Zero, "none at the trailing edge")

@@ -119,8 +119,7 @@ def _lengths(proof: Proof) -> None:
     scaled = {each: each * unit for each, unit in units.items()}
     changed = pressure.subs(scaled, simultaneous=True)
     proof.equal(changed, _N / _X * pressure, "the pressure keeps its form")
-    proof.recall("pressure-moving", p)
-    proof.recall("eq22", tau)
+    proof.recall("pressure-moving", p, "eq22", tau)
     moving = {delta: delta_t, depth_rate_now: depth_rate}
     proof.equal(p, pressure.subs(moving), "which is that of a dense row")
     _circle(proof)
@@ -131,9 +130,8 @@ def _circle(proof: Proof) -> None:
     """Prove that a circle, whose slope is not small, allows one length only."""
     term = x**4 / (8 * R**3)
     circle = R - sp.sqrt(R**2 - x**2)
-    proof.leading_order(
-        circle - x**2 / (2 * R), term, x, 0, "the additional term of a circle", eps=x**2
-    )
+    proof.leading_order(circle - x**2 / (2 * R), term, x, 0, "the additional term of a circle",
+                        eps=x**2)  # fmt: skip
     factor = _Z**3 / _X**2
     places = {R: R * DIMENSIONS[R], x: x * _X}
     proof.equal(sp.Subs(term, list(places), list(places.values())), factor * term,

@@ -62,9 +62,7 @@ def _balance(proof: Proof) -> None:
     proof.define(d(w, x, z), change, r"the change of volume is $(1 - 2 \nu_{\mathrm{P}}) s_H$")
     balance = d(d(u, x) + nu * s, x) + half * d(d(u, z) + d(w, x), z)
     form = half * (d(u, x, 2) + d(u, z, 2) + d(s, x))
-    proof.equal(
-        balance, form, r"force along the layer over $E_0/(1 + \nu_{\mathrm{P}})$, which is zero"
-    )
+    proof.equal(balance, form, r"force along the layer over $E_0/(1 + \nu_{\mathrm{P}})$: zero")
     proof.done(balance, form)
 
 
@@ -107,9 +105,7 @@ def _compliance(proof: Proof) -> None:
     proof.equal(sp.Subs(w, z, thickness), crest * phase, "displacement of the surface")
     proof.define(pull, size * modulus * k / (4 * (1 + nu)) * LOWER, "its amplitude")
     proof.equal(sp.Subs(stress, z, thickness), pull * phase, "stress there, by Hooke's law")
-    proof.define(
-        transfer, modulus * k * crest / (2 * (1 - nu**2) * pull), "over that of a half-space"
-    )
+    proof.define(transfer, modulus * k * crest / (2 * (1 - nu**2) * pull), "over a half-space's")
     proof.equal(transfer, TRANSFER, "the compliance")
 
 
@@ -129,11 +125,9 @@ def _thin(proof: Proof) -> None:
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
     thin = (1 + nu) * (1 - 2 * nu) * thickness / (modulus * (1 - nu))
     proof.where(sp.Gt(squeezed, 0), r"compressible")
-    proof.leading_order(DEPRESSION, thin, kappa, 0, "a long wave", eps=kappa)
+    proof.leading_order(DEPRESSION, thin, kappa, 0, "a long wave")
     next_term = (squeezed - 1) * (2 * squeezed - 1) / (3 * squeezed * (squeezed + 1))
-    proof.equal(
-        next_term, nu * (4 * nu - 1) / (3 * (1 - nu) * (1 - 2 * nu)), "the next coefficient"
-    )
+    proof.equal(next_term, nu * (4 * nu - 1) / (3 * (1 - nu) * (1 - 2 * nu)), "next coefficient")
     proof.done(DEPRESSION, thin)
 
 
@@ -145,9 +139,7 @@ def _incompressible(proof: Proof) -> None:
     """
     proof.define(nu, sp.Rational(1, 2), "no change of volume")
     proof.recall("F30")
-    proof.leading_order(
-        DEPRESSION, thickness * kappa**2 / modulus, kappa, 0, "a long wave", eps=kappa
-    )
+    proof.leading_order(DEPRESSION, thickness * kappa**2 / modulus, kappa, 0, "a long wave")
 
 
 @result("F30-thick")
@@ -161,9 +153,7 @@ def _thick(proof: Proof) -> None:
     fade = sp.exp(-2 * kappa)
     proof.recall("F30")
     proof.define(nu, (1 - squeezed) / 2, r"$\nu_{\mathrm{P}} \le 1/2$")
-    proof.holds(
-        kappa**2 * fade, "<", 16 / kappa**2, r"the largest of these terms for $\kappa_H > 1$"
-    )
+    proof.holds(kappa**2 * fade, "<", 16 / kappa**2, r"largest of these terms for $\kappa_H > 1$")
     top = (3 - 4 * nu) * (1 - fade**2) - 4 * kappa * fade
     bottom = (3 - 4 * nu) * (1 + fade**2) + 2 * (2 * kappa**2 + 5 - 12 * nu + 8 * nu**2) * fade
     proof.equal(transfer, top / bottom, "in these")

@@ -61,17 +61,13 @@ def _master_curve(proof: Proof) -> None:
         UNIT,
         r"it falls from $\infty$ at $q = 0$: exactly one root, one state for each velocity",
     )
-    proof.recall("scaling")
-    proof.recall("F1", w)
-    proof.recall("F1")
+    proof.recall("scaling", "F1", w, "F1")
     proof.define(V, l * a / tau, "Eq. (29)")
-    proof.recall("F1", W)
-    proof.recall("F1", mu)
-    proof.recall("eq28", delta)
+    proof.recall("F1", W, "F1", mu, "eq28", delta)
     proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
     proof.equal(X, DRIVE_CUBED, "scaled velocity")
-    proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
-    proof.leading_order(X, sp.Rational(3, 2) * (1 - q) ** 3, q, 1, "it comes to rest", eps=1 - q)
+    proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit")
+    proof.leading_order(X, sp.Rational(3, 2) * (1 - q) ** 3, q, 1, "it comes to rest")
     proof.equal(quartic, sp.S.Zero, "the quartic")
     proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
     proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")
@@ -102,8 +98,7 @@ def _peak(proof: Proof) -> None:
 def _peak_values(proof: Proof) -> None:
     """Values at the friction maximum."""
     third = sp.cbrt(3 - sp.sqrt(3))
-    proof.recall("F3")
-    proof.recall("scaling")
+    proof.recall("F3", "scaling")
     proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
     proof.recall("F1")
     proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
@@ -146,8 +141,7 @@ def _expansion(
     second: sp.Expr,
     last: sp.Expr,
 ) -> None:
-    proof.recall("scaling")
-    proof.recall("F1")
+    proof.recall("scaling", "F1")
     proof.leading_order(m, first, q, end, "the asymptote", eps=small)
     proof.leading_order(first + second - m, last, q, end, "two terms, less the exact", eps=small)
 
@@ -175,10 +169,8 @@ def _intersections(proof: Proof) -> None:
     )
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
     proof.equal((mu_low / mu_high_weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
-    proof.root(
-        *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
-        name=Lambda_weight,
-    )  # fmt: skip
+    proof.root(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$",
+               name=Lambda_weight)  # fmt: skip
     proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3
     proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")

@@ -37,7 +37,7 @@ theta, f_n, f_c, f_z, f_x, F_z, F_x, delta = symbols(r"""
 """)
 delta_t = function("delta", positive=True)(t)
 letter("e", "base of natural logarithms", source="constant")
-letter(r"\pi", "ratio of a circle", source="constant")
+letter(r"\pi", "circumference of a circle over its diameter", source="constant")
 z_a = function("z_A", real=True)(t)
 
 slope = h(x_i).diff(x_i)
@@ -111,8 +111,7 @@ def _inclination(proof: Proof) -> None:
 @result("eq11")
 def _normal(proof: Proof) -> None:
     """Normal force on an element."""
-    proof.recall("eq8")
-    proof.recall("eq10", theta)
+    proof.recall("eq8", "eq10", theta)
     proof.equal(f_n, _FORCE / sp.cos(theta), r"divide by $\cos\theta_i > 0$")
 
 
@@ -184,8 +183,7 @@ def _element_time(proof: Proof) -> None:
 @result("eq20")
 def _free(proof: Proof) -> None:
     """Relaxation of a free element."""
-    proof.recall("eq12")
-    proof.recall("eq21")
+    proof.recall("eq12", "eq21")
     reason = r"without contact $f_{zi} = 0$, which is linear in $\dot{u}_i$"
     proof.root(f_z, compression_rate, -u_i / tau, reason)
 
@@ -200,8 +198,7 @@ def _retardation_time(proof: Proof) -> None:
 
 
 def _stay(proof: Proof, rates: tuple[str, ...], bound: sp.Expr) -> None:
-    for label in ("eq12", "eq21", *rates):
-        proof.recall(label)
+    proof.recall("eq12", "eq21", *rates)
     reason = r"the foundation can only push: $f_{zi} \ge 0$, divided by $k > 0$"
     proof.equivalent(f_z, u_i, bound, reason)
 

@@ -19,8 +19,7 @@ def _one_contact(proof: Proof) -> None:
     Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a parabola.
     Both leave the edge with the same slope, and then separate.
     """
-    proof.recall("eq28")
-    proof.recall("eq27")
+    proof.recall("eq28", "eq27")
     y, part = x_b, sp.Symbol("zeta", positive=True)
     indenter, left = delta - (x_te + y) ** 2 / (2 * R), l_r * x_te / R
     proof.equal(delta - x_te**2 / (2 * R), left, "the compression at the trailing edge")
@@ -28,8 +27,8 @@ def _one_contact(proof: Proof) -> None:
                 r"the indenter behind it, at $x = x_{\mathrm{TE}} + x_{\mathrm{b}}$")  # fmt: skip
     over = (part, 0, y / l_r)
     above = sp.Integral(1 - sp.exp(-part), over)
-    proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
-                   "an exponential above its tangent", value=sp.exp(-y / l_r) - 1 + y / l_r)  # fmt: skip
+    proof.integral(above, 1 - sp.exp(-part), over, "an exponential above its tangent",
+                   value=sp.exp(-y / l_r) - 1 + y / l_r)  # fmt: skip
     start, later = u_i.subs(t, t_0), u_i.subs(t, t_0 + (x - x_te) / V)
     proof.define(start, left, "where it leaves the contact")
     proof.recall("eq29", later, reason="and relaxes", at={x: x_te + y})

@@ -81,9 +81,7 @@ def _pressure(proof: Proof) -> None:
         reason = rf"$(K (\delta - h) - C V h')/(K \delta)$ at $x = {where}$"
         proof.equal(pressure / (K * delta), form, reason)
     proof.define(P, BEHIND, "behind the tip, with $y = x/a$")
-    proof.equal(
-        sp.Derivative(BEHIND, y), -n * y ** (n - 2) * (y + (n - 1) * l), "falling behind the tip"
-    )
+    proof.equal(sp.Derivative(BEHIND, y), -n * y ** (n - 2) * (y + (n - 1) * l), "it falls there")
     proof.done(P, BEHIND)
 
 
@@ -117,8 +115,11 @@ def _load(proof: Proof) -> None:
     """
     in_q(proof)
     primitive = y - y ** (n + 1) / (n + 1)
-    proof.integral(w_ahead, AHEAD, (y, 0, 1), primitive + l * y**n, "ahead of the tip")
-    proof.integral(w_behind, BEHIND, (y, 0, q), primitive - l * y**n, "behind it")
+    for name, pressure, side, end, where in (
+        (w_ahead, AHEAD, 1, sp.S.One, "ahead of the tip"), (w_behind, BEHIND, -1, q, "behind it"),
+    ):  # fmt: skip
+        whole = primitive + side * l * y**n
+        proof.integral(name, pressure, (y, 0, end), where, value=whole.subs(y, end))
     proof.define(w_n, w_ahead + w_behind, r"$W/(K \delta a)$")
     explicit = n / (n + 1) + q - q ** (n + 1) / (n + 1) + (1 - q**n) ** 2 / (n * q ** (n - 1))
     proof.equal(w_n, explicit, "as a function of $q$")
@@ -134,14 +135,15 @@ def _friction(proof: Proof) -> None:
     in_q(proof)
     primitive = y**n - y ** (2 * n) / 2
     damper = n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
-    for name, pressure, side, end in (
-        (phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q),
-    ):  # fmt: skip
+    for name, pressure, side, end in ((phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q)):
         integrand = sp.expand(n * y ** (n - 1) * pressure)
         where = (
             "a backward force ahead of the tip" if side == 1 else "and a forward force behind it"
         )
-        proof.integral(name, integrand, (y, 0, end), primitive + side * damper, where)
+        whole = primitive + side * damper
+        proof.integral(
+            name, integrand, (y, 0, end), where, value=whole.subs(y, end), antiderivative=whole
+        )
     proof.define(phi_n, phi_ahead - phi_behind, r"$F/(K \delta^2)$")
     explicit = (1 - q**n) ** 2 / 2
     explicit += n * (1 - q**n) * (1 + q ** (2 * n - 1)) / ((2 * n - 1) * q ** (n - 1))
@@ -156,8 +158,7 @@ def _coefficient(proof: Proof) -> None:
     For $h = |x|^n/(n L^{n-1})$, $n > 1$, with $q = x_{\mathrm{TE}}/a$, $Q = q^{n-1}$ and $l =
     l_{\mathrm{r}}/a = (1 - q^n)/(n Q)$. For $n = 2$ this is F1.
     """
-    proof.recall("F19-load")
-    proof.recall("F19-friction")
+    proof.recall("F19-load", "F19-friction")
     proof.define(F, K * delta**2 * phi_n, "friction force")
     proof.define(W, K * delta * a * w_n, "load")
     proof.recall("eq37")
@@ -194,11 +195,11 @@ def _energy(proof: Proof) -> None:
     inside = lost_ahead, lost_behind
     proof.define(n, 1 + excess, r"$n > 1$")
     proof.define(Q, SLOPE_POWER, "a shorthand")
-    density, primitive = n**2 * l * y ** (2 * n - 2), n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
+    density = n**2 * l * y ** (2 * n - 2)
     for name, end, where in zip(
         inside, (1, q), (r"$K l_{\mathrm{r}} h'^2$, ahead of the tip", "behind it"), strict=True
     ):
-        proof.integral(name, density, (y, 0, end), primitive, where)
+        proof.integral(name, density, (y, 0, end), where, antiderivative=density * y / (2 * n - 1))
     form = 2 * (1 + q * Q**2) / (2 * (1 + q * Q**2) + (2 * n - 1) * l * Q**2)
     proof.define(eta_n, (lost_ahead + lost_behind) / phi_n, "by definition")
     proof.recall("F19-friction")

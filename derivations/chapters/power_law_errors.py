@@ -13,16 +13,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
-    SECTION,
-    Q,
-    excess,
-    in_q,
-    n,
-    phi_n,
-    w_n,
-    y,
-    z,
-)
+    SECTION, Q, excess, in_q, n, phi_n, w_n, y, z,
+)  # fmt: skip
 from .power_law_limits import m_high, m_low, w_rest
 from .steady import l, q
 
@@ -89,49 +81,29 @@ class Asymptote:
 
 
 ASYMPTOTES = (
-    Asymptote(
-        *("L1", "friction coefficient at low velocity", e_n_l1),
-        m_low * l * w_n / phi_n,
-        (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / damped,
-        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
-    ),
+    Asymptote("L1", "friction coefficient at low velocity", e_n_l1, m_low * l * w_n / phi_n,
+              (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / damped,
+              r"$\frac{2 n - 1}{4}\, l$ at low velocity"),
     Asymptote(
         *("L2", "friction coefficient at high velocity", e_n_l2),
         m_high * w_n / phi_n,
         (blunt + sharp) / (l * damped),
         r"$\frac{(n - 1)(2 n^2 - 1)}{2 n^2 (n + 1)}\, l^{-1}$ at high velocity; no term is negative",
     ),
-    Asymptote(
-        *("load-low", "load at low velocity", e_n_load_low),
-        w_rest / w_n,
-        -(l**2 * Q + bend) / whole,
-        r"$-\frac{n + 1}{4}\, l^2$ at low velocity",
-    ),
-    Asymptote(
-        *("load-high", "load at high velocity", e_n_load_high),
-        l / w_n,
-        -tip / (n**2 * whole),
-        r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity",
-    ),
-    Asymptote(
-        *("friction-low", "friction force at low velocity", e_n_friction_low),
-        2 * m_high * l / phi_n,
-        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / damped,
-        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
-    ),
-    Asymptote(
-        *("friction-high", "friction force at high velocity", e_n_friction_high),
-        m_high * l / phi_n,
-        -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / damped,
-        r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity",
-    ),
-    Asymptote(
-        *("depth-high", "depth at high velocity, dead weight", e_n_depth_high),
-        w_n / l,
-        tip / (n * (n + 1) * l),
-        r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity",
-    ),
-)
+    Asymptote("load-low", "load at low velocity", e_n_load_low, w_rest / w_n,
+              -(l**2 * Q + bend) / whole, r"$-\frac{n + 1}{4}\, l^2$ at low velocity"),
+    Asymptote("load-high", "load at high velocity", e_n_load_high, l / w_n, -tip / (n**2 * whole),
+              r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity"),
+    Asymptote("friction-low", "friction force at low velocity", e_n_friction_low,
+              2 * m_high * l / phi_n,
+              (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / damped,
+              r"$\frac{2 n - 1}{4}\, l$ at low velocity"),
+    Asymptote("friction-high", "friction force at high velocity", e_n_friction_high,
+              m_high * l / phi_n, -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / damped,
+              r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity"),
+    Asymptote("depth-high", "depth at high velocity, dead weight", e_n_depth_high, w_n / l,
+              tip / (n * (n + 1) * l), r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity"),
+)  # fmt: skip
 
 result = Chapter(SECTION)
 

@@ -6,19 +6,8 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .power_law import (
-    HIGH_COEFFICIENT,
-    LOW_SLOPE,
-    SECTION,
-    SQUARES,
-    Q,
-    excess,
-    in_q,
-    m_n,
-    n,
-    phi_n,
-    w_n,
-    z,
-)
+    HIGH_COEFFICIENT, LOW_SLOPE, SECTION, SQUARES, Q, excess, in_q, m_n, n, phi_n, w_n, z,
+)  # fmt: skip
 from .steady import l, q
 
 w_rest, w_l, phi_l, m_low, m_high, l_cross, more_load, more_work = symbols(r"""
@@ -47,8 +36,7 @@ def _monotonic(proof: Proof) -> None:
     $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$.
     """
     in_q(proof)
-    proof.recall("F19-load")
-    proof.recall("F19-friction")
+    proof.recall("F19-load", "F19-friction")
 
     for name, form, growth, reason in (
         (w_l, w_n, n * l * Q, "the load grows"),
@@ -77,8 +65,7 @@ def _low(proof: Proof) -> None:
     a$, and $\mu$ to $m_{n,0}' l$ in units of $\delta/a$.
     """
     rest = (q, Q, l), (1, 1, 0)
-    proof.recall("F19-load")
-    proof.recall("F19")
+    proof.recall("F19-load", "F19")
     proof.define(w_rest, sp.Subs(w_n, *rest), "load at rest")
     proof.equal(w_rest, AT_REST, "in units of $K \\delta a$")
     ratio = n * (n + 1) * (SQUARES + l * Q**2 / 2) / (1 + q + l + l**2 * Q)
@@ -86,8 +73,8 @@ def _low(proof: Proof) -> None:
     proof.define(m_low, sp.Subs(ratio, *rest), "friction coefficient per $l$ at rest")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
     in_q(proof)
-    proof.leading_order(w_n, AT_REST, q, 1, "the load tends to this", eps=1 - q)
-    proof.leading_order(m_n / l, LOW_SLOPE, q, 1, "and friction to this, times $l$", eps=1 - q)
+    proof.leading_order(w_n, AT_REST, q, 1, "the load tends to this")
+    proof.leading_order(m_n / l, LOW_SLOPE, q, 1, "and friction to this, times $l$")
     proof.done(m_low, LOW_SLOPE)
 
 
@@ -100,9 +87,7 @@ def _high(proof: Proof) -> None:
     """
     in_q(proof)
     proof.where(q < 1, "the edge is inside of its place at rest")
-    proof.recall("F19-load")
-    proof.recall("F19-friction")
-    proof.recall("F19", (m_n, phi_n / w_n))
+    proof.recall("F19-load", "F19-friction", "F19", (m_n, phi_n / w_n))
     proof.define(z, 1 - q**n, "a share")
     proof.define(m_high, HIGH_COEFFICIENT, r"the limit of $\mu$, in units of $\delta/a$")
     for name, whole, form, most, what in (
@@ -124,7 +109,6 @@ def _crossing(proof: Proof) -> None:
 
     At a given depth; for $n = 2$ this is Eq. (47).
     """
-    proof.recall("F19-low")
-    proof.recall("F19-high", m_high)
+    proof.recall("F19-low", "F19-high", m_high)
     reason = r"the asymptotes meet, at $V^{*} \tau/a$"
     proof.root(m_low * l_cross - m_high, l_cross, n / (n + 1), reason)

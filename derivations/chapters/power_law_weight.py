@@ -10,21 +10,9 @@ from ..engine.nomenclature import symbol
 from ..engine.step import Proof
 from .model import C, K, V, delta
 from .power_law import (
-    HIGH_COEFFICIENT,
-    LOW_SLOPE,
-    NUMBER,
-    SECTION,
-    SLOPE_POWER,
-    L,
-    Q,
-    excess,
-    in_q,
-    m_n,
-    n,
-    phi_n,
-    w_n,
-    z,
-)
+    HIGH_COEFFICIENT, LOW_SLOPE, NUMBER, SECTION, SLOPE_POWER, L, Q, excess, in_q, m_n, n, phi_n,
+    w_n, z,
+)  # fmt: skip
 from .power_law_limits import AT_REST, m_high, phi_l, w_l
 from .steady import W, a, l, l_r, mu, q
 from .tables import delta_0
@@ -143,11 +131,8 @@ def _at_load(proof: Proof) -> None:
     load = AT_REST / s ** (n + 1)
     proof.define(n, 1 + excess, "the exponent of the shape")
     proof.define(w_n, load, r"$s^{n + 1} w_n = \frac{2 n}{n + 1}$")
-    proof.define(
-        m_n,
-        friction / w_n,
-        r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$",
-    )
+    proof.define(m_n, friction / w_n,
+                 r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$")  # fmt: skip
     power = sp.log(friction) - 2 * n / (n + 1) * sp.log(w_n) + (n - 1) / (n + 1) * sp.log(AT_REST)
     proof.equal(sp.log(s ** (n - 1) * m_n), power, "the friction coefficient at a given load")
     proof.done(w_n, load)
@@ -160,9 +145,7 @@ def _slip(proof: Proof) -> None:
     Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; $l$ grows
     with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - \frac{1}{n + 1}$.
     """
-    proof.recall("F19-monotonic", w_l, phi_l)
-    proof.recall("F19-load")
-    proof.recall("F19-friction")
+    proof.recall("F19-monotonic", w_l, phi_l, "F19-load", "F19-friction")
     rates = (n + 1) * w_n * phi_l - 2 * n * phi_n * w_l
     slip = n**3 * SLIP / (2 * n - 1)
     proof.equal(rates, slip, r"its logarithmic slope times $w_n \varphi_n$")
@@ -192,10 +175,6 @@ def _maximum(proof: Proof) -> None:
     )
     proof.equal(sp.Derivative(T_n, q), slope, "slope")
     proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
-    proof.crossing(
-        form.subs({Q: SLOPE_POWER, z: peeled}),
-        (q, 0, 1),
-        r"from $-\nu/n^2$ in the fast limit to 2 at rest",
-        slope=slope,
-    )
+    proof.crossing(form.subs({Q: SLOPE_POWER, z: peeled}), (q, 0, 1),
+                   r"from $-\nu/n^2$ in the fast limit to 2 at rest", slope=slope)  # fmt: skip
     proof.done(slip_scaled, T_n)

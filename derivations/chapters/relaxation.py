@@ -13,29 +13,10 @@ from ..engine.step import Proof
 from .model import F_x, F_z, K, R
 from .steady import W, a, x_te
 from .viscoelastic import (
-    FALL,
-    MOMENTS,
-    SECTION,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    arm_lost,
-    arm_work,
-    b,
-    contact_length,
-    edge_pressure,
-    excess_share,
-    from_moments,
-    from_trailing,
-    spring_share,
-    springs,
-    under_pressure,
+    FALL, MOMENTS, SECTION, UNIT, A, B, D, E, P, Q, arm_lost, arm_work, b, contact_length,
+    edge_pressure, excess_share, from_moments, from_trailing, spring_share, springs, under_pressure,
     z,
-)
+)  # fmt: skip
 
 arm_length = symbol("l_v", r"length over which an arm relaxes, $V \tau_i$", "m", latex="l_i")
 memory = function(
@@ -52,13 +33,8 @@ behind = symbol("X_v", "distance from the leading edge", "m", latex=r"\breve X")
 edge_distance = symbol(
     "y_v", "distance back from there, or behind the trailing edge", "m", latex=r"\breve y"
 )
-fading = function(
-    "H_v",
-    "rate of decrease of the relaxation function",
-    "Pa/m²",
-    printed=r"\breve H",
-    nonnegative=True,
-)
+fading = function("H_v", "rate of decrease of the relaxation function", "Pa/m²",
+                  printed=r"\breve H", nonnegative=True)  # fmt: skip
 (
     other_trailing, felt, shift, left_behind, arm_ratio, parting, slope_free, pressed, damper_1,
     damper_2, spring_1, spring_2, share_1, share_2, on_off, spare_1, spare_2,
@@ -78,7 +54,7 @@ fading = function(
     gamma_v1  \breve \gamma_1  1     share of an arm in the glassy stiffness  nonnegative
     gamma_v2  \breve \gamma_2  1     share of another arm  nonnegative
     theta_v   \breve \theta    1     weight of the indenter relative to the free surface  nonnegative
-    omega_v1  \breve \omega_1  1     remainder of a bound, not negative  nonnegative
+    omega_v1  \breve \omega_1  1     remainder of a bound  nonnegative
     omega_v2  \breve \omega_2  1     remainder of another bound  nonnegative
 """)  # fmt: skip
 
@@ -133,8 +109,9 @@ def _pressure(proof: Proof) -> None:
     """
     name_integrals(proof, 2)
     rate = (a - X + y) / R
-    proof.integral(PRESSED, PRESSED.function, (y, 0, X), rate * G_1(y) - G_2(y) / R,
-                   r"by parts; this is the pressure $p(\breve X)$", value=PRESSURE(X))  # fmt: skip
+    proof.integral(PRESSED, PRESSED.function, (y, 0, X),
+                   r"by parts; this is the pressure $p(\breve X)$", value=PRESSURE(X),
+                   antiderivative=rate * G_1(y) - G_2(y) / R)  # fmt: skip
 
 
 @result("F17-concave", uses=("F17-any",))
@@ -171,10 +148,11 @@ def _forces(proof: Proof) -> None:
     name_integrals(proof, 4)
     over, rate = (y, 0, c), (a - y) / R
     primitive = (a * G_2(y) - G_3(y)) / R
-    proof.integral(LOADED, LOADED.function, over, primitive, "this is the load $W$", value=LOAD)
+    proof.integral(LOADED, LOADED.function, over, "this is the load $W$", value=LOAD,
+                   antiderivative=primitive)  # fmt: skip
     whole = rate * primitive + (a * G_3(y) - G_4(y)) / R**2
-    proof.integral(WORKED, WORKED.function, over, whole, "the work of the pressure, which is $F$",
-                   value=WORK)  # fmt: skip
+    proof.integral(WORKED, WORKED.function, over, "the work of the pressure, which is $F$",
+                   value=WORK, antiderivative=whole)  # fmt: skip
 
 
 @result("F17-growth")
@@ -211,7 +189,8 @@ def _moments(proof: Proof) -> None:
         whole = weighted(name).function
         weight = whole / G(y)
         parts = sum((-1) ** n * sp.diff(weight, y, n) * part(y) for n, part in enumerate(repeated))
-        proof.integral(name, whole, (y, 0, c), parts, "by parts", value=sp.expand(parts.subs(y, c)))
+        proof.integral(name, whole, (y, 0, c), "by parts", value=sp.expand(parts.subs(y, c)),
+                       antiderivative=parts)  # fmt: skip
     proof.recall("F17-concave", a)
     proof.define(e, a / c - sp.Rational(1, 2), "the excess over half of the contact")
     proof.equal(a, c * (e + sp.Rational(1, 2)), "solved for the half length")
@@ -238,8 +217,9 @@ def _falls(proof: Proof) -> None:
         proof.define(name, weighted(name), "a moment")
         fallen, rest = in_parts(name)
         proof.equal(name, fallen + rest, "by parts")
-        proof.integral(rest, rest.function, (y, 0, c), FALLS[name].subs(w, y / c) * G(y), "the end",
-                       value=FALLS[name].subs(w, 1) * G(c))  # fmt: skip
+        proof.integral(rest, rest.function, (y, 0, c), "the end",
+                       value=FALLS[name].subs(w, 1) * G(c),
+                       antiderivative=FALLS[name].subs(w, y / c) * G(y))  # fmt: skip
         proof.holds(fallen, ">=", 0, "not negative in the contact")
     proof.done(name, fallen + rest)
 
@@ -270,8 +250,8 @@ def _positive(proof: Proof) -> None:
 def _stored(proof: Proof) -> None:
     r"""Any relaxation function: energy behind the contact.
 
-    Half of the square of this stress is the energy stored in the spring of an arm, $\frac{1}{2} \int \int
-    e^{-\breve z (\breve w + \breve w')} u' u'$.
+    Half of the square of the stress of an arm at the trailing edge is the energy stored in its spring,
+    $\frac{1}{2} \int \int e^{-\breve z (\breve w + \breve w')} u' u'$.
 
     Argued: Added up over arms it is $\frac{1}{2} \int \int G(\breve w + \breve w')\, u'(\breve w)\,
     u'(\breve w')$ for every $G$ that is a sum or an integral of arms (Bernstein: that is completely
@@ -282,11 +262,9 @@ def _stored(proof: Proof) -> None:
     under_pressure(proof)
     proof.recall("F17-edge")
     held = sp.Integral(sp.exp(-z * w) * (b - 1 + w), UNIT)
-    primitive = -sp.exp(-z * w) * ((b - 1 + w) / z + 1 / z**2)
-    proof.integral(held, held.function, UNIT, primitive,
-                   "stress of an arm at the trailing edge", value=edge_pressure)  # fmt: skip
-    proof.recall("F17", arm_work)
-    proof.recall("F17-energy")
+    proof.integral(held, held.function, UNIT, "stress of an arm at the trailing edge",
+                   value=edge_pressure)  # fmt: skip
+    proof.recall("F17", arm_work, "F17-energy")
     proof.equal(arm_work - arm_lost, held**2 / 2, "what the arm does not lose in the contact")
 
 
@@ -301,7 +279,8 @@ def _stored_springpot(proof: Proof) -> None:
     both = w + v
     parts = (h + v) * both**nu / nu - both ** (nu + 1) / (nu * (nu + 1))
     once = parts.subs(v, 1) - parts.subs(v, 0)
-    proof.integral(felt, both ** (nu - 1) * (h + v), (v, 0, 1), parts, "by parts", value=once)
+    proof.integral(felt, both ** (nu - 1) * (h + v), (v, 0, 1), "by parts", value=once,
+                   antiderivative=parts)  # fmt: skip
     outer = sp.Integral((h + w) * felt, UNIT)
 
     def part(base: sp.Expr, power: sp.Expr) -> sp.Expr:
@@ -312,13 +291,11 @@ def _stored_springpot(proof: Proof) -> None:
     near = part(1 + w, nu + 1) - part(w, nu + 1)
     primitive = ((h + 1) * part(1 + w, nu) - h * part(w, nu) - near / (nu + 1)) / nu
     two = 2**nu
-    none, mixed, square = (
-        2 * (two - 1) / (nu * (nu + 1)),
-        (2 * two - 1) / ((1 + nu) * (2 + nu)),
-        2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)),
-    )
+    none, mixed, square = (2 * (two - 1) / (nu * (nu + 1)), (2 * two - 1) / ((1 + nu) * (2 + nu)),
+                           2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)))  # fmt: skip
     value = square + 2 * h * mixed + h**2 * none
-    proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
+    proof.integral(outer, (h + w) * felt, UNIT, "and once more", value=value,
+                   antiderivative=primitive)  # fmt: skip
 
 
 @result("F17-surface")
@@ -349,13 +326,12 @@ def _surface(proof: Proof) -> None:
     )
     proof.define(parting, c / R * angle, "positive")
     proof.equal(
-        x_te / R, u / stretch + parting, "the slope of the indenter at the edge, larger by this"
+        x_te / R, u / stretch + parting, "slope of the indenter at the edge, larger by this"
     )
     part = sp.Symbol("zeta", positive=True)
     over = (part, 0, y / stretch)
     above = sp.Integral(1 - sp.exp(-part), over)
-    proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
-                   "an exponential above its tangent",
+    proof.integral(above, 1 - sp.exp(-part), over, "an exponential above its tangent",
                    value=sp.exp(-y / stretch) - 1 + y / stretch)  # fmt: skip
     indenter = u - x_te * y / R - y**2 / (2 * R)
     gap = u * sp.exp(-y / stretch) - indenter
@@ -395,13 +371,9 @@ def _interval(proof: Proof) -> None:
     proof.holds((1 - on_off) * share_2, ">=", 0, "so that larger drives give larger extensions")
     ones = on_off + (1 - on_off) * (share_1 + share_2) - 1
     proof.equal(ones, -(1 - on_off) * K / stiff, "with all extensions and the indenter at 1")
-    proof.holds(
-        -(1 - on_off) * K / stiff, "<", 0, "they fall: the weights of the past add up to less"
-    )
+    proof.holds(-(1 - on_off) * K / stiff, "<", 0, "they fall: weights of the past add up to less")
     weights = share_1 * (1 - spare_1) + share_2 * (1 - spare_2)
     bend = -K / stiff - share_1 * spare_1 - share_2 * spare_2
-    proof.equal(
-        -1 + weights, bend, "second derivative along the foundation, over that of the indenter"
-    )
+    proof.equal(-1 + weights, bend, "second derivative, over that of the indenter")
     proof.holds(bend, "<", 0, "concave")
     proof.done(-1 + weights, bend)

@@ -11,10 +11,10 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .groups import k_s
-from .model import F_x, F_z, M, R, V, delta, t, x
+from .model import C, F_x, F_z, M, R, V, delta, t, x
 from .relaxation import behind, edge_distance
 from .spring_drive import C_x, M_x, k_x, small, x_a
-from .steady import F, W
+from .steady import F, W, a, x_le
 from .theorems import lam
 from .transient_edges import left, rho, right
 from .transient_motion import f_friction
@@ -65,14 +65,8 @@ kernels_still = tuple(
     b_T      -              1     factor of all moduli by temperature  from scene
 """)  # fmt: skip
 memory_warm = function("G_T", "relaxation function at another temperature", "N/m³", real=True)
-memory_cold = function(
-    "G",
-    "relaxation function at the reference temperature",
-    "N/m³",
-    printed=r"G_{\mathrm{r}}",
-    source="",
-    real=True,
-)
+memory_cold = function("G", "relaxation function at the reference temperature", "N/m³",
+                       printed=r"G_{\mathrm{r}}", source="", real=True)  # fmt: skip
 temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = symbols(r"""
     T    -               K        temperature  from scene
     T_r  T_{\mathrm{r}}  K        temperature at which the times were measured  from scene
@@ -142,14 +136,11 @@ def _arm(proof: Proof) -> None:
     proof.equal(swing_u * sp.exp(-s * t), changes, r"compression at the time $\tilde v$ back")
     followed = z * sp.exp(-z * v) * sp.exp(-sigma * v)
     lost = proof.integral(sp.Integral(followed, (v, 0, y)), followed, (v, 0, y),
-                          -z * sp.exp(-m * v) / m, "what the arm has forgotten of it",
-                          value=z * (1 - sp.exp(-m * y)) / m)  # fmt: skip
+                          "what the arm has forgotten of it", value=z * (1 - sp.exp(-m * y)) / m)  # fmt: skip
     proof.define(fading_depth, 1 - lost, "the pressure for a change of depth")
     proof.equal(fading_depth, ALPHA, "one less what is forgotten")
     dragged = z * sp.exp(-z * v) * (y - b - v) * (1 - sp.exp(-sigma * v))
-    primitive = -(y - b - v - 1 / z) * sp.exp(-z * v) + z / m * (y - b - v - 1 / m) * sp.exp(-m * v)
-    proof.integral(fading_drag, dragged, (v, 0, y), primitive,
-                   "the pressure for a displacement", value=BETA)  # fmt: skip
+    proof.integral(fading_drag, dragged, (v, 0, y), "the pressure for a displacement", value=BETA)
 
 
 @result("F24-kernels")
@@ -165,10 +156,9 @@ def _kernels(proof: Proof) -> None:
         for n, kernel in enumerate(found, 1):
             weight = (1 - v) ** (n - 1) / sp.factorial(n - 1)
             integrand = weight * sp.exp(-number * v)
-            primitive = antiderivative(integrand, v)
             known = 1 / sp.factorial(n - 1)
             value = (1 - sp.exp(-number)) / number if before is None else (known - before) / number
-            proof.integral(kernel, integrand, (v, 0, 1), primitive,
+            proof.integral(kernel, integrand, (v, 0, 1),
                            "an exponential" if before is None else "by parts: from the one before",
                            value=value)  # fmt: skip
             before = kernel
@@ -202,26 +192,70 @@ def _forces(proof: Proof) -> None:
     its strips.
     """
     _recalled(proof)
-    proof.recall("F24-arm", fading_depth)
-    proof.recall("F24-arm")
+    proof.recall("F24-arm", fading_depth, "F24-arm")
     for name, pressure, form, lever in (
         (normal_per_depth, fading_depth, ALPHA, 1), (rubbing_per_depth, fading_depth, ALPHA, b - y),
         (normal_per_drag, fading_drag, BETA, 1), (rubbing_per_drag, fading_drag, BETA, b - y),
     ):  # fmt: skip
         primitive = antiderivative(form * lever, y)
-        proof.integral(name, pressure * lever, (y, 0, 1), primitive,
+        proof.integral(name, pressure * lever, (y, 0, 1),
                        "the pressure" if lever == 1 else "the pressure times the slope",
-                       value=FORCES[name])  # fmt: skip
+                       value=FORCES[name], antiderivative=primitive)  # fmt: skip
+
+
+DAMPED = {
+    normal_per_depth: 1 + sigma, rubbing_per_depth: HALF + e + e * sigma,
+    normal_per_drag: -e * sigma, rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
+}  # fmt: skip
+"""The same of a damper, in units of C V/c for K_i c and so on."""
+
+
+@result("F24-damper")
+def _damper(proof: Proof) -> None:
+    r"""Rubber: forces of a damper in small motions.
+
+    The pressure $C \dot u$ of a damper beside the arms jumps at the leading edge, which touches undisturbed
+    ground and moves with the depth; at the trailing edge, $\breve c - a$, the pressures of spring, damper and
+    arms add up to zero, so that its motion has no effect to first order. With $C V/\breve c$ for $K_i \breve
+    z$ the damper changes the forces as a fast arm does (F24-kelvin-voigt).
+    """
+    swing = sp.exp(s * t)
+    depth = delta + small * delta_swing * swing
+    proof.where(sp.Gt(depth, 0), "the change is small")
+    proof.define(x_le, -sp.sqrt(2 * R * depth), "Eq. (32) at this depth")
+    proof.recall("F24-compression")
+    rate = s * (delta_swing + x_swing * x / R) * swing
+    proof.equal(sp.Subs(-sp.Derivative(swing_u, time_back), time_back, 0), rate,
+                r"change of $\dot u$, which is $-V x/R$ in steady sliding")  # fmt: skip
+    for force, power, factor, reason in (
+        (F_z, 1, C, "the pressure"), (F_x, 2, -C / R, "the pressure times the slope"),
+    ):  # fmt: skip
+        density = factor * x ** (power - 1) * (small * rate - V * x / R)
+        first, second = (((c - a) ** n - x_le**n) / n for n in (power, power + 1))
+        value = factor * (
+            small * s * (delta_swing * first + x_swing * second / R) * swing - V * second / R
+        )
+        proof.integral(force, density, (x, x_le, c - a), reason, value=value)
+    proof.recall("eq28", delta)
+    proof.define(a, c * (HALF + e), "F17-edge")
+    proof.define(s, sigma * V / c)
+    for force, depth, drag, arm in (
+        (F_z, normal_per_depth, normal_per_drag, 1), (F_x, rubbing_per_depth, rubbing_per_drag, c / R),
+    ):  # fmt: skip
+        change = sp.Subs(sp.Derivative(force, small), small, 0)
+        both = DAMPED[depth] * delta_swing + DAMPED[drag] * x_swing * c / R
+        proof.equal(change, C * V * arm * both * swing, "to first order, the leading edge included")
 
 
 @result("F24")
 def _rates(proof: Proof) -> None:
     r"""Rates and critical stiffness on rubber.
 
-    With the sums of (F24-forces) over the spring and all arms the forces change by $F_{z\delta} \tilde \delta
-    + F_{zX} \tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$. On the imaginary axis $k_x$ is
-    explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} F_{x\delta}/(M \tilde s^2 + k_s +
-    F_{z\delta})$, and the critical stiffness is the largest real value that it takes there.
+    With the sums of (F24-forces) over the spring and all arms, and with (F24-damper) beside them, the forces
+    change by $F_{z\delta} \tilde \delta + F_{zX} \tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$.
+    On the imaginary axis $k_x$ is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX}
+    F_{x\delta}/(M \tilde s^2 + k_s + F_{z\delta})$, and the critical stiffness is the largest real value that
+    it takes there.
     """
     A, B, C, D = (
         total_normal_per_depth, total_normal_per_drag, total_rubbing_per_depth, total_rubbing_per_drag,
@@ -231,8 +265,7 @@ def _rates(proof: Proof) -> None:
     across, lengthwise = up * delta_swing + B * x_swing, along * x_swing - C * delta_swing
     both = (up * along + B * C) * delta_swing
     sinks, drags = (sp.Function(name, real=True)(t) for name in (r"\tilde \delta", r"\tilde X"))
-    proof.recall("scaled-form", z_a.diff(t, 2))
-    proof.recall("F22-scaled", x_a.diff(t, 2))
+    proof.recall("scaled-form", z_a.diff(t, 2), "F22-scaled", x_a.diff(t, 2))
     for name, steady, change in (
         (z_a, -delta, -sinks), (x_a, F / k_x, drags),
         (F_z, W, A * sinks + B * drags), (F_x, F, C * sinks + D * drags),
@@ -268,13 +301,7 @@ def _kelvin_voigt(proof: Proof) -> None:
     _recalled(proof)
     proof.recall("F24-forces", *FORCES)
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
-    limits = {
-        normal_per_depth: 1 + sigma,
-        rubbing_per_depth: HALF + e + e * sigma,
-        normal_per_drag: -e * sigma,
-        rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
-    }
-    for name, limit in limits.items():
+    for name, limit in DAMPED.items():
         proof.leading_order(
             name, limit / z, **far, reason=r"times $K_i \breve z = C V/\breve c$: a damper"
         )
@@ -282,21 +309,15 @@ def _kelvin_voigt(proof: Proof) -> None:
     shown = r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
     proof.define(e, zeta / (2 * (1 + zeta)), shown)
     proof.define(lam, zeta, "the drive number in units of the contact")
-    proof.recall("F11-start", rho, right, left)
-    proof.recall("F11", f_normal, f_friction)
+    proof.recall("F11-start", rho, right, left, "F11", f_normal, f_friction)
     steady = {d: (HALF + e) ** 2, d_s: 0}
     for factor, force, variable, form, reason in (
         (sp.Rational(4, 3), f_normal, d, 1 + zeta, r"$F_{z\delta}$ at $\tilde s = 0$"),
-        (
-            sp.Rational(2, 3),
-            f_friction,
-            d,
-            e + zeta * (HALF + e),
-            r"$F_{x\delta}$ at $\tilde s = 0$",
-        ),
+        (sp.Rational(2, 3), f_friction, d, e + zeta * (HALF + e),
+         r"$F_{x\delta}$ at $\tilde s = 0$"),
         (sp.Rational(2, 3), f_normal, lam, e, r"$-F_{zX}$ over $\tilde \sigma \breve \zeta$"),
         (sp.Rational(1, 3), f_friction, lam, sp.Rational(1, 12) + e**2, "$-F_{xX}$ over the same"),
-    ):
+    ):  # fmt: skip
         change = at_motion(sp.Derivative(force, variable), steady)
         proof.equal(factor * change, form, reason)
 

@@ -48,9 +48,7 @@ ACCUMULATE = {
     alpha_i: delta_t.diff(t) - v_t * Y_t / R - alpha_i(t) / tau_i,
     beta_i: v_t - beta_i(t) / tau_i,
 }
-STRESS = K_i * (
-    alpha_i(t_1) - E_i * alpha_i(t_in) - xi / R * (beta_i(t_1) - E_i * beta_i(t_in))
-)  # fmt: skip
+STRESS = K_i * (alpha_i(t_1) - E_i * alpha_i(t_in) - xi / R * (beta_i(t_1) - E_i * beta_i(t_in)))
 SLOPE = -K_i / R * (beta_i(t_1) - E_i * beta_i(t_in) + E_i * le_t(t_in))
 """Of this stress over the elements that have entered."""
 _leaves = stress_i(te_t(t) - Y_t, t) * (te_t(t).diff(t) - v_t)
@@ -83,7 +81,8 @@ def _stress(proof: Proof) -> None:
     fades = K_i * sp.exp(-(t_1 - t) / tau_i)
     over = (t, t_in, t_1)
     whole, primitive = sp.Integral(fades * RATE, over), fades * (alpha_i(t) - xi / R * beta_i(t))
-    proof.integral(whole, fades * RATE, over, primitive, "stress $s_i$ of the arm", value=STRESS)
+    proof.integral(whole, fades * RATE, over, "stress $s_i$ of the arm", value=STRESS,
+                   antiderivative=primitive)  # fmt: skip
 
 
 @result("F23", uses=("F23-stress",))
@@ -105,8 +104,7 @@ def _moments(proof: Proof) -> None:
         proof.equal(name.diff(t), MOMENTS[name], "elements leave at the trailing edge")
     for n, name in enumerate(I_n):
         value = (te_t(t) ** (n + 1) - le_t(t) ** (n + 1)) / (n + 1)
-        proof.integral(name, (xi + Y_t) ** n, over, (xi + Y_t) ** (n + 1) / (n + 1), "an integral of a power",
-                       value=value)  # fmt: skip
+        proof.integral(name, (xi + Y_t) ** n, over, "an integral of a power", value=value)
     proof.done(T_i.diff(t), MOMENTS[T_i])
 
 
@@ -123,9 +121,7 @@ def _edge(proof: Proof) -> None:
     slide = Y_t.subs(entered)
     for name, law in ((Y_t.func, v_t), *ACCUMULATE.items()):
         proof.define(name(t_in).diff(t_in), law.subs(entered), "F23-stress")
-    proof.define(
-        delta_t.subs(entered), le_t(t_in) ** 2 / (2 * R), "the ground ahead is undisturbed"
-    )
+    proof.define(delta_t.subs(entered), le_t(t_in) ** 2 / (2 * R), "ground ahead is undisturbed")
     proof.define(xi, le_t(t_in) - slide, "the element that enters then")
     proof.define(E_i, sp.exp(-(t_1 - t_in) / tau_i), "F23-stress")
     slope = SLOPE * sp.Derivative(xi, t_in)
@@ -144,11 +140,8 @@ def _damped(proof: Proof) -> None:
     rate, over = C * (delta_t.diff(t) - v_t * x / R), (x, le_t(t), te_t(t))
     for n, what in ((0, "of $F_z$"), (1, "of $-R F_x$")):
         value = C * (delta_t.diff(t) * I_n[n] - v_t * I_n[n + 1] / R)
-        primitive = C * (
-            delta_t.diff(t) * x ** (n + 1) / (n + 1) - v_t * x ** (n + 2) / ((n + 2) * R)
-        )
         whole = sp.Integral(x**n * rate, over)
-        proof.integral(whole, whole.function, over, primitive, f"its part {what}", value=value)
+        proof.integral(whole, whole.function, over, f"its part {what}", value=value)
 
 
 class Determinant(Computed):
@@ -189,7 +182,7 @@ def _surface(proof: Proof) -> None:
         + spring_1 * rho * (rho - r_2)
         + spring_2 * rho * (rho - r_1)
     ) / glassy  # fmt: skip
-    proof.equal(law, form, r"it vanishes where $s_i \sim e^{-\varrho t}$")
+    proof.equal(law, form, r"it vanishes where $s_i \sim e^{-\tilde \varrho t}$")
     for place, sign, where in ((0, ">", "at 0"), (r_1, "<", "at the slower rate"),
                                (r_2, ">", "at the faster one: two roots in between")):  # fmt: skip
         proof.holds(form.subs(rho, place), sign, 0, where)

@@ -103,8 +103,7 @@ def _forces(proof: Proof) -> None:
 
 def _forces_of_start(proof: Proof) -> None:
     """Let the forces be those of the edges after a start from rest."""
-    proof.recall("F11-start", rho, right, left)
-    proof.recall("F11", f_normal, f_friction)
+    proof.recall("F11-start", rho, right, left, "F11", f_normal, f_friction)
 
 
 def _partial(force: str, variable: str) -> str:
@@ -130,8 +129,7 @@ def _quartic(proof: Proof) -> None:
     determinant = own[0] * other[1] - own[1] * other[0]
     proof.equal(determinant, quartic, "the determinant of the two motions below")
     _forces_of_start(proof)
-    proof.recall("scaled-form", d_ss)
-    proof.recall("F22-scaled", along_ss)
+    proof.recall("scaled-form", d_ss, "F22-scaled", along_ss)
     edge = per_rate - a
     proof.equal(at_motion(right, {d: a**2, d_s: 0}), edge, "the trailing edge in steady sliding")
     proof.where(sp.Gt(place, 0), "the change is small")
@@ -159,8 +157,7 @@ def _energy(proof: Proof) -> None:
     """
     place = sp.Function(r"\check x", real=True)(time)
     moves = sp.Derivative(place, time)
-    proof.recall("F22-scaled")
-    proof.recall("F22-scaled", lam)
+    proof.recall("F22-scaled", "F22-scaled", lam)
     for name, value in ((along, place), (along_s, moves)):
         proof.define(name, value, "in time")
     proof.define(sp.Derivative(place, (time, 2)), along_ss, "and its rate")

@@ -13,32 +13,10 @@ from .master_curve import PEAK, state_at
 from .model import K, M, R, V, g, tau
 from .spring_drive import LONGITUDINAL, QUARTIC, SECTION, damper, kappa_x, quartic
 from .spring_stability import (
-    DEAD_WEIGHT_RISE,
-    HURWITZ,
-    PEELED,
-    REST,
-    RISE,
-    SQUARE,
-    B_x,
-    B_z,
-    Omega_minus,
-    S_c,
-    S_x,
-    S_z,
-    T_x,
-    T_z,
-    bias,
-    coupling,
-    damper_share,
-    hurwitz,
-    onset_sum,
-    own_rise,
-    rise,
-    soft,
-    spread,
-    support_rate,
-    uncoupled,
-)
+    DEAD_WEIGHT_RISE, HURWITZ, PEELED, REST, RISE, SQUARE, B_x, B_z, Omega_minus, S_c, S_x, S_z,
+    T_x, T_z, bias, coupling, damper_share, hurwitz, onset_sum, own_rise, rise, soft, spread,
+    support_rate, uncoupled,
+)  # fmt: skip
 from .steady import q
 from .theorems import LOAD, UNIT, kappa, lam
 from .transient_edges import left, rho, right
@@ -81,20 +59,15 @@ def _flutter(proof: Proof) -> None:
     proof.define(onset_sum, bias - 2 * T_z * rise, "the linear coefficient of the quadratic")
     proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
                 r"$\check n > 0$ at the lower and below: no positive $\Omega$ either")  # fmt: skip
-    proof.equal(
-        sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above"
-    )
+    proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "two from the upper on")
     proof.where(sp.Gt(SQUARE, 0), "a frequency is real")
     proof.define(spread, sp.sqrt(SQUARE), "as in F22-critical")
     proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
     proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
     proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
     proof.define(lag_minus, S_z - T_z * Omega_minus, "as in F22-falling")
-    proof.equal(
-        lag_minus,
-        (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z),
-        "a sum of positive terms",
-    )
+    proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z),
+                "a sum of positive terms")  # fmt: skip
     proof.done(SQUARE, form)
 
 
@@ -111,15 +84,12 @@ def _soft(proof: Proof) -> None:
     value = -half * lam * a * q / (3 * per_depth / 4 + kappa)
     proof.define(sinks, value, "how far it sinks for that")
     slope = a**3 * (1 + q**3) + half * lam * a * (1 + q) * sinks
-    proof.recall("F11-start", rho, right, left)
-    proof.recall("F11", f_normal, f_friction)
+    proof.recall("F11-start", rho, right, left, "F11", f_normal, f_friction)
     by = {
         (force, variable): at_motion(sp.Derivative(force, variable), {d: a**2, d_s: 0})
         for force in (f_normal, f_friction) for variable in (d, lam)
     }  # fmt: skip
-    proof.equal(
-        by[f_normal, lam] + (by[f_normal, d] + kappa) * sinks, sp.S.Zero, "the load stays the same"
-    )
+    proof.equal(by[f_normal, lam] + (by[f_normal, d] + kappa) * sinks, sp.S.Zero, "the load stays")
     proof.equal(by[f_friction, lam] + by[f_friction, d] * sinks, slope, "what friction gains")
     proof.define(B_z, 3 * a * (1 + q) / 4, "damping of the contact across")
     proof.define(B_x, a**3 * (1 + q) * PEELED, "and along")
@@ -149,8 +119,7 @@ def _limits(proof: Proof) -> None:
     the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where friction
     falls, and none where it rises.
     """
-    proof.recall("F22", (quartic, QUARTIC))
-    proof.recall("F12-linear", quadratic)
+    proof.recall("F22", (quartic, QUARTIC), "F12-linear", quadratic)
     for stiffness, other, reason in (
         (kappa_x, quadratic, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
         (
@@ -207,9 +176,9 @@ def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
     known[coupling] = (known[S_z] - known[rise]) / known[S_c]
     known[uncoupled] = 1 - known[coupling]
     known[bias] = (uncoupled - T_z * coupling * S_c).subs(known)
-    shown = [f"{float(each):.4g}" for each in (state, known[rise])]
+    shown = [f"${float(each):.4g}$" for each in (state, known[rise])]
     if known[rise] > 0:
-        return *shown, "-", "-"
+        return *shown, "--", "--"
     known[onset_sum] = (bias - 2 * T_z * rise).subs(known)
     square = (sp.sqrt(SQUARE) - onset_sum).subs(known) / (2 * known[T_z] ** 2)
     stiffness = ((T_z + T_x) * square - rise).subs(known) * damping / along

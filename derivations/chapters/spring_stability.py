@@ -54,13 +54,7 @@ RISE = (own_rise + damper_share * (1 + q) / (2 * q)) / (1 + damper_share) + supp
 ACROSS, ALONG = (T * sigma**2 + sigma + S for T, S in ((T_z, S_z), (T_x, S_x)))
 SCALED = ACROSS * ALONG - coupling * sigma * (sigma + S_c)
 """The quartic over both dampings."""
-COEFFICIENTS = (
-    S_z * S_x,
-    S_x + rise,
-    T_z * S_x + uncoupled + S_z * T_x,
-    T_z + T_x,
-    T_z * T_x,
-)
+COEFFICIENTS = (S_z * S_x, S_x + rise, T_z * S_x + uncoupled + S_z * T_x, T_z + T_x, T_z * T_x)
 """Of the scaled quartic, from the constant one on."""
 _a0, _a1, _a2, _a3, _a4 = COEFFICIENTS
 HURWITZ = _a1 * (_a2 * _a3 - _a1 * _a4) - _a3**2 * _a0
@@ -99,16 +93,16 @@ def _quadratics(proof: Proof) -> None:
     ):
         proof.equal(c_1 * total, parts, what)
         proof.holds(parts, ">", 0, "so the first has the sign of the sum")
-    proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0,
-                      b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))  # fmt: skip
+    proof.done(a_1 * a_2 * a_3 - a_1**2 - a_3**2 * a_0, b_1 * b_2 * ((c_1 - c_2) ** 2 + a_1 * a_3))
 
 
 @result("F22-numbers")
 def _numbers(proof: Proof) -> None:
     r"""The numbers of the rates.
 
-    With both motions divided by their dampings: $\vartheta$ are times of inertia, $\varrho$ rates of
-    stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how strongly the motions are coupled.
+    With both motions divided by their dampings: $\vartheta_z$ and $\vartheta_x$ are times of inertia,
+    $\varrho_z$ and $\varrho_x$ rates of stiffness, in units of $\tau$ and $1/\tau$, and $\check g$ is how
+    strongly the motions are coupled.
     $\check h$ and $\check e$ decide about stability; the forms are without differences of nearly equal
     numbers.
     """
@@ -163,9 +157,7 @@ def _routh(proof: Proof) -> None:
     proof.define(bias, uncoupled - T_z * coupling * S_c, "a shorthand")
     square = (2 * T_z**2 * S_x + (T_z + T_x) * bias - 2 * T_z * T_x * rise) ** 2
     form = (square - (T_z + T_x) ** 2 * SQUARE) / (4 * T_z**2)
-    proof.equal(
-        hurwitz, form, r"quadratic in $\varrho_x$; its discriminant does not hold $\vartheta_x$"
-    )
+    proof.equal(hurwitz, form, r"quadratic in $\varrho_x$; its discriminant has no $\vartheta_x$")
     proof.define(soft, sp.Subs(hurwitz, S_x, 0), "without a spring")
     proof.equal(soft, rise * sp.Subs(REST, S_x, 0), "it has the sign of the other factor")
     proof.recall("F22-numbers", quartic)
@@ -226,8 +218,7 @@ def _critical(proof: Proof) -> None:
     proof.define(hurwitz, HURWITZ)
     factors = T_z**2 * (S_x - high) * (S_x - low)
     proof.equal(hurwitz, factors, "it vanishes at the stiffnesses of both frequencies")
-    proof.recall("F22-onset", S_x)
-    proof.recall("F22-onset", (REAL_PART, -ONSET))
+    proof.recall("F22-onset", S_x, "F22-onset", (REAL_PART, -ONSET))
     zeros = -(T_z**2) * (Omega - Omega_plus) * (Omega - Omega_minus)
     proof.equal(REAL_PART, zeros, "as does the real part of the quartic of F22-onset")
     proof.done(hurwitz, factors)
@@ -246,11 +237,8 @@ def _forms(proof: Proof) -> None:
     proof.where(sp.Gt(onset_sum, 0), "the case of little inertia")
     proof.define(Omega, -2 * S_z * rise / (spread + onset_sum), "of positive terms")
     proof.equal(Omega, (spread - onset_sum) / (2 * T_z**2), r"this is $\Omega_{+}$")
-    proof.define(
-        lag_plus,
-        2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread),
-        "likewise positive",
-    )
+    proof.define(lag_plus, 2 * uncoupled * S_z / (uncoupled + T_z * coupling * S_c + spread),
+                 "likewise positive")  # fmt: skip
     proof.equal(S_z - T_z * Omega, lag_plus, "it is this difference")
     proof.equal(lag_plus * (coupling * S_c - lag_plus), uncoupled * Omega, "positive")
     proof.holds(uncoupled * Omega / lag_plus, ">", 0,

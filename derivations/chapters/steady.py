@@ -6,30 +6,9 @@ from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbol, symbols
 from ..engine.step import Proof
 from .model import (
-    C,
-    F_x,
-    F_z,
-    K,
-    N,
-    R,
-    V,
-    c,
-    compression_rate,
-    delta,
-    delta_t,
-    depth_rate,
-    f_x,
-    f_z,
-    h,
-    k,
-    slope,
-    t,
-    t_0,
-    tau,
-    u_i,
-    x,
-    x_i,
-)
+    C, F_x, F_z, K, N, R, V, c, compression_rate, delta, delta_t, depth_rate, f_x, f_z, h, k, slope,
+    t, t_0, tau, u_i, x, x_i,
+)  # fmt: skip
 
 a, l_r, x_le, x_te, W, F, mu, l, q, Lambda = symbols(r"""
     a       -                m        half length of the stationary contact, $\sqrt{2 R \delta}$
@@ -80,11 +59,7 @@ def _half_length(proof: Proof) -> None:
     """Half length of the stationary contact."""
     proof.recall("eq3")
     reason = "at the edge of a contact at rest $h(a) = \\delta$"
-    proof.root(
-        *(h(x) - delta, x, half_length, reason),
-        over=(x, 0, sp.oo),
-        name=a,
-    )
+    proof.root(h(x) - delta, x, half_length, reason, over=(x, 0, sp.oo), name=a)
     proof.equal(delta, a**2 / (2 * R), "solved for the depth")
     proof.done(a, half_length)
 
@@ -108,8 +83,7 @@ def _retardation_length(proof: Proof) -> None:
 
 def _force_per_area(proof: Proof, labels: tuple[str, ...], depth: sp.Expr) -> None:
     """Define the pressure, and show that it is N times the force of the element at each place."""
-    for label in ("eq3", "eq12", *labels):
-        proof.recall(label)
+    proof.recall("eq3", "eq12", *labels)
     proof.recall("eq3", at={x: x_i})
     proof.recall("eq22", k, c)
     whole = K * (depth - h(x)) + C * (depth.diff(t) - V * h(x).diff(x))
@@ -126,8 +100,7 @@ def _pressure(proof: Proof) -> None:
     indenters.
     """
     _force_per_area(proof, ("eq4", "eq5"), delta)
-    for label in ("eq22", "eq29"):
-        proof.recall(label)
+    proof.recall("eq22", "eq29")
     proof.equal(p, pressure, "$C V = K l_{\\mathrm{r}}$")
 
 
@@ -164,11 +137,7 @@ def _leading_edge(proof: Proof) -> None:
 
     The leading edge is where the undisturbed surface meets the indenter.
     """
-    proof.recall("eq28")
-    proof.recall("eq3")
-    proof.recall("eq22")
-    proof.recall("eq29")
-    proof.recall("pressure")
+    proof.recall("eq28", "eq3", "eq22", "eq29", "pressure")
     proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
     proof.equal(sp.Subs(p, x, -a), C * V * a / R, "positive, so the contact begins")
     s = sp.Symbol("s", positive=True)
@@ -183,8 +152,7 @@ def _trailing_edge(proof: Proof) -> None:
 
     The trailing edge is where the pressure vanishes; it is the only such point of the contact.
     """
-    proof.recall("eq28")
-    proof.recall("pressure")
+    proof.recall("eq28", "pressure")
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$")
     proof.equal(sp.Subs(p, x, -a), K * l_r * a / R, "positive at the leading edge")
     proof.equal(sp.Subs(p, x, a), -K * l_r * a / R, "negative at $x = a$")
@@ -199,9 +167,7 @@ def _scaled(proof: Proof) -> None:
     With $l = l_{\mathrm{r}}/a$ and $q = x_{\mathrm{TE}}/a$ all of steady sliding is rational in $q$, which
     runs from 1 at rest to 0 at high velocity.
     """
-    proof.recall("eq27")
-    proof.recall("eq22")
-    proof.recall("eq29")
+    proof.recall("eq27", "eq22", "eq29")
     proof.define(l, l_r / a, "in half lengths")
     proof.define(q, x_te / a, "in half lengths")
     proof.equal(x_te, a * q, "by definition")
@@ -251,7 +217,7 @@ def _moving_leading_edge(proof: Proof) -> None:
     proof.root(delta_t - h(x), x, -a, reason, over=(x, -sp.oo, 0), name=x_le)
     edge_rate = sp.Derivative(x_le, t)
     proof.equal(
-        C * (a * V / R + depth_rate), C * a / R * (V - edge_rate), "Eq. (7): the pressure there"
+        C * (a * V / R + depth_rate), C * a / R * (V - edge_rate), "pressure there, by Eq. (7)"
     )
     proof.done(x_le, -a)
 
@@ -267,20 +233,14 @@ def _peeling_edges(proof: Proof) -> None:
     """
     half = K / (2 * R)
     square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
-    for label in ("eq3", "eq22", "eq29"):
-        proof.recall(label)
-    proof.recall("pressure-moving", p)
+    proof.recall("eq3", "eq22", "eq29", "pressure-moving", p)
     proof.define(a, _half, "now depends on time")
     proof.equal(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$")
     proof.where(sp.Gt(square, 0), "else no element can be pressed")
-    proof.root(
-        *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
-        over=(x, -sp.oo, -l_r), name=_x_minus,
-    )  # fmt: skip
-    proof.root(
-        *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
-        name=_x_plus,
-    )  # fmt: skip
+    proof.root(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold",
+               over=(x, -sp.oo, -l_r), name=_x_minus)  # fmt: skip
+    proof.root(p, x, TRAILING, "the trailing edge while it peels", over=(x, -l_r, sp.oo),
+               name=_x_plus)  # fmt: skip
     proof.equal(p, half * (_x_plus - x) * (x - _x_minus), "positive exactly between its zeros")
     proof.done(_x_plus, TRAILING)
 
@@ -302,8 +262,7 @@ def _steady_compression(proof: Proof) -> None:
 @result("eq36")
 def _steady_rate(proof: Proof) -> None:
     """Compression rate in steady sliding."""
-    proof.recall("eq7")
-    proof.recall("eq34")
+    proof.recall("eq7", "eq34")
     proof.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)")
 
 
@@ -322,10 +281,7 @@ _limits(
 
 def _recall_contact(proof: Proof) -> None:
     """Let edges and pressure be rational in q."""
-    proof.recall("eq3")
-    proof.recall("eq28")
-    proof.recall("eq26")
-    proof.recall("pressure")
+    proof.recall("eq3", "eq28", "eq26", "pressure")
     _recall_scaled(proof)
 
 
@@ -337,9 +293,9 @@ def _recall_scaled(proof: Proof) -> None:
 def _load(proof: Proof) -> None:
     """Exact load."""
     _recall_contact(proof)
-    primitive = K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R))
     proof.recall("dense-row", F_z)
-    proof.integral(F_z, p, CONTACT, primitive, "the integral of the pressure", value=load)
+    proof.integral(F_z, p, CONTACT, "the integral of the pressure", value=load,
+                   antiderivative=K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R)))  # fmt: skip
     proof.define(W, F_z, "in steady sliding")
     proof.equal(W, load, "the load")
 
@@ -348,10 +304,9 @@ def _load(proof: Proof) -> None:
 def _friction(proof: Proof) -> None:
     """Exact friction force."""
     _recall_contact(proof)
-    primitive = -K / R * (delta * x**2 / 2 - x**4 / (8 * R) - l_r * x**3 / (3 * R))
     proof.recall("dense-row", F_x)
     reason = "the integral along the foundation"
-    proof.integral(F_x, -h(x).diff(x) * p, CONTACT, primitive, reason, value=friction)
+    proof.integral(F_x, -h(x).diff(x) * p, CONTACT, reason, value=friction)
     proof.define(F, F_x, "in steady sliding")
     proof.equal(F, friction, "the friction force")
 
@@ -359,18 +314,14 @@ def _friction(proof: Proof) -> None:
 @result("coefficient")
 def _exact_coefficient(proof: Proof) -> None:
     """Exact friction coefficient."""
-    proof.recall("load")
-    proof.recall("friction")
-    proof.recall("eq37")
+    proof.recall("load", "friction", "eq37")
     proof.equal(mu, friction_coefficient, "common factors cancel")
 
 
 @result("drive")
 def _dead_weight(proof: Proof) -> None:
     """Drive number of the dead-weight indenter."""
-    for label in ("eq28", "eq22", "load"):
-        proof.recall(label)
-    proof.recall("scaling", V, l_r, l)
+    proof.recall("eq28", "eq22", "load", "scaling", V, l_r, l)
     drive = V * tau * (K / (R * W)) ** sp.Rational(1, 3)
     proof.define(Lambda, drive, "a velocity that depth does not enter")
     proof.equal(Lambda**3, drive_cubed, "$\\delta$ cancels: one number describes the state")

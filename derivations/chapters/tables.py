@@ -78,8 +78,7 @@ def _standard_values(proof: Proof) -> None:
     The values of the paper and what follows from them, computed exactly and then rounded to six digits; $g =
     9.80665$ m/s$^2$, and $a_0$ and $\delta_0$ are those of the contact at rest.
     """
-    proof.recall("load")
-    proof.recall("eq28")
+    proof.recall("load", "eq28")
     proof.define(q, sp.S.One, "at rest the contact is symmetric")
     proof.equal(W, 4 * _third * K * a * delta, "the load at rest")
     reason = r"this load is the weight, $\frac{4}{3} K a_0 \delta_0 = M g$"

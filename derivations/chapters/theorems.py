@@ -68,18 +68,14 @@ def _rational(proof: Proof) -> None:
     For a parabola in steady sliding at $V > 0$, load, friction force and friction coefficient are rational
     functions of $q = x_{\mathrm{TE}}/a$.
     """
-    proof.recall("scaling", l_r)
-    proof.recall("eq28", delta)
-    proof.recall("scaling")
+    proof.recall("scaling", l_r, "eq28", delta, "scaling")
     proof.sign(sp.Derivative(NUMBER, q), "<", 0, UNIT, "each $l > 0$ belongs to one $q$")
     proof.recall("pressure")
     positive = (x, 0, sp.oo)
     proof.root(p, x, q * a, "the pressure vanishes at the trailing edge", over=positive)
     factored = K * delta * (q - x / a) * (1 + q * x / a) / q
     proof.equal(p, factored, "so that it is positive between the edges")
-    proof.recall("load")
-    proof.recall("friction")
-    proof.recall("eq37")
+    proof.recall("load", "friction", "eq37")
     for scaled, whole, unit, form, name in (
         (w, W, K * delta * a, LOAD, "load"),
         (phi, F, K * delta * a**2 / R, FRICTION_FORCE, "friction force"),
@@ -106,8 +102,7 @@ def _cancellation(proof: Proof) -> None:
     proof.leading_order(q**-2, 4 * l**2, q, 0, "which grows without bound", eps=1 / l)
     proof.equal(q, 1 / (l + root), "the same number without a subtraction")
     proof.equal((1 - q) * (1 + q), 2 * q * l, "which replaces the difference $1 - q$")
-    proof.recall("F1", w)
-    proof.recall("F1", phi)
+    proof.recall("F1", w, "F1", phi)
     proof.equal(phi, STABLE_FRICTION_FORCE, "all terms positive")
     proof.recall("F1")
     proof.equal(m, STABLE_FRICTION_COEFFICIENT, "all terms positive")
@@ -125,17 +120,11 @@ def _peak_pressure(proof: Proof) -> None:
     """
     form = 2 * l + (1 - n) ** 2
     proof.recall("F16", (P, PROFILE))
-    proof.greatest(
-        *(1 + l**2, P, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$"),
-        surplus=(xi + l) ** 2,
-    )  # fmt: skip
-    proof.greatest(
-        *(2 * l, P, (xi, -1), "at the leading edge, else"),
-        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1),
-    )  # fmt: skip
-    proof.define(
-        n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
-    )
+    proof.greatest(1 + l**2, P, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$",
+                   surplus=(xi + l) ** 2)  # fmt: skip
+    proof.greatest(2 * l, P, (xi, -1), "at the leading edge, else",
+                   surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi >= -1, l > 1))  # fmt: skip
+    proof.define(n, sp.Min(1, l), "place of the peak ahead of the lowest line, in half lengths")
     proof.define(P_max, form, "its height in one form")
     proof.equal(form, 1 + l**2, "inside the contact", cases=(l < 1,))
     proof.equal(form, 2 * l, "at the leading edge", cases=(l > 1,))
@@ -179,9 +168,7 @@ def _balance(proof: Proof) -> None:
     proof.crossing(SCALED_LOAD + kappa * (s**2 - 1) - 1, (s, 0, sp.oo), "the depth is unique",
                    slope=3 * s * (s + r) / 2 + 2 * kappa * s)  # fmt: skip
     proof.define(lam, s * l, r"$l = V \tau/a$")
-    proof.recall("scaling")
-    proof.recall("scaled-load")
-    proof.recall("scaled-load", f_s)
+    proof.recall("scaling", "scaled-load", "scaled-load", f_s)
     proof.equal(logarithmic, 6 / A, "the dependence of the load on the depth")
     proof.sign(logarithmic, ">", 2, UNIT, "the damper alone")
     proof.sign(logarithmic, "<", 3, UNIT, "the spring alone")

@@ -18,7 +18,7 @@ from .theorems import kappa, lam
 from .transient_edges import left, right
 from .transient_memory import OF_TIME, SECTION, compression, depth, material, time, travel
 from .transient_motion import CONTACT, f_friction
-from .transient_scaling import PRESSURE, W_0, P, d, d_s, d_ss, eps, f_normal, xi
+from .transient_scaling import W_0, P, d, d_s, d_ss, eps, f_normal, xi
 
 letter("U", "integral of the compression over all elements", "m²")
 letter(r"\bar U", r"scaled integral of the compression, $U/(a_0 \delta_0)$")
@@ -120,11 +120,9 @@ def _momentum(proof: Proof) -> None:
     proof.define(d, depth)
     proof.recall("F14-force")
     _obey(proof)
-    proof.equal(
-        sp.Derivative(eps * _speed + _share * total, time),
-        1 - kappa * (depth - 1) - _share * total,
-        "integrated over time, the balance of impulse",
-    )
+    proof.equal(sp.Derivative(eps * _speed + _share * total, time),
+                1 - kappa * (depth - 1) - _share * total,
+                "integrated over time, the balance of impulse")  # fmt: skip
     proof.recall("scaled-pressure", W_0)
     proof.define(F_z, W_0 * f_normal)
     proof.define(C, K * tau, "Eq. (22)")
@@ -142,15 +140,10 @@ def _power(proof: Proof) -> None:
     there is no pressure, and no power.
     """
     density = _share * P * _rate
-    proof.recall("scaled-pressure")
-    proof.recall("F11")
-    proof.recall("F11", f_friction)
+    proof.recall("scaled-pressure", "F11", "F11", f_friction)
     proof.equal(P, _height + _rate, r"$u + u'$ in the contact")
     whole = sp.Integral(density, CONTACT)
-    proof.integral(
-        *(whole, density, CONTACT, sp.integrate(_share * sp.expand(PRESSURE * _rate), xi), _POWER),
-        value=d_s * f_normal + lam * f_friction,
-    )  # fmt: skip
+    proof.integral(whole, density, CONTACT, _POWER, value=d_s * f_normal + lam * f_friction)
 
 
 _POWER = "pressure times velocity"
@@ -174,8 +167,7 @@ def _energy(proof: Proof) -> None:
     spent = _share * _speed**2 * first - 2 * _share * drive * _speed * second + drive**2 * third
     stored = _under(proof, half * height**2, "stored under the indenter", kept)
     lost = _under(proof, _share * rate**2, "dissipated there", spent)
-    proof.recall("F11")
-    proof.recall("F11", f_friction)
+    proof.recall("F11", "F11", f_friction)
     energy, free = _free(time), established("F14-surface", _free(time).diff(time))
     given = _speed * f_normal + lam * f_friction - (free + 2 * energy)
     reason = "elements enter and leave at the edges"
@@ -183,9 +175,7 @@ def _energy(proof: Proof) -> None:
     proof.recall("F14-surface")
     _obey(proof)
     moving = eps * _speed**2 / 2 - depth + kappa * (depth - 1) ** 2 / 2
-    proof.equal(
-        *(sp.Derivative(moving, time), -_speed * f_normal, "kinetic energy, weight and spring"),
-    )  # fmt: skip
+    proof.equal(sp.Derivative(moving, time), -_speed * f_normal, "mass, weight and spring")
     balance = sp.Derivative(moving + energy, time) + sp.Derivative(stored, time) + lost + 2 * energy
     proof.equal(lam * f_friction, balance, "the sum of the three contributions")
 
@@ -194,6 +184,5 @@ def _under(proof: Proof, density: sp.Expr, reason: str, value: sp.Expr) -> sp.Ex
     """Prove what an integral over the contact is, and return it."""
     place = (xi, _left, _right)
     whole = sp.Integral(density, place)
-    primitive = sp.integrate(sp.expand(density), xi)
-    proof.integral(whole, density, place, primitive, reason, value=value)
+    proof.integral(whole, density, place, reason, value=value)
     return whole

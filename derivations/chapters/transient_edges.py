@@ -14,22 +14,9 @@ from .model import u_i
 from .tables import delta_0
 from .theorems import lam
 from .transient_memory import (
-    CLEAR,
-    OF_TIME,
-    SECTION,
-    compression,
-    depth,
-    earlier,
-    eta,
-    indenter,
-    margin_of,
-    material,
-    pushed_by,
-    sigma,
-    time,
-    travel,
-    zeta,
-)
+    CLEAR, OF_TIME, SECTION, compression, depth, earlier, eta, indenter, margin_of, material,
+    pushed_by, sigma, time, travel, zeta,
+)  # fmt: skip
 from .transient_scaling import PRESSURE, P, d, d_s, xi
 
 start, left, right, b, rho, drift, lift, c = symbols(r"""
@@ -161,9 +148,7 @@ def _signs(proof: Proof) -> None:
     proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
     proof.recall("F10-touch")
     proof.define(xi, E * eta + _ahead, "with $k > 0$")
-    proof.equivalent(
-        P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
-    )
+    proof.equivalent(P, speed, sp.S.Zero, r"the same as $\hat p \ge 0$ at an edge that touches")
 
 
 @result("F10-instant")
@@ -177,11 +162,10 @@ def _at_once(proof: Proof) -> None:
     whole = (zeta, start, time)
     inner = depth.subs(time, zeta)
     growth = sp.exp(zeta) * (inner + sp.Derivative(inner, zeta))
-    proof.integral(
-        *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
-        r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
-        value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
-    )
+    proof.integral(sp.Integral(growth, whole), growth, whole,
+                   r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
+                   value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
+                   antiderivative=sp.exp(zeta) * inner)  # fmt: skip
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
     proof.define(drift, _moved / (1 - E), "$m = Y(s) - Y(s_0)$")
     proof.recall("F10-touch", MEETS, at={sigma: start})
@@ -204,14 +188,11 @@ def _soon_and_late(proof: Proof) -> None:
     $E$ vanishes, and $m$ is what the way has been.
     """
     past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
-    proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
-    proof.equal(
-        (d + d_s * _h - (1 - past) * d) / past, d + d_s * factor, r"$\bar d$ soon after the jump"
-    )
-    proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
-    proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
-    proof.recall("F10-instant")
-    proof.recall("F10-peel", rho)
+    proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$")
+    proof.equal((d + d_s * _h - (1 - past) * d) / past, d + d_s * factor, r"$\bar d$ just after it")
+    proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it")
+    proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it")
+    proof.recall("F10-instant", "F10-peel", rho)
     means = E, lift, drift
     for ends, edge, words in (
         ((1, d + d_s, lam), rho - lam, "soon: it peels, as in F10-peel"),
@@ -259,22 +240,18 @@ def _turning(proof: Proof) -> None:
     peel = c * zeta**2 / 2 * (1 + bend * zeta)
     lost = 2 * rho * (1 + drop * zeta) * (peel - peel.subs(zeta, sigma))
     since = (zeta, sigma, _h)
-    primitive = sp.integrate(sp.expand(lost), zeta)
     width = _h - sigma
     value = rho * c * width**2 * (_h + 2 * sigma) / 3
     value += rho * c * bend * width**2 * (_h**2 + 2 * _h * sigma + 3 * sigma**2) / 4
     value += rho * c * drop * (_h**2 - sigma**2) ** 2 / 4
     powers = 2 * _h**3 + 4 * _h**2 * sigma + 6 * _h * sigma**2 + 3 * sigma**3
     value += rho * c * bend * drop * width**2 * powers / 10
-    proof.integral(
-        sp.Integral(lost, since), lost, since, primitive, "pressure since then", value=value
-    )
+    proof.integral(sp.Integral(lost, since), lost, since, "pressure since then", value=value)
     first = rho * c * _h**3 * (1 - y) ** 2 * (1 + 2 * y) / 3
-    proof.leading_order(value.subs(sigma, y * _h), first, _h, 0, r"with $\sigma = y h$", eps=_h,
-                        short=True)  # fmt: skip
+    proof.leading_order(value.subs(sigma, y * _h), first, _h, 0, r"with $\sigma = y h$", short=True)
     proof.root(first, y, -sp.S.Half, "left as long before the turn as half the time since",
                over=(y, -sp.oo, 1))  # fmt: skip
     simple = sp.Subs(sp.Derivative(first, y), y, -sp.S.Half)
     proof.equal(simple, 3 * rho * c * _h**3 / 2, "not zero: a simple root")
     edge, quarter = peel.subs(zeta, -_h / 2 + shift * _h**2), c * _h**2 / 8
-    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True)
+    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", short=True)

@@ -84,8 +84,7 @@ def _element(proof: Proof) -> None:
     In the units of (scaled-pressure), with $s = t/\tau$; the element is in contact or free.
     """
     u = compression
-    proof.recall("eq12")
-    proof.recall("eq22", k, c, tau)
+    proof.recall("eq12", "eq22", k, c, tau)
     force, rate = N * f_z / (K * delta_0), sp.Derivative(u(time), time)
     proof.define(u_i, delta_0 * u(time), "compression in units of the static depth")
     proof.define(compression_rate, delta_0 * rate / tau, "its rate, with $s = t/\\tau$")
@@ -107,10 +106,13 @@ def _memory(proof: Proof) -> None:
     kept = sp.exp(time) * u(time)
     proof.recall("scaled-element", reason=r"$\hat p = u + u'$, never negative", at={time: zeta})
     proof.integral(
-        *(pushed, sp.exp(zeta) * PUSH(zeta), whole, sp.exp(zeta) * u(zeta)),
+        pushed,
+        sp.exp(zeta) * PUSH(zeta),
+        whole,
         r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: so $e^{s} u$ never decreases",
         value=kept - sp.exp(earlier) * u(earlier),
-    )  # fmt: skip
+        antiderivative=sp.exp(zeta) * u(zeta),
+    )
     proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
     proof.define(g(time), u(time) - _clear(time), "and now")
     gained = sp.exp(time) * g(time) - sp.exp(earlier) * g(earlier)
@@ -124,10 +126,8 @@ def _memory(proof: Proof) -> None:
     since = kept - sp.exp(sigma) * u(sigma)
     proof.root(*(since, u(time), value, r"the free element since $\sigma$"))
     proof.where(sp.Gt(time, earlier), "any earlier instant")
-    proof.greatest(
-        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
-        surplus=pushed + sp.exp(earlier) * _clear(earlier),
-    )  # fmt: skip
+    proof.greatest(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND,
+                   surplus=pushed + sp.exp(earlier) * _clear(earlier))  # fmt: skip
     proof.done(u(time), value)
 
 
@@ -160,9 +160,7 @@ def _update(proof: Proof) -> None:
     after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
     impulse = sp.Symbol("J", nonnegative=True)
     larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
-    proof.define(
-        g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
-    )
+    proof.define(g(time + _h), after - clearance, r"never below the surface, $c \ge 0$")
     step = (zeta, time, time + _h)
     pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), step)
     proof.holds(pushed, ">=", 0, "over one step")
@@ -170,9 +168,7 @@ def _update(proof: Proof) -> None:
     proof.define(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse, r"with $J \ge 0$")
     proof.equal(pushed, impulse, "which this is")
     either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
-    proof.equal(
-        *(after, larger, "free until then, or in contact at the end"), cases=either,
-    )  # fmt: skip
+    proof.equal(*(after, larger, "free until then, or in contact at the end"), cases=either)
 
 
 _RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
@@ -201,11 +197,9 @@ def _remainder(proof: Proof) -> None:
     proof.define(sp.Derivative(slope(y), y), unused(y) - most, "which falls by at most this bound")
     whole, spare = (y, 0, b), sp.Integral(y * unused(y), (y, 0, b))
     primitive = most * y**2 / 2 + y * slope(y) - f(y)
-    proof.integral(spare, y * unused(y), whole, primitive, "by parts")
+    proof.integral(spare, y * unused(y), whole, "by parts", antiderivative=primitive)
     proof.define(slope(b), sp.S.Zero, "the largest value is at $b_8$")
-    proof.equal(
-        missed, most * b**2 / 2 - spare, "the error of the value at the nearer end of the step"
-    )
+    proof.equal(missed, most * b**2 / 2 - spare, "error of the value at the nearer end of the step")
     proof.define(_h, 2 * (b + later), "the other end is at least as far")
     proof.equal(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare, "the rest")
     proof.holds(most * later * (2 * b + later) / 2 + spare, ">=", 0, "never negative")

@@ -19,14 +19,17 @@ a, f_friction = symbols(r"""
 CONTACT = (xi, left, right)
 _LOAD_SHARE, _FRICTION_SHARE = sp.Rational(3, 4), -sp.Rational(3, 2)
 
-NORMAL_FORCE = _LOAD_SHARE * (
-    (d + d_s) * (right - left) - (right**3 - left**3) / 3 - lam * (right**2 - left**2)
-)
-FRICTION_FORCE = _FRICTION_SHARE * (
-    (d + d_s) * (right**2 - left**2) / 2
-    - (right**4 - left**4) / 4
-    - 2 * lam * (right**3 - left**3) / 3
-)
+
+def _in_bracket(above: int, below: int, difference: sp.Expr) -> sp.Expr:
+    """Return a fraction of a difference, which SymPy would write as two terms."""
+    return sp.Mul(sp.Rational(above, below), difference, evaluate=False)
+
+
+_squares, _cubes, _fourths = (right**n - left**n for n in (2, 3, 4))
+NORMAL_FORCE = sp.Mul(
+    _LOAD_SHARE, (d + d_s) * (right - left) - lam * _squares - _in_bracket(1, 3, _cubes), evaluate=False
+)  # fmt: skip
+FRICTION_FORCE = lam * _cubes + _in_bracket(3, 8, _fourths) - (d + d_s) * _LOAD_SHARE * _squares
 PEELING_NORMAL_FORCE = b**2 * (3 * rho - b) / 4
 """Right edge at r = rho - lambda, left edge at r - b: no cancellation."""
 PEELING_FRICTION_FORCE = b**2 * (4 * right * (b - 3 * rho) + b * (8 * rho - 3 * b)) / 8
@@ -54,14 +57,10 @@ def _forces(proof: Proof) -> None:
     """
     friction = sp.expand(xi * PRESSURE)
     proof.recall("scaled-pressure")
-    proof.integral(
-        *(f_normal, _LOAD_SHARE * P, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
-        "all pressure is between the edges", value=NORMAL_FORCE,
-    )  # fmt: skip
-    proof.integral(
-        *(f_friction, _FRICTION_SHARE * friction, CONTACT, _FRICTION_SHARE * sp.integrate(friction, xi)),
-        r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE,
-    )  # fmt: skip
+    proof.integral(f_normal, _LOAD_SHARE * P, CONTACT, "all pressure is between the edges",
+                   value=NORMAL_FORCE)  # fmt: skip
+    proof.integral(f_friction, _FRICTION_SHARE * friction, CONTACT,
+                   r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE)  # fmt: skip
     proof.done(f_normal, NORMAL_FORCE)
 
 
@@ -101,8 +100,7 @@ def _edges(proof: Proof) -> None:
         slope = sp.Derivative(_touching, variable)
         proof.root(sp.Derivative(MEETS, variable), slope, value, "an edge that touches")
     proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
-    proof.recall("F10-peel", rho)
-    proof.recall("F10-peel")
+    proof.recall("F10-peel", rho, "F10-peel")
     for variable in (d, d_s):
         slope = sp.Derivative(right, variable)
         proof.equal(slope, 1 / (2 * rho), "an edge that peels")
@@ -117,7 +115,9 @@ def _derivatives(proof: Proof) -> None:
     touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the foundation to
     $\partial f_z/\partial d$.
     """
-    ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
+    ends = {
+        end: sp.Function(name, real=True)(d, d_s) for end, name in ((right, "r"), (left, "ell"))
+    }
     proof.recall("F11", f_normal, f_friction)
     for end, moves in ends.items():
         proof.define(end, moves, "an edge that moves")
@@ -130,8 +130,7 @@ def _derivatives(proof: Proof) -> None:
             )
             slope = share * inside + share * ahead - share * behind
             proof.equal(sp.Derivative(force, variable), slope, "moving ends")
-    proof.recall("F10-touch")
-    proof.recall("F11-edges")
+    proof.recall("F10-touch", "F11-edges")
     proof.define(xi, _touching)
     speed = sp.Derivative(edge_path, time)
     proof.equal(P * sp.Derivative(_touching, d), speed, _TOUCHES)

@@ -27,7 +27,7 @@ eps_critical, quadratic, f, change, per_depth, per_rate, sigma, drive_excess, be
     d_hat      \hat d            1  amplitude of the change of depth  real
     A          -                 1  stiffness of the contact, scaled
     B          -                 1  damping of the contact, scaled
-    sigma      -                 1  scaled rate of a small motion about steady sliding  real
+    sigma      -                 1  scaled rate of a small motion about steady sliding  real  from F12-linear
     -          \sigma_1          1  faster of two rates
     -          \sigma_2          1  slower of two rates
     -          T_1               s  shorter time constant
@@ -71,12 +71,8 @@ def _linearised(proof: Proof) -> None:
     rate = sp.diff(near, time)
     proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "growth of the force with the depth")
     proof.define(per_rate, sp.sqrt(a**2 + lam**2) - lam + a, "and with its rate")
-    proof.define(
-        quadratic, QUADRATIC, r"small changes as $e^{\sigma s}$ are possible where it vanishes"
-    )
-    proof.recall("F11-start", rho, right, left)
-    proof.recall("F11", f_normal)
-    proof.recall("scaled-form", d_ss)
+    proof.define(quadratic, QUADRATIC, r"changes as $e^{\sigma s}$ are possible where it vanishes")
+    proof.recall("F11-start", rho, right, left, "F11", f_normal, "scaled-form", d_ss)
     by_depth, by_rate = (
         at_motion(sp.Derivative(eps * d_ss, variable), {d: a**2, d_s: 0}) for variable in (d, d_s)
     )
@@ -129,8 +125,7 @@ def _rates(proof: Proof) -> None:
 def steady_sliding(proof: Proof) -> None:
     """Let A, B and lambda be those of steady sliding, by the half length and q."""
     proof.define(l, NUMBER)
-    proof.recall("F12-steady", lam)
-    proof.recall("F12-steady", *_IN_Q)
+    proof.recall("F12-steady", lam, "F12-steady", *_IN_Q)
 
 
 @result("F12-boundary", uses=("F1",))
@@ -171,8 +166,8 @@ def _time_constants(proof: Proof) -> None:
     proof.recall("F12", _first, _second)
     for name, rate in zip(_times, (_first, _second), strict=True):
         proof.define(name, -tau / rate, "how long each change takes to decay")
-    proof.leading_order(_times[0] / tau, fast, eps, 0, "inertia against damping", eps=eps)
-    proof.leading_order(_times[1] / tau, slow, eps, 0, "damping against stiffness", eps=eps)
+    proof.leading_order(_times[0] / tau, fast, eps, 0, "inertia against damping")
+    proof.leading_order(_times[1] / tau, slow, eps, 0, "damping against stiffness")
 
 
 @result("F12-table1", uses=("F12", "F12-boundary", "table1"))
@@ -236,12 +231,8 @@ def _manifold(proof: Proof) -> None:
     proof.define(a, sp.sqrt(d), "half of a contact at rest")
     proof.recall("scaled-form")
     balanced = 1 - kappa * (d - 1)
-    proof.root(
-        eps * d_ss,
-        f_normal,
-        balanced,
-        "without inertia the force is the weight less the spring force",
-    )
+    proof.root(eps * d_ss, f_normal, balanced,
+               "without inertia the force is the weight less the spring force")  # fmt: skip
     proof.define(f, f_normal, "this force")
     proof.recall("F11-peel")
     proof.equal(f, SLOW_FORCE, "which is a cubic in $r$")
@@ -260,13 +251,9 @@ def _one_root(proof: Proof) -> None:
     positive = (beta, 0, sp.oo)
     relation = beta**2 * (2 * beta + 3 * drive_excess) / 2
     proof.root(relation - 1, drive_excess, EXCESS, r"where $f_z = f$")
-    proof.sign(
-        sp.Derivative(EXCESS, beta), "<", 0, positive, r"each $n$ belongs to one $\beta$ at most"
-    )
-    proof.leading_order(EXCESS, 2 / (3 * beta**2), beta, 0, r"$n \to \infty$", eps=beta)
-    proof.leading_order(
-        EXCESS, -2 * beta / 3, beta, sp.oo, r"$n \to -\infty$: to exactly one", eps=1 / beta
-    )
+    proof.sign(sp.Derivative(EXCESS, beta), "<", 0, positive, r"each $n$ has one $\beta$ at most")
+    proof.leading_order(EXCESS, 2 / (3 * beta**2), beta, 0, r"$n \to \infty$")
+    proof.leading_order(EXCESS, -2 * beta / 3, beta, sp.oo, r"$n \to -\infty$: to exactly one")
     proof.recall("F13", (f, SLOW_FORCE))
     proof.where(right + a > 0, "there is a contact")
     proof.define(beta, (right + a) / unit, "the length of the contact in this unit")

@@ -7,23 +7,8 @@ from ..engine.nomenclature import function, symbol
 from ..engine.step import Proof
 from .groups import k_s
 from .model import (
-    C,
-    F_z,
-    K,
-    M,
-    R,
-    V,
-    compression_rate,
-    delta_t,
-    depth_rate,
-    g,
-    h,
-    slope,
-    t,
-    tau,
-    u_i,
-    x_i,
-)
+    C, F_z, K, M, R, V, compression_rate, delta_t, depth_rate, g, h, slope, t, tau, u_i, x_i,
+)  # fmt: skip
 from .power_law_weight import a_0
 from .tables import delta_0
 from .theorems import kappa, lam
@@ -36,14 +21,8 @@ d = symbol("d", r"scaled depth, $\delta/\delta_0$")
 d_s = symbol("d_s", latex="d'", real=True)
 d_ss = symbol("d_ss", latex="d''", real=True)
 eps = symbol("epsilon", r"inertia number, $M \delta_0/(W_0 \tau^{2})$", latex=r"\varepsilon")
-f_normal = symbol(
-    "f_normal",
-    "scaled normal force, $F_z/W_0$",
-    latex="f_z",
-    source="eq14",
-    several=True,
-    real=True,
-)
+f_normal = symbol("f_normal", "scaled normal force, $F_z/W_0$", latex="f_z", source="eq14",
+                  several=True, real=True)  # fmt: skip
 xi = symbol("xi", "scaled coordinate, $x/a_0$", latex=r"\xi", real=True)
 P = symbol("P", r"scaled pressure, $p/(K \delta_0)$", latex=r"\hat p", printed=r"\bar p", real=True)
 
@@ -84,18 +63,10 @@ def _scaled_pressure(proof: Proof) -> None:
     proof.define(here, K * u_i + C * compression_rate)
     proof.define(P, here / (K * delta_0))
     proof.equal(P, PRESSURE, "scaled pressure")
-    proof.equal(
-        *(
-            here * a_0 / W_0,
-            sp.Rational(3, 4) * P,
-            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
-        ),
-    )
-    proof.equal(
-        -slope * here * a_0 / (W_0 * delta_0 / a_0),
-        -sp.Rational(3, 2) * xi * P,
-        r"share of the friction force, in units of $W_0 \delta_0/a_0$",
-    )
+    proof.equal(here * a_0 / W_0, sp.Rational(3, 4) * P,
+                r"share of the load, for Eq. (14), with $dx = a_0 d\xi$")  # fmt: skip
+    proof.equal(-slope * here * a_0 / (W_0 * delta_0 / a_0), -sp.Rational(3, 2) * xi * P,
+                r"share of the friction force, in units of $W_0 \delta_0/a_0$")  # fmt: skip
     proof.done(P, PRESSURE)
 
 

@@ -8,7 +8,6 @@ the length of the contact.
 
 import sympy as sp
 
-from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import symbols
 from ..engine.step import Proof
@@ -104,9 +103,8 @@ def _pressure(proof: Proof) -> None:
     X/\breve c$ and $\breve a = a/\breve c$.
     """
     integrand = sp.exp(-z * (y - s)) * (b - s)
-    primitive = sp.exp(-z * (y - s)) * (b - s + 1 / z) / z
     reason = r"$\int G\,\dot u\,dt$ of one arm, with $R u' = a - X$ in the contact"
-    proof.integral(arm_pressure, integrand, (s, 0, y), primitive, reason, value=PRESSURE)
+    proof.integral(arm_pressure, integrand, (s, 0, y), reason, value=PRESSURE)
     slope = sp.Derivative(arm_pressure, y)
     proof.equal(slope, b - y - z * arm_pressure, "the arm is strained by $a - X$, and relaxes")
     proof.done(arm_pressure, PRESSURE)
@@ -122,12 +120,10 @@ def _moments(proof: Proof) -> None:
     """
     for name, (weight, form) in MOMENTS.items():
         integrand = weight * sp.exp(-z * w)
-        proof.integral(name, integrand, UNIT, antiderivative(integrand, w),
-                       "a moment of $e^{-\\breve z \\breve w}$", value=form)  # fmt: skip
+        proof.integral(name, integrand, UNIT, "a moment of $e^{-\\breve z \\breve w}$", value=form)
     positive = z * w * (1 - w) ** 2 * (2 + w) / 24 * sp.exp(-z * w)
     by_parts = sp.Integral(positive, UNIT)
-    proof.integral(by_parts, positive, UNIT, antiderivative(positive, w), "the last one, by parts",
-                   value=E)  # fmt: skip
+    proof.integral(by_parts, positive, UNIT, "the last one, by parts", value=E)
     proof.holds(by_parts, ">=", 0, r"so $\breve E$ is not negative")
     proof.define(A, P + Q, "its mean")
     proof.define(B, (P - Q) / 2, "half of its slant")
@@ -139,12 +135,8 @@ def _moments(proof: Proof) -> None:
 
 def from_moments(proof: Proof) -> None:
     """Let the moments stand for their values, and a/c for 1/2 + e."""
-    proof.recall("F17-moments", *MOMENTS)
-    proof.recall("F17-moments")
-    proof.recall("F17-moments", (B, (P - Q) / 2))
-    proof.define(
-        b, sp.Rational(1, 2) + e, "the half length, by its excess over half of the contact"
-    )
+    proof.recall("F17-moments", *MOMENTS, "F17-moments", "F17-moments", (B, (P - Q) / 2))
+    proof.define(b, half + e, "the half length, by its excess over half of the contact")
 
 
 def under_pressure(proof: Proof) -> None:
@@ -163,9 +155,7 @@ def _edge(proof: Proof) -> None:
     - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once.
     """
     under_pressure(proof)
-    proof.define(
-        edge_pressure, sp.Subs(arm_pressure, y, 1), "pressure of the arm at the trailing edge"
-    )
+    proof.define(edge_pressure, sp.Subs(arm_pressure, y, 1), "its pressure at the trailing edge")
     proof.equal(edge_pressure, b * A - P, "in terms of the moments")
     proof.equal(edge_pressure, e * A - B, "and by the excess over half of the contact")
 
@@ -178,9 +168,7 @@ def _load(proof: Proof) -> None:
     P)$, a sum of positive terms.
     """
     under_pressure(proof)
-    primitive = (b * z * y - z * y**2 / 2 + y + (b * z + 1) * sp.exp(-z * y) / z) / z**2
-    proof.integral(arm_load, arm_pressure, (y, 0, 1), sp.expand(primitive),
-                   "the integral of the pressure", value=LOAD)  # fmt: skip
+    proof.integral(arm_load, arm_pressure, (y, 0, 1), "the integral of the pressure", value=LOAD)
 
 
 @result("F17")
@@ -191,10 +179,8 @@ def _work(proof: Proof) -> None:
     \breve P)$: friction is positive where $G$ falls and is convex, and no sum cancels.
     """
     under_pressure(proof)
-    primitive = antiderivative(PRESSURE * (b - y), y)
-    proof.integral(
-        arm_work, arm_pressure * (b - y), (y, 0, 1), primitive, "the integral of $u' p$", value=WORK
-    )
+    proof.integral(arm_work, arm_pressure * (b - y), (y, 0, 1), "the integral of $u' p$",
+                   value=WORK)  # fmt: skip
 
 
 @result("F17-energy")
@@ -208,10 +194,7 @@ def _energy(proof: Proof) -> None:
     stored = sp.Derivative(arm_pressure**2, y) / 2
     work = arm_pressure * (b - y)
     proof.equal(work, stored + z * arm_pressure**2, "stored in the spring of the arm, or lost")
-    primitive = antiderivative(z * PRESSURE**2, y)
-    proof.integral(
-        arm_lost, z * arm_pressure**2, (y, 0, 1), primitive, "lost in the contact", value=LOST
-    )
+    proof.integral(arm_lost, z * arm_pressure**2, (y, 0, 1), "lost in the contact", value=LOST)
     proof.equal(arm_lost + (e * A - B) ** 2 / 2, WORK, "and what is stored where it ends")
     proof.done(arm_lost, LOST)
 
@@ -249,9 +232,7 @@ def _springpot(proof: Proof) -> None:
     fade = w ** (nu - 1)
     for name, (weight, _) in MOMENTS.items():
         integrand = sp.powsimp(sp.expand(fade * weight))
-        powers = (term.as_coeff_exponent(w) for term in sp.Add.make_args(integrand))
-        primitive = sum(share * w ** (power + 1) / (power + 1) for share, power in powers)
-        proof.integral(name, integrand, UNIT, primitive, "a moment", value=SPRINGPOT[name])
+        proof.integral(name, integrand, UNIT, "a moment", value=SPRINGPOT[name])
 
 
 SPRINGPOT = {
@@ -272,8 +253,7 @@ def _one_arm(proof: Proof) -> None:
     proof.where(e < half, r"$x_{\mathrm{TE}} > 0$")
     proof.recall("F17-edge")
     under_pressure(proof)
-    proof.recall("F17-load")
-    proof.recall("F17")
+    proof.recall("F17-load", "F17")
     near, far = (
         {"variable": z, "point": 0, "eps": z},
         {"variable": z, "point": sp.oo, "eps": 1 / z},
@@ -306,7 +286,7 @@ def _kelvin_voigt(proof: Proof) -> None:
     for whole, name in zip((edge_pressure, arm_load, arm_work), dashpots, strict=True):
         proof.asymptote("F17-limits", z * whole, name, "of a dashpot")
     edge_d, load_d, work_d = dashpots
-    proof.define(e, lam / (2 * (1 + lam)), "the excess over half of the contact, as there is")
+    proof.define(e, lam / (2 * (1 + lam)), "the excess over half a contact, as there is")
     proof.equal(edge + lam * edge_d, sp.S.Zero, "no pressure at the trailing edge")
     product = lam * (half + lam) / (2 * (1 + lam))
     proof.define(voigt_load, load + lam * load_d, "both loads")
@@ -317,12 +297,9 @@ def _kelvin_voigt(proof: Proof) -> None:
     proof.recall("scaling")
     proof.define(q, (c - a) / a, r"$x_{\mathrm{TE}}/a$")
     proof.equal(l, lam * c / a, r"$l_{\mathrm{r}}/a$")
-    proof.recall("F1", scaled_load)
-    proof.recall("F1", scaled_friction)
-    proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ is that of F1")
-    proof.equal(
-        voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ is that of F1"
-    )
+    proof.recall("F1", scaled_load, "F1", scaled_friction)
+    proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ of F1")
+    proof.equal(voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ of F1")
 
 
 def _spring_and_arm(proof: Proof) -> None:
@@ -331,11 +308,10 @@ def _spring_and_arm(proof: Proof) -> None:
     edge, *_ = _spring(proof)
     proof.recall("F17-edge")
     proof.define(
-        e, springpot * B / (1 + springpot * A), "the excess over half of the contact, as there is"
+        e, springpot * B / (1 + springpot * A), "the excess over half a contact, as there is"
     )
     proof.equal(edge + springpot * edge_pressure, sp.S.Zero, "no pressure at the trailing edge")
-    proof.recall("F17-load")
-    proof.recall("F17")
+    proof.recall("F17-load", "F17")
 
 
 @result("F18-low")
@@ -348,7 +324,7 @@ def _slow(proof: Proof) -> None:
     \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
     """
     _spring_and_arm(proof)
-    proof.leading_order(OF_ARM, springpot / z, z, sp.oo, r"$\mu R/\breve c$", eps=1 / z)
+    proof.leading_order(OF_ARM, springpot / z, z, sp.oo, r"$\mu R/\breve c$")
 
 
 @result("F18-high")
@@ -362,8 +338,6 @@ def _fast(proof: Proof) -> None:
     have relaxed and the fastest have not.
     """
     _spring_and_arm(proof)
-    proof.leading_order(
-        e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$", eps=z
-    )
+    proof.leading_order(e, springpot * z / (12 * (1 + springpot)), z, 0, r"so $\breve c \to 2 a$")
     high = springpot * z / (10 * (1 + springpot))
-    proof.leading_order(OF_ARM, high, z, 0, r"$\mu R/\breve c$", eps=z)
+    proof.leading_order(OF_ARM, high, z, 0, r"$\mu R/\breve c$")

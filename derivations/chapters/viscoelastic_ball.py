@@ -23,9 +23,7 @@ middle, offset, ball_load, ball_friction = symbols(r"""
     F_s  F_{\mathrm{s}}  N  friction force of a ball in steady sliding  real
 """)
 strip_load = function("W_2", "load of a strip of a ball per unit width", "N/m", real=True)
-strip_friction = function(
-    "F_2", "friction force of a strip of a ball per unit width", "N/m", real=True
-)
+strip_friction = function("F_2", "friction force of a strip per unit width", "N/m", real=True)
 strip_place = function("y_2", "distance of the strip with a contact of this length", "m", real=True)
 
 c, (_, G_2, _, _) = contact_length, repeated
@@ -76,10 +74,9 @@ def _summed(proof: Proof, total: sp.Symbol, strip: sp.Expr, what: str) -> None:
     both = sp.Derivative(name, c) * place + name * sp.Derivative(place, c)
     whole, one = sp.Integral(both, ALONG), sp.Integral(sp.Derivative(name, c) * place, ALONG)
     proof.define(total, 2 * one - 2 * whole, "by parts")
-    proof.equal(
-        total, -2 * sp.Integral(name * sp.Derivative(place, c), ALONG), f"{what} of all strips"
-    )
-    proof.integral(whole, both, ALONG, name * place, "nothing at the ends", value=sp.S.Zero)
+    proof.equal(total, -2 * sp.Integral(name * sp.Derivative(place, c), ALONG), f"{what} of all")
+    proof.integral(whole, both, ALONG, "nothing at the ends", value=sp.S.Zero,
+                   antiderivative=name * place)  # fmt: skip
 
 
 @result("F20-any")

@@ -6,50 +6,23 @@ the mean time int t (G - K) dt/C; for high velocity -G'(0)/G(0) and G''(0)/G'(0)
 
 import sympy as sp
 
-from ..engine.algebra import antiderivative
 from ..engine.chapter import Chapter
 from ..engine.nomenclature import function, symbols
 from ..engine.step import Proof, tex
 from .asymptote_errors import e_l2_fixed, e_l2_weight
 from .model import F_x, F_z, K, R
 from .relaxation import (
-    FALLS,
-    WEIGHTS,
-    by_fall,
-    fading,
-    memory,
-    other_trailing,
-    spare_1,
-    spare_2,
-    spring_1,
-    spring_2,
-)
+    FALLS, WEIGHTS, by_fall, fading, memory, other_trailing, spare_1, spare_2, spring_1, spring_2,
+)  # fmt: skip
 from .relaxation import y as back
 from .steady import a, l, q
 from .theorems import UNIT as RATIOS
 from .theorems import m
 from .theorems import w as w_steady
 from .viscoelastic import (
-    OF_ARM,
-    SECTION,
-    SPRINGPOT,
-    UNIT,
-    A,
-    B,
-    D,
-    E,
-    P,
-    Q,
-    contact_length,
-    excess_share,
-    half,
-    half_share,
-    spring_share,
-    springpot,
-    twelfth,
-    w,
-    z,
-)
+    OF_ARM, SECTION, SPRINGPOT, UNIT, A, B, D, E, P, Q, contact_length, excess_share, half,
+    half_share, spring_share, springpot, twelfth, w, z,
+)  # fmt: skip
 
 spare_3, spare_4, reach, delay = symbols(r"""
     omega_v3   \breve \omega_3   1  remainder of a third bound  nonnegative
@@ -183,7 +156,7 @@ def _voigt(proof: Proof) -> None:
         proof.holds(value, ">=", low, f"{what}, with that of Kelvin-Voigt on the right")
         proof.holds(high, ">=", value, "and above")
     proof.holds(
-        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most that on Kelvin-Voigt"
+        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most as on Kelvin-Voigt"
     )
     proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo), "load of Kelvin-Voigt")
     most, less = kap / 12 + eps / 2, (1 - eps) * (1 - 2 * eps)
@@ -191,9 +164,7 @@ def _voigt(proof: Proof) -> None:
     proof.recall("F17-parts", excess_share, F_z, F_x)
     for name, form in {A: plain_mean, P: plain_ahead, B: half, D: most, E: twelfth}.items():
         proof.define(name, form, "as on Kelvin-Voigt" if name != D else "the most")
-    proof.equal(
-        F_z * R / contact_length**3, most + product, "the load with these, which is no less"
-    )
+    proof.equal(F_z * R / contact_length**3, most + product, "load with these, which is no less")
     proof.holds((1 + 9 * eps / 8) * load, ">=", most + product, "the load, at most")
     proof.equal(F_x * R**2 / contact_length**4, work, "and the friction force")
     proof.where(eps < half, "slow enough")
@@ -237,8 +208,7 @@ def _window(proof: Proof) -> None:
     best = sp.sqrt(2 * steepness / 21)
     both, least = 2 / (3 * l) + voigt_error, VOIGT / steepness * ((l - best) ** 2 / l + 2 * best)
     proof.equal(both, least, "both errors together, to first order")
-    proof.recall("scaling", l)
-    proof.recall("error-L2-fixed", e_l2_fixed)
+    proof.recall("scaling", l, "error-L2-fixed", e_l2_fixed)
     proof.sign(e_l2_fixed, ">", 0, RATIOS, "Eq. (45) over Kelvin-Voigt, less 1")
     proof.sign(2 / (3 * l) - e_l2_fixed, ">", 0, RATIOS, r"it is below $2/(3 l)$ at every velocity")
     proof.done(both, least)
@@ -251,8 +221,7 @@ def _window_weight(proof: Proof) -> None:
     As Eq. (45) in F18-window, Eq. (46) has the error $1/l$ on Kelvin-Voigt; $a$ is that of the indenter
     that is lifted, and $l$ grows faster for it.
     """
-    proof.recall("scaling", l)
-    proof.recall("F1", w_steady, m)
+    proof.recall("scaling", l, "F1", w_steady, m)
     square = (1 + e_l2_weight) ** 2
     proof.recall("error-L2-dead-weight", square)
     proof.sign(square, ">", 1, RATIOS, "Eq. (46) over Kelvin-Voigt, squared")
@@ -275,26 +244,22 @@ def _glass(proof: Proof) -> None:
     over = (part, 0, w)
     rest = sp.Integral((w - part) * slow(part), over)
     proof.holds(rest, ">=", 0, r"$G$ is convex")
-    proof.integral(rest, rest.function, over, memory(part) - (w - part) * fall(part),
+    proof.integral(rest, rest.function, over,
                    r"so $\breve G \ge \breve G(0) - \breve w \breve H(0)$",
-                   value=memory(w) - memory(0) + w * fall(0))  # fmt: skip
+                   value=memory(w) - memory(0) + w * fall(0),
+                   antiderivative=memory(part) - (w - part) * fall(part))  # fmt: skip
     (r_1, r_2), glass = rates, K + spring_1 + spring_2
     first, second = spring_1 * r_1 + spring_2 * r_2, spring_1 * r_1**2 + spring_2 * r_2**2
     form = K * second + spring_1 * spring_2 * (r_1 - r_2) ** 2
     proof.equal(glass * second - first**2, form, "of Cauchy and Schwarz, with two arms")
     proof.holds(form, ">", 0, r"$\breve \omega > \breve \gamma$")
     for weight, value, what in (
-        (
-            WEIGHTS[A],
-            half,
-            r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this",
-        ),
+        (WEIGHTS[A], half,
+         r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this"),
         (WEIGHTS[D], sp.Rational(1, 24), r"and $\breve D$ by at most $\breve \gamma$ times this"),
-    ):
+    ):  # fmt: skip
         whole = sp.Integral(w * weight, UNIT)
-        proof.integral(
-            whole, whole.function, UNIT, antiderivative(w * weight, w), what, value=value
-        )
+        proof.integral(whole, whole.function, UNIT, what, value=value)
 
 
 @result("F18-fall")
@@ -305,20 +270,14 @@ def _fall(proof: Proof) -> None:
     0$; by at most $\breve \gamma \breve \omega \breve w$, which gives the last integral.
     """
     by_fall(proof, E, B)
-    proof.define(
-        fading(back), (steepest - weight_at(back)) / contact_length, "at most the fall at first"
-    )
+    proof.define(fading(back), (steepest - weight_at(back)) / contact_length, "at most as at first")
     for name, value in MOST.items():
         most, less = _of_fall(name, 1), _of_fall(name, weight_at(back))
-        primitive = antiderivative(most.function, back)
-        proof.integral(most, most.function, IN_CONTACT, primitive, "at most", value=value)
+        proof.integral(most, most.function, IN_CONTACT, "at most", value=value)
         proof.equal(name, steepest * most - less, "a moment of the fall")
-        proof.holds(
-            less, ">=", 0, rf"so ${tex(name)}$ is at most $\breve \gamma$ times its integral"
-        )
+        proof.holds(less, ">=", 0, rf"so ${tex(name)}$ is at most $\breve \gamma$ times that")
     less = r"$\breve E$ is less by at most $\breve \gamma \breve \omega$ times this"
-    primitive = antiderivative(_SLOWED.function, w)
-    proof.integral(_SLOWED, _SLOWED.function, UNIT, primitive, less, value=SLOWED)
+    proof.integral(_SLOWED, _SLOWED.function, UNIT, less, value=SLOWED)
 
 
 def _of_fall(name: sp.Symbol, part: sp.Expr | int) -> sp.Integral:
@@ -357,9 +316,7 @@ def _glassy(proof: Proof) -> None:
     ratio = r"$\breve \eta^2 \breve P$ over $\breve E$, at most $\breve \gamma$ times this"
     proof.equal(bulge**2 / (2 * twist), share, ratio)
     proof.equal(longest, 1 - o / 3, r"greatest $2 \breve a$, times $1 - \breve \omega/2$")
-    proof.sign(
-        part - (1 - o / 3) ** 2, ">", 0, unit, "so that its square is bounded as the load is"
-    )
+    proof.sign(part - (1 - o / 3) ** 2, ">", 0, unit, "so its square is bounded as the load is")
     proof.sign(lower, ">", 1 - GLASSY * o, unit, r"$\mu$ over its limit is at least this")
     proof.sign((1 + GLASSY * o) * part**2 - upper, ">", 0, unit,
                r"and at most the last terms of this over $(1 - \breve \omega/2)^2$")  # fmt: skip
@@ -384,12 +341,12 @@ def _springpot(proof: Proof) -> None:
     r"""Fractional Kelvin-Voigt: both limits.
 
     With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for
-    the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) \Gamma(3
-    - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} \frac{\alpha
-    (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - \alpha}}{\Gamma(4 - \alpha)}
-    (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$
-    falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the
-    velocity (F17-growth).
+    the order, in units of $K$. At low velocity $\mu \to \frac{6 \alpha a}{(4 - \alpha) \Gamma(3 - \alpha) R}
+    \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{\alpha (3 - \alpha) a}{(4 -
+    \alpha) R}$ and $W \to \frac{(2 - \alpha)^{2 - \alpha} K}{\Gamma(4 - \alpha) R} (V \tau)^\alpha a^{3 -
+    \alpha}$; Eqs. (42), (45) and (43) for $\alpha = 1$. Under a dead weight $\mu$ falls as
+    $V^{-\alpha/(3 - \alpha)}$. Slopes are over $\ln \breve \zeta$; $\breve \zeta$ grows with the velocity
+    (F17-growth).
 
     Argued: At a fixed depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as
     $\frac{1}{3} \ln \breve \Lambda$ does, and on a spring by a mean of both with positive weights. The

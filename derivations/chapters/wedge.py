@@ -11,27 +11,16 @@ from ..engine.nomenclature import symbols
 from ..engine.step import Proof
 from .model import C, K, delta, h, x
 from .power_law import (
-    FRICTION_COEFFICIENT,
-    FRICTION_FORCE,
-    LOAD,
-    SECTION,
-    Q,
-    eta_n,
-    m_n,
-    n,
-    phi_n,
-    w_ahead,
-    w_behind,
-    w_n,
-    y,
-)
+    FRICTION_COEFFICIENT, FRICTION_FORCE, LOAD, SECTION, Q, eta_n, m_n, n, phi_n, w_ahead, w_behind,
+    w_n, y,
+)  # fmt: skip
 from .power_law_weight import scaled_n
 from .steady import a, any_pressure, l, l_r, p, q
 from .theorems import P, kappa, lam, s
 
 inclination, side, held, s_peeling, s_peeled = symbols(r"""
     c_1   c       1  slope of a wedge  prints \hat c
-    sigma_w  \hat \sigma  1  1 behind the tip of a wedge, -1 ahead of it  real
+    sigma_w  \hat \sigma  1  1 behind the tip of a wedge, $-1$ ahead of it  real
     held  \bar w  1  scaled load beyond the support of a wedge
     s_w1  s_1     1  half length of a wedge whose trailing edge is behind its tip  prints \hat a_1
     s_w2  s_2     1  half length of a wedge whose contact ends at its tip  prints \hat a_2
@@ -73,12 +62,11 @@ def _forces(
 ) -> None:
     if edge != 0:
         proof.recall("wedge-edge")
-    ahead, behind = (y - y**2 / 2 + side * l * y for side in (1, -1))
-    proof.integral(w_ahead, 1 - y + l, (y, 0, 1), ahead, "ahead of the tip")
+    proof.integral(w_ahead, 1 - y + l, (y, 0, 1), "ahead of the tip")
     rest = sp.S.Zero
     if edge != 0:
         rest = w_behind
-        proof.integral(rest, 1 - y - l, (y, 0, edge), behind, "behind it")
+        proof.integral(rest, 1 - y - l, (y, 0, edge), "behind it")
     proof.define(w_n, w_ahead + rest, r"$W/(K \delta a)$")
     proof.equal(w_n, load, "load")
     proof.define(phi_n, w_ahead - rest, r"$F/(K \delta^2)$, where $-h' = \pm c$")
@@ -98,7 +86,7 @@ def _forces(
     proof.done(m_n, friction / load)
 
 
-result("wedge-peeling", title="Wedge: slow sliding", text=r"For $l < 1$, with $q = 1 - l$.",
+result("wedge-peeling", title="Wedge: slow sliding", text="The contact reaches beyond the tip.",
        state=PEELING, edge=q, load=1 + l**2 / 2,
        friction=2 * l - l**2 / 2)(_forces)  # fmt: skip
 result("wedge-peeled", title="Wedge: fast sliding",
@@ -113,7 +101,7 @@ def _slow(proof: Proof) -> None:
     For $l \to 0$, in units of $c$; the error of the asymptote is $l/4$ at first order.
     """
     proof.recall("wedge-peeling")
-    proof.leading_order(m_n, 2 * l, l, 0, "the asymptote", eps=l)
+    proof.leading_order(m_n, 2 * l, l, 0, "the asymptote")
     proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
     slope = 4 * (1 - l) * (2 + l) / (2 + l**2) ** 2
     proof.equal(sp.Derivative(m_n, l), slope, r"$\mu$ grows until $l = 1$")
@@ -129,8 +117,7 @@ def _fast(proof: Proof) -> None:
     under any load: vertical lift does not reduce the friction coefficient of a sharp tip, and Eq. (50)
     requires a rounded one.
     """
-    proof.recall("wedge-peeled", w_n)
-    proof.recall("wedge-peeled", phi_n)
+    proof.recall("wedge-peeled", w_n, "wedge-peeled", phi_n)
     proof.define(m_n, phi_n / w_n, r"$\mu/c$")
     proof.equal(m_n, sp.S.One, r"$\mu = c$")
 

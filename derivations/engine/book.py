@@ -338,19 +338,25 @@ class Book:
 
     def recall(
         self,
-        label: str,
-        *wanted: sp.Expr | tuple[sp.Expr, sp.Expr],
+        *named: str | sp.Expr | tuple[sp.Expr, sp.Expr],
         reason: str = "",
         at: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> None:
-        """Use what the derivation with this label has established: its result, or what is `wanted` of it.
+        """Use what derivations have established: of each label its result, or what is wanted of it after it.
 
         That is the last form of a left side, or a relation of both sides. Its premises and its domain come
         with it. With `at` it is used at one place: variables on which no premise depends get these values.
         """
-        for each in wanted or (_source(label).result,):
-            lhs, rhs = each if isinstance(each, tuple) else (each, established(label, each))
-            self._recall(label, lhs, rhs, reason, at=at)
+        sources: list[tuple[str, list[Any]]] = []
+        for each in named:
+            if isinstance(each, str):
+                sources.append((each, []))
+            else:
+                sources[-1][1].append(each)
+        for label, wanted in sources:
+            for each in wanted or (_source(label).result,):
+                lhs, rhs = each if isinstance(each, tuple) else (each, established(label, each))
+                self._recall(label, lhs, rhs, reason, at=at)
 
     @asked
     def _recall(
@@ -830,7 +836,8 @@ class Book:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
         direct: dict[sp.Expr, set[sp.Expr]] = {}
         opaque = (AppliedUndef, sp.Derivative, sp.Integral)
-        for premise in self._premises():
+        found = (each for fact in self._origins.values() for each in fact.premises)
+        for premise in {id(each): each for each in found}.values():  # most facts share theirs
             if premise.lhs not in self._rules and premise.lhs.is_Symbol:
                 direct.setdefault(premise.lhs, set()).update(letters_of(premise.rhs))
             if not is_name(premise.lhs) and not (premise.lhs - premise.rhs).has(*opaque):

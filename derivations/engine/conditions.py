@@ -17,7 +17,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.codegen.cfunctions import log1p
 
-from .forms import derivative, expanded, factors, put, reduced, sign_of_terms
+from .forms import above_line, derivative, expanded, factors, put, reduced, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -151,8 +151,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
     if sign:
         return sign
-    found = (_product_sign(one, strict=True) for one in _swept(expr, known))
-    sign = next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
+    sign = _sign_of_forms(expr, known) or _sign_by_roots(expr, known)
     if sign or not expr.free_symbols:
         return sign
     factored = sp.Mul(*factors(expr)) if expr.is_Add and known.positive else expr
@@ -160,6 +159,15 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     if factored != expr and several and (sign := _sign(factored, known)):
         return sign
     return next((side for side in _sides(seen) if _by_slope(side * expr)), 0)
+
+
+def _sign_of_forms(expr: sp.Expr, known: Conditions) -> int:
+    forms = []
+    for one in _swept(expr, known):
+        if sign := _sign_of_fraction(one):  # which costs much less than to factor
+            return sign
+        forms.append(one)
+    return next(filter(None, map(_product_sign, forms)), 0)
 
 
 def _sign_of_integral(expr: sp.Integral, known: Conditions) -> int:
@@ -301,10 +309,11 @@ def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr
             yield changed
 
 
-@lru_cache(maxsize=4096)
-def _written(expr: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Return an expression as one fraction, as a product, and as it stands."""
-    return reduced(expr), sp.Mul(*factors(expr)), expr
+def _written(expr: sp.Expr) -> Iterator[sp.Expr]:
+    """Yield an expression as it stands, as one fraction, and as a product."""
+    yield expr
+    yield reduced(expr)
+    yield sp.Mul(*factors(expr))
 
 
 def _solved(
@@ -332,7 +341,15 @@ def linear(expr: sp.Expr, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 
 
 @lru_cache(maxsize=8192)
-def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
+def _sign_of_fraction(expr: sp.Expr) -> int:
+    """Return the sign that the terms above and below the line have, 0 where they differ."""
+    if len(signs(expr)) == 2:
+        return 0
+    return sign_of_terms(above_line(expr)[0]) * sign_of_terms(above_line(expr)[1])
+
+
+@lru_cache(maxsize=8192)
+def _product_sign(expr: sp.Expr, *, strict: bool = True) -> int:
     """Return the sign of a product from that of its factors, 0 where one of them is not known.
 
     If it need not be strict, factors may vanish, and 1 and -1 are "not negative", "not positive".

@@ -98,7 +98,9 @@ def expanded(expr: sp.Expr) -> sp.Expr:
     """
     letters: dict[sp.Expr, None] = {}
     if not _is_polynomial(expr, letters):
-        return sp.expand(expr)
+        powers = any(not each.exp.is_Integer for each in expr.atoms(sp.Pow, sp.exp))
+        rules = dict.fromkeys(("power_base", "power_exp"), powers)
+        return sp.expand(expr, basic=False, log=expr.has(sp.log), **rules)
     names = Polynomials(tuple((letter, sp.S.One) for letter in letters))
     return names.expression(_polynomial(expr, names))
 
@@ -177,6 +179,14 @@ def reduced(expr: sp.Expr) -> sp.Expr:
 
 
 @lru_cache(maxsize=8192)
+def above_line(expr: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Return what stands above and below the line of one fraction, multiplied out."""
+    names = Polynomials.of(expr)
+    top, bottom = names.fraction(expr)
+    return names.expression(top), names.expression(bottom)
+
+
+@lru_cache(maxsize=8192)
 def factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
     """Return the factors of numerator and denominator, with their powers; what is positive stays whole.
 
@@ -186,20 +196,24 @@ def factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
     >>> factors((x + 1) * (x**2 - y**2) / (y - x))
     (-1, 1/(-x + y), x + 1, -x + y, x + y)
     """
-    if any(
-        _is_root_of_sum(power) for power in expr.atoms(sp.Pow)
-    ):  # SymPy multiplies out below it too
-        parts = sp.fraction(sp.together(expr))
-        wholes = (part if sign_of_terms(part) == 1 else sp.factor(part) for part in parts)
-        return tuple(factor for whole in wholes for factor in sp.Mul.make_args(whole))
+    if any(map(_is_root_of_sum, expr.atoms(sp.Pow))):
+        expr = expr.replace(_is_root_of_sum, _factored_below)
     names, powers = Polynomials.of(expr), Counter[tuple[sp.Expr, bool]]()
     number = _collect_factors(expr, 1, names, powers)
     found = (factor ** (times if above else -times) for (factor, above), times in powers.items())
     return (*(() if number == 1 else (number,)), *found)
 
 
-def _is_root_of_sum(power: sp.Pow) -> bool:
-    return bool(power.exp.is_Rational and not power.exp.is_Integer and power.base.has(sp.Add))
+def _is_root_of_sum(expr: sp.Expr) -> bool:
+    rooted = expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer
+    return bool(rooted and expr.base.has(sp.Add))
+
+
+def _factored_below(power: sp.Pow) -> sp.Expr:
+    """Factor what is below a root, unless the sign of its terms is seen as they stand."""
+    whole = sp.together(power.base)
+    seen = sign_of_terms(whole) == 1
+    return (whole if seen else sp.Mul(*factors(reduced(whole)))) ** power.exp
 
 
 def _collect_factors(
@@ -218,8 +232,9 @@ def _collect_factors(
     number = sp.S.One
     for part, times in zip(names.fraction(expr), (power, -power), strict=True):
         whole = names.expression(part)
-        if sign_of_terms(whole) == 1 and whole.is_Add:
-            powers[whole, times > 0] += abs(times)
+        if (sign := sign_of_terms(whole)) and whole.is_Add:
+            number *= sign**times
+            powers[sign * whole, times > 0] += abs(times)
             continue
         content, found = part.factor_list()
         number *= sp.Rational(int(content.numerator), int(content.denominator)) ** times

@@ -9,6 +9,8 @@ dots and primes are derivatives.
 'W - C V \\delta'
 >>> doprint(3 * sp.sqrt(3) / 4 - sp.Rational(3, 4)), doprint(sp.sqrt(2 * R * delta))
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
+>>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
+('\\frac{\\partial}{\\partial R} \\left(- \\frac{C}{R}\\right)', '\\left. \\frac{C}{R} \\right|_{R \\to R V}')
 >>> doprint(C * V * (1 - C / W) / R)
 '\\frac{C V}{R} \\left(1 - \\frac{C}{W}\\right)'
 """
@@ -108,6 +110,23 @@ class Printer(LatexPrinter):
     _small = ""
     """Where what is printed is small: in a "fraction", or in a "script". There a line is a slash."""
 
+    def __init__(self, settings: dict[str, Any]) -> None:
+        super().__init__(settings)
+        self._known: dict[tuple[str, str, sp.Expr], str] = {}
+        """What was printed: a part is asked for again to see how long it is, or how tall."""
+
+    def _once(self, way: str, expr: sp.Expr, show: Callable[[Any], Any]) -> str:
+        key = way, self._small, expr
+        if key not in self._known:
+            self._known[key] = str(show(expr))
+        return self._known[key]
+
+    def _print(self, expr: Any, **kwargs: Any) -> str:
+        show = super()._print
+        if kwargs or not isinstance(expr, sp.Basic):
+            return str(show(expr, **kwargs))
+        return self._once("whole", expr, show)
+
     def _within(self, place: str, expr: Any, show: Callable[[Any], Any]) -> str:
         before, self._small = self._small, place
         try:
@@ -123,6 +142,9 @@ class Printer(LatexPrinter):
         return self._sum(expr)
 
     def _sum(self, expr: sp.Add) -> str:
+        return self._once("sum", expr, self._summed)
+
+    def _summed(self, expr: sp.Add) -> str:
         terms = self._ordered(expr)
         shown = [self._term(terms[0])]
         for term in terms[1:]:
@@ -448,7 +470,10 @@ class Printer(LatexPrinter):
             if self._small:
                 return rf"{sign}{power} {self._print(call)}/{below}"
             return rf"\frac{{{sign}{power} {self._print(call)}}}{{{below}}}"
-        return str(super()._print_Derivative(expr))
+        shown, inner = str(super()._print_Derivative(expr)), str(self._print(call))
+        if inner.startswith("-") and shown.endswith(inner):
+            shown = shown.removesuffix(inner) + self._bracket(inner)
+        return shown
 
     def _print_Subs(self, node: sp.Subs) -> str:  # noqa: N802
         inner, place = node.expr, dict(zip(node.variables, node.point, strict=True))
@@ -467,10 +492,10 @@ class Printer(LatexPrinter):
     def _valued(self, node: sp.Subs) -> str:
         inner = str(self._print(node.expr))
         loose = any(part.is_Add for part in sp.Mul.make_args(node.expr)) or inner.startswith("- ")
-        pairs = zip(node.variables, node.point, strict=True)
         places = ", ".join(
-            f"{self._print(letter)} = {self._within('script', at, self._print)}"
-            for letter, at in pairs
+            f"{self._print(letter)} {sign} {self._within('script', at, self._print)}"
+            for letter, at in zip(node.variables, node.point, strict=True)
+            for sign in ["=" if not at.has(letter) else r"\to"]
         )
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
 

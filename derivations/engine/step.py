@@ -14,6 +14,7 @@ derivations.engine.book.StepError: eq29: l_r/tau = 2*V is not an identity: left 
 from contextlib import ExitStack
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
@@ -29,6 +30,7 @@ from .algebra import (
     sign_between,
     value_at,
 )
+from .algebra import antiderivative as integrated
 from .book import Said, StepError, asked, tex, tex_interval, tex_within
 from .conditions import (
     Interval,
@@ -109,29 +111,39 @@ class Proof(Guarded):
         lhs: sp.Expr,
         integrand: sp.Expr,
         over: Interval,
-        antiderivative: sp.Expr,
         reason: str,
         *,
+        antiderivative: sp.Expr | None = None,
         value: sp.Expr | None = None,
     ) -> sp.Expr:
         """Prove that `lhs`, the integral of `integrand`, has the value that is returned.
 
-        The antiderivative is differentiated; it must be real and continuous from end to end, so that
-        its end values count. `lhs` either was defined as this integral or is named by this step.
-        `value` is the form in which the value is wanted; it is proved to be the difference of the end
-        values.
+        The antiderivative, found by the rules of `algebra` unless it is stated, is differentiated; it must be
+        real and continuous from end to end, so that its end values count. `lhs` either was defined as this
+        integral or is named by this step. `value` is the form in which the value is wanted; it is proved to
+        be the difference of the end values.
         """
         whole = sp.Integral(integrand, over)
         variable, low, high = over[0], *(self._resolve(end) for end in over[1:])
         self._free(variable)
         written = self._resolve(whole)
         inner = written.function if isinstance(written, sp.Integral) else self._resolve(integrand)
-        primitive = self._resolve(antiderivative)
+        others = integrand.free_symbols - {variable}
+        hides = integrand.has(AppliedUndef) or any(
+            self._resolve(each).has(variable) for each in others
+        )
+        density = inner.doit() if hides else integrand
+        try:
+            stated = integrated(density, variable) if antiderivative is None else antiderivative
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: {whole}: {error}") from error
+        primitive = self._resolve(stated)
+        self._asked[1]["antiderivative"] = stated
         self._reaches(variable, low, high)
         if not is_continuous(primitive, (variable, low, high), self._conditions):
             raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
-        slope = self._resolve(sp.Derivative(antiderivative, variable))
-        self._vanish(slope, inner, Said(sp.Derivative(antiderivative, variable), "=", integrand))
+        slope = self._resolve(sp.Derivative(stated, variable))
+        self._vanish(slope, inner, Said(sp.Derivative(stated, variable), "=", integrand))
         try:
             found = value_at(primitive, variable, high) - value_at(primitive, variable, low)
         except UndecidedError as error:
@@ -148,7 +160,7 @@ class Proof(Guarded):
             del self._rules[lhs]
         wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, Said(whole, "=", wanted))
-        self._defined_alike(written, (antiderivative, primitive), (wanted, self._resolve(wanted)))
+        self._defined_alike(written, (stated, primitive), (wanted, self._resolve(wanted)))
         known = defined or lhs == whole
         premise = None if known else Premise(lhs, wanted, f"{tex(lhs)} = {tex(whole)}")
         self._rule(lhs, wanted)
@@ -403,16 +415,19 @@ class Proof(Guarded):
         point: sp.Expr | int,
         reason: str,
         *,
-        eps: sp.Expr,
+        eps: sp.Expr | None = None,
         short: bool = False,
     ) -> tuple[sp.Expr, sp.Expr]:
         """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
 
-        The small quantity `eps` is any positive expression that vanishes there. In `short`, where it is
+        The small quantity `eps` is any positive expression that vanishes there: the distance from the point,
+        or one over the variable, unless another is stated. In `short`, where it is
         the variable itself and the point 0, the remainder is printed as a term of its own, which holds
         where the leading term vanishes too.
         """
         claim = f"{expr} ~ {leading} as {variable} -> {point}"
+        if eps is None:
+            eps = 1 / variable if point == sp.oo else variable if point == 0 else point - variable
         parts = [self._resolve_free(part, variable) for part in (expr, leading, eps)]
         if short and not (eps == variable and point == 0):
             raise StepError(
@@ -430,14 +445,15 @@ class Proof(Guarded):
         for base in demands(sp.cancel(c * parts[1]) if short else c)[0] - {parts[2], variable}:
             if not proves_nonzero(base, self._conditions):
                 self._exclude(base, claim)
-        self._asked[1].update(next_term=c * eps**k, remainder=eps**rest)
+        self._asked[1].update(eps=eps, next_term=c * eps**k, remainder=eps**rest)
         factor = rf"\left({tex(leading)}\right)" if leading.is_Add else tex(leading)
         if short:
             _, order = leading_term(parts[1], variable, point, side=1)
             right = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
         else:
             series = _series(c, eps, k)
-            right = rf"{factor} \left({series} + O\left({tex(eps**rest)}\right)\right)"
+            whole = rf"{series} + O\left({tex(eps**rest)}\right)"
+            right = whole if leading == 1 else rf"{factor} \left({whole}\right)"
         note = rf"as ${tex(variable)} \to {tex(sp.sympify(point))}$"
         fact = self._record(
             *(expr, "=", leading, reason, "proved-leading-order"),

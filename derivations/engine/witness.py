@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
 from itertools import chain
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -134,7 +135,7 @@ def _lettered(expr: sp.Expr) -> sp.Expr:
 
 def _drawn(letter: sp.Symbol, draw: random.Random, above: set[sp.Expr]) -> mpmath.mpf:
     """Draw an admissible value, above zero where a condition says so."""
-    size = draw.randrange(1, 9) if letter.is_integer else mpmath.mpf(10) ** draw.uniform(-2, 1)
+    size = draw.randrange(1, 9) if letter.is_integer else 10 ** draw.uniform(-2, 1)
     negative = letter.is_nonpositive or (
         not letter.is_nonnegative and letter not in above and draw.random() < 0.5
     )
@@ -173,11 +174,6 @@ def _extended(
 
 def _roots(equation: sp.Expr, letter: sp.Symbol, point: _Point) -> Iterator[mpmath.mpf]:
     """Yield admissible roots: of a linear equation, else between points with values of two signs."""
-
-    def height(value: mpmath.mpf) -> mpmath.mpf:
-        found = value_of(equation, {**point, letter: value})
-        return found if isinstance(found, mpmath.mpf) else mpmath.nan
-
     slope, rest = linear(equation, letter)
     if slope != 0:
         zero, slant = value_of(rest, point), value_of(slope, point)
@@ -186,19 +182,30 @@ def _roots(equation: sp.Expr, letter: sp.Symbol, point: _Point) -> Iterator[mpma
         grid = [] if letter.is_nonnegative else [-each for each in reversed(_GRID)]
         grid += [mpmath.mpf(0)] if not letter.is_nonzero else []
         grid += [] if letter.is_nonpositive else _GRID
-        heights = []
-        for place in grid:
-            try:
-                heights.append(height(place))
-            except (ZeroDivisionError, ValueError, OverflowError):
-                heights.append(mpmath.nan)
-        found = [place for place, value in zip(grid, heights, strict=True) if abs(value) < _NONE]
-        for low, high, one, other in zip(grid, grid[1:], heights, heights[1:], strict=False):
-            if one * other < 0:
-                root = mpmath.findroot(height, (low, high), solver="anderson", verify=False)
-                if abs(height(root)) < _NONE:
-                    found.append(root)
+        found = _between(equation, letter, point, grid)
     yield from (value for value in found if _admits(letter, value))
+
+
+def _between(
+    equation: sp.Expr, letter: sp.Symbol, point: _Point, grid: list[mpmath.mpf]
+) -> Iterator[mpmath.mpf]:
+    """Yield roots on a grid and between its points; floats say where to look for them."""
+    rough, height = (_in_one(equation, letter, point, each) for each in (mpmath.fp, mpmath.mp))
+    before, last = None, math.nan
+    for place in grid:
+        try:
+            value = float(rough(float(place)))
+        except (ZeroDivisionError, ValueError, OverflowError, TypeError):
+            value = math.nan
+        if value == 0:
+            root = place
+        elif value * last < 0:
+            root = mpmath.findroot(height, (before, place), solver="anderson", verify=False)
+        else:
+            root = None
+        if root is not None and abs(height(root)) < _NONE:
+            yield root
+        before, last = place, value
 
 
 def _admits(letter: sp.Symbol, value: mpmath.mpf) -> bool:
@@ -217,29 +224,43 @@ def _meets(point: _Point, gaps: _Expressions, signed: _Expressions) -> bool:
     return all(isinstance(value, mpmath.mpf) and value > low for value, low in values)
 
 
-def value_of(  # noqa: PLR0911 one return for each kind of node
-    expr: sp.Expr, point: Mapping[sp.Expr, mpmath.mpf]
-) -> mpmath.mpf:
+def value_of(expr: sp.Expr, point: Mapping[sp.Expr, mpmath.mpf]) -> mpmath.mpf:
     """Evaluate at a point; of few values of many expressions, so that it does not pay to compile them."""
     if expr.is_Symbol:
         return point[expr]
+    return _kind(expr, mpmath.mp)(*[value_of(part, point) for part in expr.args])
+
+
+def _in_one(expr: sp.Expr, letter: sp.Symbol, point: _Point, numbers: Any) -> Callable[[Any], Any]:
+    """Return the value as a function of one letter; what is without it is evaluated once."""
+    if expr == letter:
+        return lambda value: value
+    if letter not in letters_of(expr):
+        known = numbers.convert(value_of(expr, point))
+        return lambda _: known
+    kind = _kind(expr, numbers)
+    parts = [_in_one(part, letter, point, numbers) for part in expr.args]
+    return lambda value: kind(*[part(value) for part in parts])
+
+
+@lru_cache(maxsize=8192)
+def _kind(expr: sp.Expr, numbers: Any) -> Callable[..., Any]:
+    """Return what gives the value of a node from those of its parts: floats, or numbers of many digits."""
     if expr.is_Number or expr.is_NumberSymbol:
-        return mpmath.mpf(expr._to_mpmath(mpmath.mp.prec))
+        known = numbers.convert(mpmath.mpf(expr._to_mpmath(mpmath.mp.prec)))
+        return lambda: known
     if expr.is_Pow and expr.exp.is_Integer:
-        return value_of(expr.base, point) ** int(expr.exp)
-    parts = [value_of(part, point) for part in expr.args]
-    if expr.is_Add:
-        return sum(parts[1:], parts[0])
-    if expr.is_Mul:
-        return math.prod(parts[1:], start=parts[0])
-    if expr.is_Pow:
-        return parts[0] ** parts[1]
-    kind = _KINDS.get(expr.func, getattr(mpmath, expr.func.__name__, None))
+        whole = int(expr.exp)
+        return lambda base, _: base**whole
+    name = expr.func.__name__
+    kind = _KINDS.get(expr.func) or getattr(numbers, name, getattr(mpmath, name, None))
     if kind is None:
         raise TypeError(f"{type(expr).__name__} is no function that has a value here")
-    return mpmath.mpmathify(kind(*parts))
+    return kind
 
 
-_KINDS: dict[type, Callable[..., mpmath.mpf]] = {
-    sp.Abs: abs, sp.Max: max, sp.Min: min, sp.UnevaluatedExpr: mpmath.mpmathify,
+_KINDS: dict[type, Callable[..., Any]] = {
+    sp.Add: lambda *parts: sum(parts[1:], parts[0]),
+    sp.Mul: lambda *parts: math.prod(parts[1:], start=parts[0]),
+    sp.Pow: pow, sp.Abs: abs, sp.Max: max, sp.Min: min, sp.UnevaluatedExpr: lambda part: part,
 }  # fmt: skip

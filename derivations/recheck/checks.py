@@ -199,7 +199,12 @@ class Record:
             return Verdict("unconfirmed", str(error))
         if question.equations:
             wider = self._found(claim, question.named())
-            if wider.status in {"supported", "confirmed"}:
+            sides = (read(claim[key]) for key in ("left", "right", "expression") if key in claim)
+            # An equation whose slope is asked for is one for all values of its letters.
+            law = any(
+                each.op == "derivative" and each.args[0] in question.equations for each in sides
+            )
+            if wider.status in {"supported", "confirmed", *(["refuted"] if law else [])}:
                 return wider
         return self._found(claim, question)
 

@@ -22,6 +22,8 @@ _STAYS = re.compile(
     r"/|^\\left\.|\\(?:int|sum|ln|exp|log|max|min|sin|cos|tan|arctan|operatorname|partial)(?![a-z])"
 )
 """What takes in all that follows it."""
+_CALLED = re.compile(r"\((?:\d|[A-Za-z]|\\[a-z]+)\)")
+"""A place where a function is taken; a factor in brackets is a sum."""
 _ACCENTS = (
     r"\mathsf",
     r"\mathbf",
@@ -106,7 +108,8 @@ def _term(pieces: list[tuple[str, str]]) -> str:
         "" if part == "1" and not lone else f" {part} " if kind == "frac" else part
         for (kind, _), part in zip(pieces, parts, strict=True)
     )
-    below = " ".join(_sum(each[1]) for each in fractions)
+    shown = [_sum(each[1]) for each in fractions]
+    below = " ".join(map(_bracketed, shown) if len(shown) > 1 else shown)
     below = below if len(_factors(below)) == 1 and not _is_sum(below) else f"({below})"
     tail = "".join(text for kind, text in pieces[-1:] if kind == "space")
     lead = "".join(text for kind, text in pieces[:1] if kind == "space")
@@ -155,6 +158,8 @@ def _factors(latex: str) -> list[str]:
         glued = (
             kind in ("script", "space")
             or text == "'"
+            or (found and found[-1][-1:].strip() and _CALLED.fullmatch(text))  # f(x)
+            or (found and re.fullmatch(r"\\sqrt\[\d\]", found[-1]))
             or (text.isdigit() and found and found[-1][-1:].isdigit())
         )
         if (glued and found) or (found and found[-1].strip() in _ACCENTS):

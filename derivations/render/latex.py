@@ -51,7 +51,8 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 % Headings run into the text; entries of the contents are ragged, for their columns are narrow.
 \renewcommand{\subsection}{\@startsection{subsection}{2}{0pt}{2ex plus 1ex}{-0.7em}{\bfseries}}
 \renewcommand{\@tocrmarg}{2.5em plus 1fil}
-\newcommand{\spare}{\par\vskip 0pt plus 9\baselineskip\penalty-200\vskip 0pt plus -9\baselineskip}
+% A section begins on a page with room for its table: a head of a longtable would stand above its title.
+\newcommand{\spare}{\par\penalty-100\relax\ifdim\dimexpr\pagegoal-\pagetotal\relax<12\baselineskip\newpage\fi}
 \newcommand{\numbered}[2]{\phantomsection\def\@currentlabel{#2}\label{#1}(#2)}
 % What introduces a line (a heading without text, a sentence) stays on its page.
 \newcommand{\startline}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
@@ -68,7 +69,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \newsavebox{\formula}
 \newsavebox{\remark}
 \newsavebox{\number@}
-\newdimen\indented \indented=2em
+\newdimen\indented \indented=1em
 \newdimen\room
 \newcommand{\checked}[4]{%
   \startline

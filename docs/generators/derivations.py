@@ -1,12 +1,13 @@
 """The derivations as pages: one for each section, linked with the functions that compute them."""
 
 import re
+from functools import cache
 from json import loads
 from pathlib import Path
 
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.emit import FORMS
-from kvtheory.derivations.recheck.report import counts, having, recheck
+from kvtheory.derivations.recheck.report import Verdicts, counts, having, recheck
 from kvtheory.derivations.render import edition, json, markdown
 from kvtheory.derivations.render.text import by_section
 
@@ -24,11 +25,12 @@ def write(directory: Path) -> None:
     """Derive everything and write the pages, and what other pages include."""
     derived = catalogue()
     made = {**pages(), **premises.pages(derived), **exercises.pages(derived)}
-    made["theory/second-opinion.txt"] = second_opinion(json.document(edition(derived)))
+    made["theory/second-opinion.txt"] = second_opinion(verdicts())
     for path, text in made.items():
         put(directory / path, text)
 
 
+@cache
 def pages() -> dict[str, str]:
     """Return a page for each section, and their index."""
     derived = catalogue()
@@ -49,9 +51,14 @@ def pages() -> dict[str, str]:
     return texts
 
 
-def second_opinion(document: str) -> str:
-    """Return how many claims of `derivations.json` were confirmed, and how; part of a page."""
-    verdicts = recheck(loads(document))
+@cache
+def verdicts() -> Verdicts:
+    """Return the verdicts on the claims of `derivations.json`: on all of them, in seconds."""
+    return recheck(loads(json.document(edition(catalogue()))))
+
+
+def second_opinion(verdicts: Verdicts) -> str:
+    """Return how many claims were confirmed, and how; part of a page."""
     found = [each for record in verdicts.values() for each in record.values()]
     rows = [("kind", "confirmed", "supported", "unconfirmed", "how")]
     kinds = dict.fromkeys(each.kind for each in found if each.kind != "recalled")

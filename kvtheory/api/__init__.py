@@ -2,6 +2,7 @@
 
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
+from kvtheory.api._drop import foundation_of_drop, foundation_of_mode, restitution
 from kvtheory.api._elements import elements
 from kvtheory.api._fewer_arms import fewer_arms
 from kvtheory.api._fit import fit
@@ -13,6 +14,7 @@ from kvtheory.api._sweep import sweep
 from kvtheory.api._transient import transient
 
 __all__ = [
-    "asymptotes", "compare", "elements", "fewer_arms", "fit", "fit_foundation", "footprint", "solve",
-    "stability", "steady", "sweep", "transient",
+    "asymptotes", "compare", "elements", "fewer_arms", "fit", "fit_foundation", "footprint",
+    "foundation_of_drop", "foundation_of_mode", "restitution", "solve", "stability", "steady", "sweep",
+    "transient",
 ]  # fmt: skip

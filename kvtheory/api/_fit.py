@@ -1,7 +1,7 @@
 """Quantities of a scene from measured friction: `fit`."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,17 +33,20 @@ WEIGHED = 0.5
 """Share of the points that are refined while models are weighed, as only the lowest minimum counts."""
 SIMULATED = 1e-3
 """Tolerance of a transient that only elements give."""
+MANY = 7
+"""Unknowns, those of three arms, beyond which twice as many values are needed: friction tells hardly more."""
 NOT_FREE = "drive.velocity", "run.duration", *(f"foundation.{name}" for name in MEASURED)
 """Quantities that the data give, and that no friction tells."""
 
 
-@checked(scene=a_scene, free=names, models=flag, progress=callback)
+@checked(scene=a_scene, free=names, models=flag, offset=flag, progress=callback)
 def fit(
     scene: Scene | None = None,
     data: Any = None,
     *,
     free: Iterable[str] = (),
     models: bool = False,
+    offset: bool = False,
     progress: Progress | None = None,
 ) -> FrictionFit:
     """Fit quantities of a scene to measured friction over velocity, or to a time series, or to both.
@@ -70,6 +73,10 @@ def fit(
     models
         Weigh foundations instead: Kelvin-Voigt, a springpot, and one to three arms, each with all its
         quantities free, by Akaike's criterion for small samples. The best one is the result.
+    offset
+        One unknown more: a friction coefficient that does not depend on velocity (adhesion, bearings),
+        beside that of the foundation, with the sign of the velocity. With `models`, each is tried with it
+        and without.
     progress
         Called with the fraction done and a text.
 
@@ -115,9 +122,7 @@ def fit(
     if models == bool(list(free)):
         message = "expected the keys of free quantities, or `models`"
         raise ValueError(f"`free`: {message}, which frees all of the foundation")
-    tried = (
-        friction.models(scene) if models else {scene.foundation.kind: (scene, _keys(scene, free))}
-    )
+    tried = _tried(scene, free, models=models, offset=offset)
     found: dict[str, Any] = {}
     for count, (name, (each, keys)) in enumerate(tried.items()):
 
@@ -132,14 +137,16 @@ def fit(
         for one in sets:
             if both := [key for key in keys if key in one.conditions]:
                 raise ValueError(f"`free` {both[0]}: a column of {one.source} gives it")
-        size = sum(one.size * len(one.measured) for one in sets)
-        if size <= len(keys):
+        if few := _too_few(sets, keys):
             if models and found:
                 continue
-            sources = " and ".join(one.source for one in sets)
-            message = f"{len(keys)} unknowns need more than {len(keys)} values"
-            raise ValueError(f"{sources}: holds {size} values; {message}")
+            raise ValueError(few)
         if any(one.time is not None for one in sets):
+            if friction.OFFSET in keys and not each.drive.rigid:
+                message = "an offset would change the motion on the spring of the drive"
+                raise ValueError(
+                    f"`offset`: {message}; expected a rigid drive, or friction over velocity"
+                )
             if models and lacks_arms(each):
                 continue
             require(lacks_arms, each, "a time series")
@@ -158,7 +165,8 @@ def fit(
         (each, best.point.size, _misfit(problem, best.point), aicc - least if aicc > least else 0.0)
         for each, (problem, best, aicc) in found.items()
     ]
-    total = sum(math.exp(-0.5 * row[3]) for row in weighed)
+    systematic = confidence.alike(found[name][0], found[name][1].point)
+    total = sum(math.exp(-0.5 * row[3]) for row in weighed) if not systematic else math.nan
     problem, best, _ = found[name]
     values = [float(f"{math.exp(y):.{DIGITS}g}") for y in best.point]
     limits = confidence.intervals(problem, best)
@@ -186,11 +194,13 @@ def fit(
         ),
         notes=(
             *dict.fromkeys(note for each in problem.data for note in each.notes),
-            *confidence.alike(problem, best.point),
+            *systematic,
+            *(["No model fits to the scatter, so that none has a weight."] if models and systematic else []),
             *confidence.large(problem, best.point),
+            *confidence.unseen(problem, best.point),
             *confidence.others(problem, best, limits),
         ),
-        scene=problem.scene.replace(dict(zip(problem.keys, values, strict=True))),
+        scene=problem.of(dict(zip(problem.keys, values, strict=True))),
         data={
             "sets": problem.data, "fitted": fitted, "residuals": [
                 {name: friction.relative(each, name, own[name]) for name in each.measured}
@@ -199,6 +209,33 @@ def fit(
             "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
     )  # fmt: skip
+
+
+def _tried(
+    scene: Scene, free: Iterable[str], *, models: bool, offset: bool
+) -> dict[str, tuple[Scene, tuple[str, ...]]]:
+    """Return the scene and the keys of each model that is fitted."""
+    from kvtheory.fitting import friction
+
+    tried = (
+        friction.models(scene) if models else {scene.foundation.kind: (scene, _keys(scene, free))}
+    )
+    if not offset:
+        return tried
+    lifted = {
+        name + " + offset" * models: (each, (*keys, friction.OFFSET))
+        for name, (each, keys) in tried.items()
+    }
+    return {**tried, **lifted} if models else lifted
+
+
+def _too_few(sets: Any, keys: Sequence[str]) -> str:
+    """Return why there are too few values for the unknowns, or an empty text."""
+    size = sum(one.size * len(one.measured) for one in sets)
+    needed = len(keys) + 1 if len(keys) <= MANY else 2 * len(keys)
+    sources = " and ".join(one.source for one in sets)
+    message = f"{len(keys)} unknowns need more than {needed - 1} values"
+    return f"{sources}: holds {size} values; {message}" if size < needed else ""
 
 
 def _pieces(limits: Any) -> tuple[Any, Any]:

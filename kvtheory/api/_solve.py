@@ -23,6 +23,8 @@ from kvtheory.scene.model import Scene
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below this range rounding dominates; above it any number would do."""
 
+COASTS = "With drive.stiffness = 0 the indenter coasts to rest, and does not slide steadily."
+
 
 @checked(
     scene=a_scene, at=times, quantity=names, rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL), over_time=flag,
@@ -108,6 +110,8 @@ def solve(
         rungs = series.rungs(series.Models(steady, follow, simulate, fewer_arms))
     else:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
+        if scene.drive.coasts:
+            raise ToleranceError(f"{COASTS} Ask for a series, with `at`.")
         known = not lacks_stability(scene)
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN

@@ -76,6 +76,11 @@ def stability(
     wanted = frozenset(QUANTITIES if quantity is None else quantity)
     if wrong := sorted(wanted - set(QUANTITIES)):
         raise SceneError([problem("`quantity`", name, nearest(name, QUANTITIES)) for name in wrong])
+    if scene.drive.coasts:
+        message = (
+            "stability is that of a spring: with drive.stiffness = 0 the indenter coasts to rest"
+        )
+        raise ValueError(f"{message}; give a stiffness above 0, or none, for a rigid drive")
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene):

@@ -55,6 +55,8 @@ class Row(NamedTuple):
 def initial_rest(case: Case) -> Measured:
     """Compare the depth at t <= 0 with the static depth (Eq. 40)."""
     time, depth_0 = case.time, case.theory.static.depth
+    if not case.theory.scene.start.at_rest:
+        raise NotMade("the motion does not start at rest")
     before = time <= 0.0
     if not before.any():
         raise NotMade(f"the data begin at {time[0] * 1e3:.4g} ms, after the start")
@@ -192,6 +194,8 @@ def steady_limit(case: Case) -> Measured:
     theory, time = case.theory, case.time
     if math.isinf(theory.last_change):
         raise NotMade("the drive is a function, which need not settle")
+    if theory.scene.drive.coasts:
+        raise NotMade("the indenter coasts")
     if theory.rates is not None:
         slow = theory.rates.settling
     else:

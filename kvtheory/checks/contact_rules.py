@@ -31,6 +31,7 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
     "Kelvin-Voigt": lambda scene: not scene.foundation.arms,
     "arms": lambda scene: bool(scene.foundation.arms),
     "moves": lambda scene: not scene.held,
+    "starts at rest": lambda scene: not scene.held and scene.start.at_rest,
     "comes back": lambda scene: not (scene.drive.constant and scene.drive.rigid),
     "ball": lambda scene: not scene.indenter.per_width,
     "": lambda _scene: True,
@@ -115,10 +116,10 @@ MISTAKES = (
             [Rule(damper=share) for share in DAMPERS], "moves", DAMPERS, 0.0),
     Mistake("undeformed at the start",
             "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
-            "static depth (Eq. 40)", [Rule(start=0.0)], "moves"),
+            "static depth (Eq. 40)", [Rule(start=0.0)], "starts at rest"),
     Mistake("wrong initial depth",
             "the depth at t = 0 is {:.4g} times the static depth, at which theory starts (Eq. 40)",
-            [Rule(start=start) for start in STARTS], "moves", STARTS, 1.0),
+            [Rule(start=start) for start in STARTS], "starts at rest", STARTS, 1.0),
     Mistake("arms loaded at the start",
             "the arms bear load at t = 0, as if the indenter had been pressed in at that instant: at rest "
             "they have relaxed (Eq. 40)", [Rule(loaded=True)], "arms"),

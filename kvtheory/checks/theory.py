@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
 from kvtheory.scene import Drive, Sphere
 from kvtheory.scene.model import Scene
+from kvtheory.scene.start import StartState
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.closed_forms import trailing_edge_ratio
 
@@ -130,14 +131,20 @@ class Theory:
         return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
 
     @property
+    def begun(self) -> StartState:
+        """The state just after t = 0."""
+        return self.scene.start.at(self.static.depth, self.motion.velocity(0.0))
+
+    @property
     def final_velocity(self) -> float:
         """The velocity in m/s at the end of the run."""
         return float(self.motion.velocity(self.motion.end))
 
     @cached_property
     def swing(self) -> float:
-        """The period of the mass on the spring of the drive over 2 pi, in s."""
-        return math.sqrt(self.scene.drive_mass / float(self.scene.drive.stiffness or 0.0))
+        """The period of the mass on the spring of the drive over 2 pi, in s; infinite without one."""
+        stiffness = float(self.scene.drive.stiffness or 0.0)
+        return math.sqrt(self.scene.drive_mass / stiffness) if stiffness else math.inf
 
     @cached_property
     def steady_state(self) -> Any:
@@ -154,7 +161,7 @@ class Theory:
         approximate; they only set windows and allowances.
         """
         M = self.scene.support.mass
-        if not self.scene.drive.rigid:
+        if self.scene.drive.stiffness:
             steady = self.scene.drive.changed(velocity=self.final_velocity)
             rates = self.methods.rates(replace(self.scene, drive=steady))
             return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
@@ -183,7 +190,7 @@ class Theory:
         return Rates.of([2.0 * M / (damping + root), (damping + root) / (2.0 * stiffness)])
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
-        """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
+        """Return the curves at `times` (s): held as at the start before, just after a jump of the drive."""
         key = rtol, times.tobytes()
         if key in self._known:
             return self._known[key]
@@ -192,11 +199,15 @@ class Theory:
         end = float(unique[-1]) or self.scene.run.duration
         scene = replace(self.scene, run=replace(self.scene.run, duration=end))
         found = curves(self.methods.transient(scene, unique.tolist(), rtol), scene)
+        depth = self.begun.depth
+        deeper = max(depth, 0.0) / self.static.depth
+        power = 1.5 if self.scene.indenter.per_width else 2.0
+        half_length = self.static.half_length * math.sqrt(deeper) if deeper else math.nan
         rest = {
             **dict.fromkeys(CURVES, 0.0),
-            "depth": self.static.depth, "normal_force": self.static.load,
-            "leading_edge": -self.static.half_length, "trailing_edge": self.static.half_length,
-            "peak_pressure": self.static.pressure,
+            "depth": depth, "normal_force": self.static.load * deeper**power,
+            "leading_edge": -half_length, "trailing_edge": half_length,
+            "peak_pressure": self.static.pressure * deeper,
         }  # fmt: skip
         self._known[key] = {
             name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES

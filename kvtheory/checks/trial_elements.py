@@ -9,7 +9,7 @@ with the models.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ from scipy.linalg import expm
 
 from kvtheory.checks.theory import Array, Theory
 from kvtheory.scene import Scene, Sphere
+from kvtheory.scene.start import StartState
 from kvtheory.scene.static_state import StaticState
 
 
@@ -47,8 +48,9 @@ class Rule(NamedTuple):
 
 COLUMNS, ROWS = {False: 100, True: 26}, 8
 """Elements per static half length of a line contact and of a ball; rows per half width of a ball."""
-WINDOW = 1.7
-"""Half width of the simulated region, in static half lengths."""
+WINDOW, IMPACT = 1.7, 0.2
+"""Half width of the simulated region, in static half lengths; the power of the energy at the start, over that
+at rest, with which it grows."""
 PASSED = 1.618
 """Elements that pass in a step; no whole number, so that entries are not in phase with steps."""
 FEWEST_STEPS, LONGEST_RUN = 300, 1500
@@ -77,16 +79,15 @@ IMPLICIT = 0.52
 
 
 class Pressed(NamedTuple):
-    """Forces (`lift` moves the indenter), their slopes, edges, peak and new state, by rule."""
+    """Forces (`lift` moves the indenter) and their slopes, by rule; pressures at places x, and new state."""
 
     normal: Array
     lift: Array
     friction: Array
     slope: Array
-    drag: Array
-    left: Array
-    right: Array
-    peak: Array
+    drag: Array | float
+    pressure: Array
+    x: Array
     surface: Array
     stress: Array
     on: Array
@@ -111,25 +112,37 @@ class Elements:
     seen: Array
 
     @classmethod
-    def at_rest(cls, scene: Scene, rules: Sequence[Rule], low: float, high: float) -> "Elements":
-        """Return elements at rest under the indenter, between two places (m)."""
+    def at_rest(
+        cls, scene: Scene, rules: Sequence[Rule], low: float, high: float, depth: float,
+        wider: float = 1.0,
+    ) -> "Elements":  # fmt: skip
+        """Return elements at rest under the indenter at a depth (m), between two places (m).
+
+        A ball has rows for a contact that is `wider` than at rest.
+        """
         static, ball = StaticState.of(scene), isinstance(scene.indenter, Sphere)
         rule = Rule(*np.array(rules, dtype=float).T[:, :, None, None])
         length = static.half_length / COLUMNS[ball]
         places: Any = np.arange(math.floor(low / length), math.ceil(high / length) + 1) * length
         heights, areas = np.zeros((len(rules), 1, 1)), np.full((len(rules), 1, 1), length)
         if isinstance(scene.indenter, Sphere):
-            y = (np.arange(int(ROWS * WINDOW)) + 0.5)[:, None] / ROWS  # over the half width
+            y = (np.arange(int(ROWS * WINDOW * wider)) + 0.5)[:, None] / ROWS  # over the half width
             heights = static.depth * np.where(rule.flat > 0.0, 0.0, y * y)
             width = 2.0 * static.half_length * scene.indenter.stretch / ROWS
             areas = length * width * ((rule.flat == 0.0) | (y < 1.0))
         R = scene.indenter.radius  # type: ignore[union-attr]
-        surface = np.maximum(rule.start * static.depth - heights - places**2 / (2.0 * R), 0.0)
+        surface = np.maximum(rule.start * depth - heights - places**2 / (2.0 * R), 0.0)
         moduli = np.array([arm.stiffness for arm in scene.foundation.arms])[:, None, None, None]
         stress, seen = moduli * rule.loaded * surface, np.zeros(places.size)
         return cls(
             scene, rule, places, heights, areas, length, surface, stress, surface > 0.0, seen
         )
+
+    @cached_property
+    def having(self) -> Any:
+        """The rules with each mistake, by number: what few rules do is computed for these alone."""
+        pairs = zip(self.rule, Rule(), strict=True)
+        return Rule(*(np.flatnonzero(values != right) for values, right in pairs))  # type: ignore[arg-type]
 
     def pressed(self, h: float, near: slice, *state: Array) -> Pressed:
         """Press the columns `near` for a step h (s).
@@ -137,48 +150,66 @@ class Elements:
         `state` is, by rule, the depth, its rate, the displacement of the base and the sliding velocity.
         """
         depth, rate, moved, speed = (each[:, None, None] for each in state)
-        rule, R = self.rule, self.scene.indenter.radius  # type: ignore[union-attr]
+        rule, having, R = self.rule, self.having, self.scene.indenter.radius  # type: ignore[union-attr]
         x = self.places[near] + moved
         slope = x / R
         g = depth - self.heights - 0.5 * x * slope
         rise = rule.depth_rate * rate - rule.slide_rate * slope * speed
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
-        touching = g > -0.5 * np.abs(slope) * self.length  # with a part of the element
+        inclined = np.abs(slope) * self.length
+        touching = g > -0.5 * inclined  # with a part of the element
         on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
-        rubbed = p + (1.0 - rule.friction) * damping * slope * speed  # for the friction
-        p, rubbed = (np.where(on & ((q > 0.0) | (rule.tension > 0.0)), q, 0.0) for q in (p, rubbed))
-        inside = np.clip(0.5 + g / (np.abs(slope) * self.length + 1e-300), 0.0, 1.0)
-        area = inside * self.areas * np.where(x < 0.0, rule.front, rule.back)
-        reach = np.sqrt(2.0 * R * np.maximum(depth, 0.0))
-        area = np.where((rule.lost > 0.0) & (np.abs(x) > (1.0 - rule.lost) * reach)
-                        & (x * speed < 0.0), 0.0, area)  # fmt: skip
-        normal, friction = (p * area).sum(axis=(1, 2)), -(rubbed * slope * area).sum(axis=(1, 2))
-        kept = 1.0 - rule.stale * (g < self.surface[:, :, near])
-        lift = (p * area * kept).sum(axis=(1, 2))
-        pressing = np.where((p != 0.0).any(axis=1), x[:, 0], np.nan)
-        left, right = np.fmin.reduce(pressing, axis=1), np.fmax.reduce(pressing, axis=1)
-        central = -normal * np.nan_to_num(left + right) / (2.0 * R)
-        friction = np.where(rule.central[:, 0, 0] > 0.0, central, friction)
-        held = np.where(p != 0.0, area, 0.0)
+        area = np.clip(0.5 + g / (inclined + 1e-300), 0.0, 1.0) * self.areas
+        for k, weight in ((having.front, rule.front), (having.back, rule.back)):
+            counts = (x[k] < 0.0) == (weight is rule.front)
+            area[k] *= np.where(counts, weight[k], 1.0)
+        k = having.lost
+        reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
+        lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
+        area[k] = np.where(lost, 0.0, area[k])
+
+        def borne(p: Array, k: Any = slice(None)) -> Array:
+            pushes = p > 0.0
+            return np.where(on[k] & (pushes | (rule.tension[k] > 0.0)), p, 0.0)
+
+        k = having.friction
+        change = (1.0 - rule.friction[k]) * np.broadcast_to(damping, p.shape)[k]
+        rubbed = borne(p[k] + change * slope[k] * speed[k], k)
+        p = borne(p)
+        force = p * area
+        normal, friction = force.sum(axis=(1, 2)), -(force * slope).sum(axis=(1, 2))
+        friction[k] = -(rubbed * slope[k] * area[k]).sum(axis=(1, 2))
+        k, lift = having.stale, normal.copy()
+        kept = 1.0 - rule.stale[k] * (g[k] < self.surface[k][:, :, near])
+        lift[k] = (force[k] * kept).sum(axis=(1, 2))
+        k = having.central
+        friction[k] = -normal[k] * np.nan_to_num(sum(_edges(p[k], x[k]))) / (2.0 * R)
+        held, drag = np.where(p != 0.0, area, 0.0), 0.0
         stiff = (held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0)).sum(axis=(1, 2))
-        drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
-        drag = (held * drag * slope * slope).sum(axis=(1, 2))
-        peak = p.max(axis=(1, 2))
-        return Pressed(normal, lift, friction, stiff, drag, left, right, peak, surface, stress, on)
+        if not self.scene.drive.rigid:
+            drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
+            drag = (held * drag * slope * slope).sum(axis=(1, 2))
+        return Pressed(normal, lift, friction, stiff, drag, p, x, surface, stress, on)
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
         """Return which elements press, p = K u + C u', C, K, and the new state by the exact memory (F8)."""
-        foundation, rule, old = self.scene.foundation, self.rule, self.surface[:, :, near]
-        sticks, forgets = rule.tension > 0.0, np.isinf(rule.decay)
+        foundation, rule, having = self.scene.foundation, self.rule, self.having
+        old = self.surface[:, :, near]
+        forgets = np.isinf(rule.decay)
         age = np.where(forgets, 0.0, rule.decay) * h / foundation.retardation_time
-        free = np.where(forgets | sticks, 0.0, np.exp(-age) * old) if h else old
-        on = np.where(sticks, g > 0.0, np.where(old == 0.0, touching, g >= free))
-        factor = rule.hunt_crossley * g / StaticState.of(self.scene).depth
-        size = np.where(rule.hunt_crossley > 0.0, factor, 1.0)
-        damping = foundation.damping * size
+        kept = (
+            np.where(forgets | (rule.tension > 0.0), 0.0, np.exp(-age)) if h else np.ones_like(age)
+        )
+        free = kept * old
+        on = np.where(old == 0.0, touching, g >= free)
+        k = having.tension
+        on[k] = g[k] > 0.0
+        damping, k = np.full(g.shape, foundation.damping), having.hunt_crossley
+        damping[k] *= rule.hunt_crossley[k] * g[k] / StaticState.of(self.scene).depth
         p = foundation.stiffness * g + damping * rise
-        flagged = (g > 0.0) & np.where(self.on[:, :, near], p >= 0.0, g >= old)
-        on, free = (np.where(rule.freezes > 0.0, *each) for each in ((flagged, on), (old, free)))
+        k = having.freezes
+        on[k] = (g[k] > 0.0) & np.where(self.on[k][:, :, near], p[k] >= 0.0, g[k] >= old[k])
+        free[k] = old[k]
         surface = np.where(on, np.maximum(g, 0.0), free)
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
@@ -245,6 +276,12 @@ class Elements:
         self.seen[late] = time
 
 
+def _edges(pressure: Array, x: Array) -> tuple[Array, Array]:
+    """Return the ends of what presses, by rule."""
+    pressing = np.where((pressure != 0.0).any(axis=1), x[:, 0], np.nan)
+    return np.fmin.reduce(pressing, axis=1), np.fmax.reduce(pressing, axis=1)
+
+
 def _moduli_and_times(scene: Scene) -> tuple[Array, Array]:
     arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in scene.foundation.arms])
     return arms[:, 0, None, None, None], arms[:, 1, None, None, None]
@@ -266,7 +303,7 @@ def instants(scene: Scene, motion: Any, end: float) -> Array:
     longest = end / FEWEST_STEPS
     if motion.highest_speed:
         longest = min(longest, PASSED * length / motion.highest_speed)
-    if not scene.drive.rigid:
+    if scene.drive.stiffness:
         longest = min(longest, OSCILLATION * math.sqrt(scene.drive_mass / scene.drive.stiffness))
     first = longest * FINEST * GROWTH ** np.arange(math.ceil(-math.log(FINEST) / math.log(GROWTH)))
     changes = sorted({0.0, *(t for t in motion.changes if 0.0 < t < end)})
@@ -284,18 +321,13 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
     static = StaticState.of(scene)
     motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)
-    reach, drive, held = WINDOW * static.half_length, scene.drive, scene.held
+    drive, held = scene.drive, scene.held
+    begun, reach, elements = _begin(scene, rules, motion, float(times[-1]))
     M, M_x = scene.support.mass, scene.drive_mass
     k_s, k_x = 0.0 if held else scene.support.spring, drive.stiffness or 0.0
-    swing = 0.0 if drive.rigid else SWING * static.half_length
-    low, high = motion.extremes(0.0, float(times[-1]))
-    elements = Elements.at_rest(scene, rules, -high - reach - swing, -low + reach + swing)
-    damping = (
-        scene.foundation.slow_damping * static.load / scene.foundation.stiffness / static.depth
-    )
-    parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
-    depth, damper, creep, drops = (parts * [static.depth, damping, 1.0 / damping, 1.0]).T
-    rate, along, along_rate, lifted, pulled, sinks = np.zeros((6, len(rules)))
+    depth, damper, creep, drops = _of_rules(scene, rules, begun.depth)
+    first = np.array([[begun.rate], [0.0], [begun.along_rate], [0.0], [0.0], [0.0]])
+    rate, along, along_rate, lifted, pulled, sinks = np.repeat(first, len(rules), axis=1)
 
     def lift(sunk: Array, rate: Array, found: Pressed, kept: Array | float = 1.0) -> Array:
         spring = k_s * (sunk - static.depth) + damper * rate
@@ -318,7 +350,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
-        if h > 0.0 and (k_x or not held):
+        if h > 0.0 and (not drive.rigid or not held):
             sunk, shift, found = at(h)
             if not held:
                 slope = damper + IMPLICIT * h * k_s + found.slope
@@ -330,7 +362,7 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
                 # Where the whole force raises the indenter and what is left lowers it, it stays, or creeps.
                 sinks = creep * np.maximum(-lift(sunk, rate, found), 0.0)
                 rate = np.maximum(full, np.minimum(less, sinks))
-            if k_x:
+            if not drive.rigid:
                 a = IMPLICIT * pull(shift, along_rate, found) + (1.0 - IMPLICIT) * pulled
                 slope = drive.damping + IMPLICIT * h * k_x + found.drag
                 along_rate = along_rate + h * a / M_x / (1.0 + IMPLICIT * h * slope / M_x)
@@ -339,15 +371,62 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
         if not held:
             full, less = (lift(depth, rate, found, kept) for kept in (1.0, drops))
             lifted = np.select([rate > sinks, rate < 0.0], [full, less], np.clip(0.0, full, less))
-        if k_x:
+        if not drive.rigid:
             pulled = pull(along, along_rate, found)
         speed = V - along_rate
         forward = elements.direction(forward, speed, depth, base - along)
-        edges = np.where(forward, (found.left, found.right), (found.right, found.left))
-        spring = k_x * along + drive.damping * along_rate if k_x else found.friction
+        edges = np.where(forward, ends := _edges(found.pressure, found.x), ends[::-1])
+        spring = found.friction if drive.rigid else k_x * along + drive.damping * along_rate
         rows.append((np.full_like(depth, V), depth, rate, found.normal, found.friction, *edges,
-                     found.peak, speed, spring))  # fmt: skip
+                     found.pressure.max(axis=(1, 2)), speed, spring))  # fmt: skip
     return times, dict(zip(SIMULATED, np.array(rows).transpose(1, 0, 2), strict=True))
+
+
+def _of_rules(scene: Scene, rules: Sequence[Rule], depth: float) -> Array:
+    """Return the depths at the start, dampers, creep and shares of the lift that remain, by rule."""
+    law, static = scene.foundation, StaticState.of(scene)
+    damping = law.slow_damping * static.load / law.stiffness / static.depth
+    parts = np.array([(rule.start, rule.damper, rule.creep, 1.0 - rule.drops) for rule in rules])
+    return (parts * [depth, damping, 1.0 / damping, 1.0]).T
+
+
+def _begin(
+    scene: Scene, rules: Sequence[Rule], motion: Any, end: float
+) -> tuple[StartState, float, Elements]:
+    """Return the state just after t = 0, how far a contact reaches, and the elements that it meets."""
+    static = StaticState.of(scene)
+    begun = scene.start.at(static.depth, motion.velocity(0.0))
+    wider, (low, high) = _widens(scene, begun), motion.extremes(0.0, end)
+    reach = WINDOW * static.half_length * wider
+    outside = reach + _swing(scene, begun, motion, end)
+    place = -high - outside, -low + outside
+    return begun, reach, Elements.at_rest(scene, rules, *place, begun.depth, wider)
+
+
+def _swing(scene: Scene, begun: StartState, motion: Any, end: float) -> float:
+    """Return the largest displacement along x, on the spring or without one."""
+    drive, k_x = scene.drive, scene.drive.stiffness or 0.0
+    if drive.rigid:
+        return 0.0
+    swing = SWING * StaticState.of(scene).half_length
+    if begun.along_rate or not k_x:
+        lasts = min(end, math.sqrt(scene.drive_mass / k_x)) if k_x else end
+        swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
+    return swing
+
+
+def _widens(scene: Scene, begun: StartState) -> float:
+    """Return how much longer than at rest a contact may become after a start."""
+    static = StaticState.of(scene)
+    if scene.held or scene.start.at_rest:
+        return 1.0
+    off = abs(begun.depth - static.depth)
+    energy = 0.5 * scene.support.mass * begun.rate**2
+    energy += (static.load + scene.support.spring * off) * off
+    energy += static.load * max(begun.depth, 0.0) ** 2 / static.depth
+    return max(
+        1.0, math.sqrt(max(begun.depth, 0.0) / static.depth), (energy / static.energy) ** IMPACT
+    )
 
 
 def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:
@@ -377,7 +456,7 @@ def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
     """Return the curves of steady sliding by a rule at speeds (m/s)."""
     scene, static, count = theory.scene, theory.static, speeds.size
     reach, zero = WINDOW * static.half_length, np.zeros(count)
-    elements = Elements.at_rest(scene, [rule] * count, -reach, reach)
+    elements = Elements.at_rest(scene, [rule] * count, -reach, reach, static.depth)
     x = elements.places
     elements.surface = np.zeros((count, elements.heights.shape[1], x.size))
     if scene.foundation.arms:
@@ -404,6 +483,7 @@ def steady(theory: Theory, rule: Rule, speeds: Array) -> dict[str, Array]:
     depth = np.full(count, static.depth) if scene.held else 0.5 * (low + high)
     found = pressed(depth)
     mu = found.friction / np.maximum(found.normal, TINY)
+    left, right = _edges(found.pressure, found.x)
     return {"depth": depth, "normal_force": found.normal, "friction_force": found.friction,
-            "friction_coefficient": mu, "leading_edge": found.left, "trailing_edge": found.right,
-            "peak_pressure": found.peak}  # fmt: skip
+            "friction_coefficient": mu, "leading_edge": left, "trailing_edge": right,
+            "peak_pressure": found.pressure.max(axis=(1, 2))}  # fmt: skip

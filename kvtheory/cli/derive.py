@@ -83,7 +83,7 @@ def derive(
     """Derive the equations, check every step, and print them.
 
     LaTeX, HTML, PDF, Markdown, a notebook, JSON and BibTeX. Each derivation uses earlier ones, so all up to
-    the last of --only are derived. Without --only all are, which takes 20 s the first time.
+    the last of --only are derived. Without --only all are, which takes half a minute the first time.
 
     With --recheck a second program, which shares nothing with the first, checks the claims of
     derivations.json again, and a table tells how. Exit status 1 if a claim is refuted.

@@ -17,17 +17,16 @@ if TYPE_CHECKING:
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
 
-def scene_output(command: Any) -> Any:
-    """Give a command `-o` for the scene that it finds, and `--plot`."""
-    option = click.option(
-        "-o", "--output", type=OutputFile(".toml"),
-        help="Write the scene that is found to FILE.toml.",
-    )  # fmt: skip
-    return option(console.plot_option(console.overwrite_option(command)))
+def scene_output(*others: str, words: str) -> Any:
+    """Give a command `-o` for the scene that it finds, or other files of it, and `--plot`."""
+    option = click.option("-o", "--output", type=OutputFile(".toml", *others), help=words)
+    return lambda command: option(console.plot_option(console.overwrite_option(command)))
 
 
 def _save_scene(found: Any, _: Any, path: Path) -> None:
-    path.write_text(found.to_toml(), encoding="utf-8")
+    toml = path.suffix.lower() == ".toml"
+    text = found.to_toml() if toml else found.to_card(path.suffix.lower())
+    path.write_text(text, encoding="utf-8")
 
 
 @main.command(
@@ -38,6 +37,7 @@ def _save_scene(found: Any, _: Any, path: Path) -> None:
     "--thickness", metavar='"2 mm"', help="Thickness of the layer that is the foundation, or inf."
 )
 @click.option("--poisson-ratio", type=float, metavar="0.3", help="Its Poisson's ratio, up to 0.5.")
+@click.option("--stiffness", metavar='"3.5 GN/m^3"', help="A measured K, instead of a layer.")
 @click.option("--temperature", metavar='"60 degC"', help="Temperature of the foundation.")
 @click.option(
     "--shift-factors", type=FILE, help="CSV of T [degC],log10 a_T; default: fitted to the sweeps."
@@ -51,15 +51,19 @@ def _save_scene(found: Any, _: Any, path: Path) -> None:
     type=FILE,
     help="Scene that is given this foundation; it may have none. Default: Table 1.",
 )
-@scene_output
+@scene_output(
+    ".inp", ".mac",
+    words="Write the scene that is found to FILE.toml, or a card of Abaqus (.inp) or ANSYS (.mac).",
+)  # fmt: skip
 @console.json_option
 def foundation(
     data: Path, scene: Path | None, output: Path | None, plot: Path | None, *, as_json: bool, **how: Any
 ) -> None:  # fmt: skip
     """Fit a Prony series to measured moduli DATA.
 
-    DATA is a CSV of dynamic moduli over frequency (f [Hz],E' [MPa],E'' [MPa] or tan delta) or of a relaxation
-    modulus over time, as instruments export it; with a column T, at several temperatures.
+    DATA is a table of dynamic moduli over frequency (f [Hz],E' [MPa],E'' [MPa], or two of E', E'', |E*| and
+    tan delta or phase), of a relaxation modulus or a creep compliance over time, as instruments export it;
+    with a column T, at several temperatures. Or it is a card of Abaqus (.inp) or ANSYS (.mac).
     """
     from kvtheory.api import fit_foundation
     from kvtheory.scene import load_scene
@@ -74,7 +78,9 @@ def foundation(
 def _shown(found: Any) -> Iterator[None]:
     click.echo(str(found))
     if found.scene is None:
-        click.echo("Give --thickness and --poisson-ratio for the foundation of a scene.")
+        click.echo(
+            "Give --thickness and --poisson-ratio, or --stiffness, for the foundation of a scene."
+        )
     yield
 
 
@@ -91,9 +97,18 @@ def _shown(found: Any) -> Iterator[None]:
 @click.option(
     "--models", is_flag=True, help="Weigh Kelvin-Voigt, a springpot and one to three arms instead."
 )
-@scene_output
+@click.option(
+    "--offset", is_flag=True, help="One unknown more: friction that does not depend on velocity."
+)
+@scene_output(words="Write the scene that is found to FILE.toml.")
 def fit(
-    scene: "Scene", progress: Any, data: Sequence[Path], free: str | None, *, models: bool
+    scene: "Scene",
+    progress: Any,
+    data: Sequence[Path],
+    free: str | None,
+    *,
+    models: bool,
+    offset: bool,
 ) -> Iterator[Any]:
     """Fit quantities of SCENE to measured friction.
 
@@ -104,6 +119,6 @@ def fit(
     from kvtheory.api import fit as find
 
     keys = console.split(free or "")
-    found = find(scene, list(data), free=keys, models=models, progress=progress)
+    found = find(scene, list(data), free=keys, models=models, offset=offset, progress=progress)
     yield found
     click.echo(str(found))

@@ -26,6 +26,8 @@ BEGINNINGS = {
     ".md": (b"# Sliding friction on ", b"# Steady sliding of an indenter of the shape"),
     ".ipynb": (b'{\n "cells": ',),
     ".toml": (b"# A scene whose foundation was fitted", b"# A scene whose quantities were fitted"),
+    ".inp": (b"** Prony series fitted to ",),
+    ".mac": (b"! Prony series fitted to ",),
     ".bib": (b"@article{NakanoKono2020,",),
 }
 """First bytes of the files that commands write; a sweep recognises its own files."""

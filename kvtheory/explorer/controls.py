@@ -12,7 +12,8 @@ from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS,
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.layer import SHAPES as REST_SHAPES
 from kvtheory.scene.layer import THIN, THIN_WAY
-from kvtheory.scene.model import SECTIONS, Scene
+from kvtheory.scene.model import SECTIONS as ALL_SECTIONS
+from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
 from kvtheory.theory.contact_at_rest import splines
 
@@ -62,6 +63,9 @@ UNITS = SHOWN_UNITS | {
     "N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3), "K": ("K", 1.0), "1/s": ("Hz", 1.0),
     "J/mol": ("kJ/mol", 1e-3), "N*s/m^3": ("N*s/mm^3", 1e-9),
 }  # fmt: skip
+
+SECTIONS = {name: each for name, each in ALL_SECTIONS.items() if name != "start"}
+"""The sections that steady sliding depends on."""
 
 
 def controls(scene: Scene) -> dict[str, Any]:
@@ -115,6 +119,7 @@ def controls(scene: Scene) -> dict[str, Any]:
         "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
+        "shift_factors": scene.foundation.shift_factors or [],
     }  # fmt: skip
 
 

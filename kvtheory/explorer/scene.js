@@ -138,12 +138,19 @@ function wrong_in_measured(values) {
   return value("temperature") <= pole ? `foundation.temperature: expected above T_ref \u2212 C\u2082 = ${short(pole)} K, the pole of the WLF law` : "";
 }
 
-/** a_T, by which the temperature multiplies every time of the foundation. */
+/** a_T, by which the temperature multiplies every time of the foundation; the law goes through measured factors. */
 function shift_factor(v) {
   const T = v["foundation.temperature"], T_ref = v["foundation.reference_temperature"], c_1 = v["foundation.wlf.c_1"];
   if (T === undefined || T_ref === undefined) return 1;
-  if (c_1 !== undefined) return 10 ** (-c_1 * (T - T_ref) / (v["foundation.wlf.c_2"] + T - T_ref));
-  return Math.exp(v["foundation.activation_energy"] / MODEL.gas_constant * (T_ref - T) / T / T_ref);
+  const law = (t) => c_1 !== undefined ? -c_1 * (t - T_ref) / (v["foundation.wlf.c_2"] + t - T_ref)
+    : v["foundation.activation_energy"] / MODEL.gas_constant * (T_ref - t) / t / T_ref / Math.LN10;
+  const missed = MODEL.shift_factors.map(([t, log]) => [t, log - law(t)]);
+  let off = missed.length ? missed[T < missed[0][0] ? 0 : missed.length - 1][1] : 0;
+  for (let k = 1; k < missed.length; k++) {
+    const [[a, p], [b, q]] = [missed[k - 1], missed[k]];
+    if (a <= T && T <= b) off = p + (q - p) * (T - a) / (b - a);
+  }
+  return 10 ** (law(T) + off);
 }
 
 /** Where the stiffness of a layer is taken from: its contact at rest, where that is known. */

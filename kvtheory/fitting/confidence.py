@@ -55,7 +55,9 @@ def others(
         if any(place) and place not in seen:
             seen.add(place)
             values = ", ".join(
-                f"{key} = {value:.3g} {specs[key].unit}".removesuffix(" 1")
+                f"{key} = {value:.3g} {specs[key].unit if key in specs else ''}".strip().removesuffix(
+                    " 1"
+                )
                 for key, value in zip(problem.keys, np.exp(point), strict=True)
             )
             worse = f"with a sum of squares {total / sums[0]:.3g} times the least"
@@ -151,8 +153,10 @@ VISIBLE = {True: STEP[FINE] ** 2, False: 1e-4}
 """Least scatter of residuals over time, and over velocity, whose order counts: rounding is below it."""
 PARABOLAS = "parabola", "sphere"
 """Shapes that stand for a cylinder and a ball near the lowest point."""
-LARGE = 0.5
-"""Half length of the contact over the radius from which no ball or cylinder is a parabola: 3 % in height."""
+LARGE = 1.0 / 3.0
+"""Half length or depth over the radius from which no ball or cylinder is a parabola."""
+FAR = 30.0
+"""Factor by which a time may be outside of those of the data."""
 
 
 def alike(problem: Problem, point: Array) -> list[str]:
@@ -189,10 +193,26 @@ def large(problem: Problem, point: Array) -> list[str]:
     most = 0.0
     for data in problem.data:
         V = {} if data.time is None else {"drive.velocity": 0.0}
-        scene = problem.scene.replace({**data.conditions, **V, **own})
-        ratio = problem.solve(scene).half_length / scene.values()["indenter.radius"]
-        most = max(most, float(np.max(ratio)))
+        scene = problem.of({**data.conditions, **V, **own})
+        state = problem.solve(scene)
+        for size in (state.half_length, state.depth):
+            most = max(most, float(np.max(size / scene.values()["indenter.radius"])))
     if most <= LARGE:
         return []
-    message = f"The fitted contact is up to {most:.3g} radii long on each side of the lowest point"
+    message = f"Half length or depth of the fitted contact is up to {most:.3g} radii"
     return [f"{message}, where no ball or cylinder is a parabola: check radius, load and friction."]
+
+
+def unseen(problem: Problem, point: Array) -> list[str]:
+    """Return a note on fitted times that are far from those in which the data pass the contact."""
+    low, high = np.log([1.0 / FAR, FAR]) + np.sort(np.log(problem.passage))[[0, -1]]
+    far = [
+        f"{key} = {value:.3g} s"
+        for key, y, value in zip(problem.keys, point.tolist(), np.exp(point), strict=True)
+        if key.endswith("_time") and not low <= y <= high
+    ]
+    if not far:
+        return []
+    ends = np.sort(problem.passage)
+    which = f"the data pass half a contact in {ends[0]:.3g} to {ends[-1]:.3g} s, and tell little of them"
+    return [f"{', '.join(far)}: {which}."]

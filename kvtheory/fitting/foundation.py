@@ -1,12 +1,14 @@
 """A Prony series from measured moduli: master curve, fewest arms within the scatter, remarks."""
 
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import nnls
 from scipy.stats import chi2
 
-from kvtheory.fitting import moduli, shifting
+from kvtheory.fitting import cards, creep, moduli, shifting
 from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
 
@@ -18,10 +20,15 @@ VISIBLE = 0.01
 """Least misfit below which they are never said to."""
 UNRELAXED = 1e-6
 """Sum of the arms over the relaxed modulus below which there are none."""
-UNSEEN = 1e-3
-"""Relaxed modulus over the least storage or relaxation modulus below which the data do not show it."""
+UNSEEN, DOUBTFUL = 1e-3, 0.1
+"""Relaxed modulus over the least storage or relaxation modulus below which the data do not show it, and below
+which they have to by their misfit."""
 WINDOW = 5
 """Points of the running mean that shows where."""
+LOWEST = 3
+"""Frequencies at which the loss shows whether the material flows."""
+BEYOND_CARD, CARD_POINTS = 10.0, 100
+"""Factor beyond the times of a card up to which its moduli hold, and the points at which they are drawn."""
 VAGUE = 0.3
 """Standard error of log10 a_T from which a shift is reported as vague."""
 MISSED = 2.0
@@ -62,7 +69,7 @@ def fit(
         master = Shifted(whole, reference, T, log_shift, 0.0 * T, 0.0 * T)
     if master is not None:
         law = shifting.law_of(master)
-        notes += _about_shifts(master, law)
+        notes += [*master.notes, *_about_shifts(master, law)]
     thin = whole.thinned
     if thin.x.size < whole.x.size:
         notes.append(
@@ -72,18 +79,42 @@ def fit(
     start, target = clustered(thin, spectrum), 0.0
     if arms is None:
         start = refined(thin, start)
-        target = _target(thin, start, least, rtol)
+        target = max(_target(thin, start, least, rtol), 0.0 if rtol else measured.scatter)
     series = arms_of(thin, start, arms, target)
     if series.modulus.sum() <= UNRELAXED * series.relaxed:
         message = "the moduli do not relax: no series with arms above 0 is closer than a constant"
         raise ValueError(f"{measured.source}: {message}")
-    if _no_plateau(thin, series):
+    noise = max(start.misfit(thin), measured.scatter)
+    if _no_plateau(thin, series) or (
+        series.relaxed < DOUBTFUL * float(thin.values[0].min())
+        and not _needs_spring(thin, series, noise)
+    ):
         series = _with_plateau(thin, series, measured.source)
         notes.append("The data show no relaxed modulus: the slowest arm was taken as the spring.")
+    elif not _needs_spring(thin, series, noise) or _flows(thin):
+        notes.append(
+            "The data hardly show a relaxed modulus, which extrapolates: they would have to go on to lower "
+            "frequencies or longer times, until the loss is small."
+        )
     if arms is not None and series.time.size < arms:
         notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
-    notes += _inconsistent(thin, spectrum, least)
+    notes += _inconsistent(thin, spectrum, least, sweeps)
+    if measured.creep is not None:
+        off = creep.misfit(series, *measured.creep)
+        notes.append(
+            f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
+        )
     return Fitted(measured, thin, series, least, master, law, tuple(notes))
+
+
+def of_card(path: Path) -> tuple[Fitted, float]:
+    """Return the series of a card of Abaqus or ANSYS, sampled over its times, and Poisson's ratio."""
+    series, poisson_ratio, notes = cards.read(path)
+    ends = BEYOND_CARD ** np.array([-1.0, 1.0]) / series.time[[-1, 0]]
+    omega = np.geomspace(*ends, CARD_POINTS)
+    data = Moduli(omega, series.values(omega, dynamic=True))
+    measured = moduli.Measured(str(path), (moduli.Sweep(math.nan, data),), "E", tuple(notes))
+    return Fitted(measured, data, series, 0.0, None, None, tuple(notes)), poisson_ratio
 
 
 def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> float:
@@ -102,6 +133,20 @@ def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> fl
 def _no_plateau(data: Moduli, series: Series) -> bool:
     """Whether the relaxed modulus is not seen in the data."""
     return series.relaxed < UNSEEN * float(data.values[0].min())
+
+
+def _needs_spring(data: Moduli, series: Series, noise: float) -> bool:
+    """Whether the arms alone, with other moduli, are further off than noise explains."""
+    _, norm = nnls(data.kernel(series.time), data.target)
+    size = data.target.size
+    rise = norm**2 - size * series.misfit(data) ** 2
+    return rise > max(noise, FINEST) ** 2 * float(chi2.ppf(CONFIDENCE, 1))
+
+
+def _flows(data: Moduli) -> bool:
+    """Whether the loss is above the storage modulus at the lowest frequencies."""
+    low = np.argsort(data.x)[:LOWEST]
+    return data.dynamic and bool(np.median(data.values[1, low] - data.values[0, low]) > 0.0)
 
 
 def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
@@ -133,8 +178,11 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     return notes
 
 
-def _inconsistent(data: Moduli, series: Series, least: float) -> list[str]:
-    """Return a remark if no Prony series fits within the scatter between neighbours, and where not."""
+def _inconsistent(data: Moduli, series: Series, least: float, sweeps: Any) -> list[str]:
+    """Return a remark if no Prony series fits within the scatter between neighbours, and where not.
+
+    Sweeps that have a series each, and none together, contradict superposition alone.
+    """
     r = series.residuals(data)
     if r.shape[1] < 2 * WINDOW:
         return []
@@ -142,6 +190,16 @@ def _inconsistent(data: Moduli, series: Series, least: float) -> list[str]:
     scatter = np.median(np.abs(steps), axis=1) / 0.6745 / math.sqrt(1.5)
     if least < max(SYSTEMATIC * rms(scatter), VISIBLE):
         return []
+    if len(sweeps) > 1:
+        sizes = np.array([each.moduli.target.size for each in sweeps])
+        own = np.array([best(each.moduli.thinned)[1] for each in sweeps])
+        alone = math.sqrt(float(np.average(own**2, weights=sizes)))
+        if alone < max(SYSTEMATIC * rms(scatter), VISIBLE):
+            return [
+                f"The sweeps do not fall onto one curve: no series has a misfit below {least:.2%} with these "
+                f"shifts, and each sweep by itself has one of {alone:.2%} or more. Moduli may shift "
+                "vertically, or times by different factors."
+            ]
     mean = np.apply_along_axis(np.convolve, 1, r, np.full(WINDOW, 1.0 / WINDOW), "same")
     row, at = np.unravel_index(np.abs(mean).argmax(), mean.shape)
     off = np.abs(mean[row]) > 0.5 * abs(mean[row, at])

@@ -21,7 +21,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 from kvtheory.fitting.least_squares import Fit, descend, slopes, student
-from kvtheory.fitting.records import FRICTION, Data, largest_speed
+from kvtheory.fitting.records import FRICTION, Data, largest_speed, speeds
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import as_given, given
@@ -33,6 +33,8 @@ Follow = Callable[[Scene, Array, float], Mapping[str, Any]]
 """Returns the transient of one scene by name, at times (s), within a tolerance."""
 Report = Callable[[float], Any]
 
+OFFSET = "offset"
+"""The unknown of a friction coefficient that does not depend on velocity, beside that of the foundation."""
 STIFF = "foundation.stiffness", "foundation.modulus"
 """The keys of the stiffness of the foundation: its own, or that of a layer."""
 FLOOR = 0.01
@@ -41,7 +43,13 @@ PEAK = 0.886
 """mu at the maximum over depth/half length at rest: parabola, dead weight, Kelvin-Voigt (F3)."""
 DECADES = 3, 18
 """Range of stiffnesses (N/m^3 or Pa, in powers of ten) in which the first guess is searched for."""
-WIDE = {"stiffness": (1e-4, 1e2), "time": (1e-2, 1e2), "arm": (1e-2, 1e3), "other": (1e-2, 1e2)}
+WIDE = {
+    "stiffness": (1e-4, 1e2),
+    "time": (1e-2, 1e2),
+    "arm": (1e-2, 1e3),
+    "other": (1e-2, 1e2),
+    "offset": (1e-3, 1.0),
+}
 """Ranges that are searched, over the first guess: below it and above it."""
 FREE = 1e3
 """Factor beyond these ranges to which an unknown may go."""
@@ -52,6 +60,8 @@ TRIED, SOME = {False: (6, 8, 10), True: (4, 5, 7)}, 16
 series, and rows of the data at most."""
 ROUNDS = {False: ((48, 6), (16, 10), (12, 15), (12, 200)), True: ((6, 6), (3, 12), (3, 40))}
 """How many of the best points are refined, and by how many steps, in each round; likewise."""
+USUAL_STEPS = 30
+"""Steps that a descent to the end takes, about, to tell how much of the work is done."""
 NEIGHBOURS = 8
 """Nearest neighbours above which a point has to be the best of its part of the range."""
 APART = 0.1
@@ -124,8 +134,23 @@ class Problem:
 
     def _steady(self, data: Data, over: Mapping[str, Array]) -> dict[str, Array]:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            state = self.solve(self.scene.replace({**data.conditions, **over}))
-        return {name: getattr(state, name) for name in data.measured}
+            state = self.solve(self.of({**data.conditions, **over}))
+        found = {name: getattr(state, name) for name in data.measured}
+        return self._lifted(found, over, np.sign(data.conditions["drive.velocity"]), state.load)
+
+    def of(self, values: Mapping[str, Any]) -> Scene:
+        """Return the scene with quantities by key; the offset is none of it."""
+        return self.scene.replace({key: value for key, value in values.items() if key != OFFSET})
+
+    def _lifted(
+        self, found: dict[str, Any], over: Mapping[str, Any], sign: Any, load: Any
+    ) -> dict[str, Any]:
+        """Return what theory gives, with the offset in friction."""
+        if OFFSET in over:
+            for name, factor in (("friction_coefficient", 1.0), ("friction_force", load)):
+                if name in found:
+                    found[name] = found[name] + over[OFFSET] * sign * factor
+        return found
 
     def _over_time(self, i: int, over: Mapping[str, Array]) -> dict[str, Array]:
         """Return the means of the transient over the bins of a time series."""
@@ -134,8 +159,9 @@ class Problem:
         if place not in self.memory:
             nodes, at = data.nodes
             end = {"run.duration": max(self.scene.run.duration, float(nodes[-1]))}
-            scene = self.scene.replace({**data.conditions, **end, **own})
-            found = self.follow(scene, nodes, self.rtol)  # type: ignore[misc]
+            scene = self.of({**data.conditions, **end, **own})
+            found = dict(self.follow(scene, nodes, self.rtol))  # type: ignore[misc]
+            self._lifted(found, own, np.sign(speeds(scene, nodes)), found["normal_force"])
             self.memory[place] = {name: found[name][at].mean(axis=0) for name in data.measured}
         return self.memory[place]
 
@@ -197,6 +223,8 @@ class Problem:
                 row = stiff * time * np.array(WIDE["time"])
             elif name == "order":
                 row = np.array(ORDER)
+            elif key == OFFSET:
+                row = self._largest() * np.array(WIDE["offset"])
             else:
                 row = np.asarray(self.scene.values()[key]) * np.array(WIDE["other"])
             rows.append(row)
@@ -208,6 +236,11 @@ class Problem:
         low, high = self.ranges.T
         orders = [key.endswith(".order") for key in self.keys]
         return low - math.log(FREE), np.where(orders, 0.0, high + math.log(FREE))
+
+    @cached_property
+    def passage(self) -> Array:
+        """The times in which half a contact is passed, at the largest and at the smallest speed."""
+        return self._guess()[1]
 
     def _guess(self) -> tuple[float, Array]:
         """Return the stiffness (or modulus) of the foundation and the times of the data, by fact F26."""
@@ -232,6 +265,19 @@ class Problem:
         V = np.abs(np.hstack(speeds))
         moving = V[V > 0.0]
         return first, a / np.array([moving.max(), moving.min()])
+
+    def _largest(self) -> float:
+        """Return the largest friction coefficient that was measured, about."""
+        for data in self.data:
+            if "friction_coefficient" in data.measured:
+                return float(np.abs(data.measured["friction_coefficient"]).max())
+        still = {**self.data[0].conditions, "drive.velocity": 0.0}
+        forces = [
+            each.measured["friction_force"]
+            for each in self.data
+            if "friction_force" in each.measured
+        ]
+        return float(max(np.abs(force).max() for force in forces)) / self._expected("load", still)
 
     def _expected(self, name: str, still: Mapping[str, Any]) -> float:
         """Return the load or depth at rest, or an estimate of the largest friction; NaN without contact."""
@@ -278,9 +324,15 @@ def solve(
         found, score = descend(of.residuals, points, least, most, steps, **how)
         return _apart(_sorted(found, of.keys), score)
 
+    work = np.cumsum(
+        [
+            len(unit),
+            *((low.size + 1) * points * min(steps, USUAL_STEPS) for points, steps in rounds),
+        ]
+    )
     for done, (most_points, steps) in enumerate(rounds):
         if report:
-            report((1 + done) / (len(rounds) + 2))
+            report(float(work[done] / work[-1]))
         last = done + 1 == len(rounds)
         if last:
             points = points[score <= _plausible(some if problem.costly else problem, score[0])]
@@ -361,7 +413,8 @@ def models(scene: Scene) -> dict[str, tuple[Scene, tuple[str, ...]]]:
     stiff, arm = (STIFF[1], "modulus") if layer else (STIFF[0], "stiffness")
     own = {name: as_given(getattr(old, name)) for name in given(old) if name not in SHAPED}
     size = float(scene.values()[stiff])
-    own |= {"wlf": old.wlf, "stiffness_from": old.stiffness_from}
+    others = ("wlf", "shift_factors", "stiffness_from")
+    own |= {name: held for name in others if (held := getattr(old, name)) is not None}
     found: dict[str, Any] = {
         "kelvin-voigt": (Foundation(**own, retardation_time=1.0), ["retardation_time"]),
         "springpot": (

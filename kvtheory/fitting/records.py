@@ -137,11 +137,14 @@ def read(data: Any, scene: Scene) -> Data:
     names |= {name: SPELLINGS[name] for name in (*FRICTION, "time", "-depth")}
     table = Reader(names, _needed, "a row such as V [mm/s],mu or t [ms],F_x [N]").read(data)
     for head in table.ignored:
-        if head.partition(".")[0] in SECTIONS:
+        if "." in head and head.partition(".")[0] in SECTIONS:
             raise ValueError(f'{table.source}: column "{head}": {nearest(parts(head)[0], keys)}')
-    notes = [f"Column {head} is not used." for head in table.ignored]
+    notes = [*table.notes, *(f"Column {head} is not used." for head in table.ignored)]
     conditions, measured = _columns(table, scene)
     for name, values in measured.items():
+        if name == "normal_force" and values.max() < 0.0:
+            measured[name] = -values
+            notes.append("The normal force is below 0 throughout, and was read as pressing.")
         if not np.any(values):
             raise ValueError(f"{table.source}: {name} is zero throughout; there is nothing to fit")
     if len(measured.keys() & {"friction_coefficient", "friction_force"}) > 1:
@@ -221,12 +224,19 @@ def plausible(table: Table, name: str, values: Array) -> Array:
     return values
 
 
-def largest_speed(scene: Scene, time: Array) -> float:
-    """Return the largest speed of the drive during a time series."""
+def speeds(scene: Scene, time: Array) -> Array:
+    """Return the velocity of the drive at times."""
     drive = scene.drive
     if drive.function is None:
-        return max(abs(V) for _, V in drive.points)
-    return max(abs(drive.called(t)) for t in time.tolist())
+        return np.interp(time, *np.array(drive.points).T)
+    return np.array([drive.called(t) for t in time.tolist()])
+
+
+def largest_speed(scene: Scene, time: Array) -> float:
+    """Return the largest speed of the drive during a time series."""
+    if scene.drive.function is None:
+        return max(abs(V) for _, V in scene.drive.points)
+    return float(np.abs(speeds(scene, time)).max())
 
 
 def _over_time(table: Table, data: Data, scene: Scene) -> Data:

@@ -1,27 +1,40 @@
 r"""Time-temperature superposition: sweeps at several temperatures shifted to one master curve.
 
 A sweep at T lies at x a_T (frequency) or t/a_T (time) of the reference temperature. The shift between
-neighbouring temperatures is where the curves of both, interpolated in logarithms, differ least over their
-overlap: least squares over storage and loss (or relaxation) moduli, and over their factor b_T too if moduli
-may shift vertically. WLF's and Arrhenius' laws are fitted to the shift factors.
+neighbouring temperatures is the one at which one non-negative spectrum (NNLS) fits both sweeps best, so that
+sweeps that hardly overlap tell it, too. Its standard error is half of the distance over which the sum of
+squares rises by four times the variance of a residual. If moduli may shift vertically, their factor b_T is
+the mean difference of both sweeps, interpolated in logarithms, over their overlap. WLF's and Arrhenius'
+laws are fitted to the shift factors.
 """
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import curve_fit, minimize_scalar
+from scipy.optimize import curve_fit, minimize_scalar, nnls
 
 from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.records import LARGEST, plausible
-from kvtheory.fitting.spectrum import Array, Moduli
+from kvtheory.fitting.spectrum import Array, Moduli, grid
 from kvtheory.scene.columns import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT
 
 STEPS = 200
-"""Shifts at which the difference is evaluated before the best one is refined."""
+"""Shifts at which the interpolated sweeps are compared for the first guess."""
+AROUND, TRIED = 1.0, 21
+"""Decades around the first guess over which spectra are tried, and at how many shifts."""
+PER_DECADE, BEYOND = {False: 6, True: 12}, 2.0
+"""Times of a spectrum per decade, for the search and for the result, and decades beyond the sweeps."""
+RESOLVED, FIRST_STEP, HALVINGS = 1e-4, 3e-3, 6
+"""Precision of a shift, the first step to the limits of its error, and how often the last one is halved."""
+SIGMAS = 2.0
+"""Standard errors at which the limits are."""
+FINEST = 3e-3
+"""Smallest standard deviation of a residual, as the times of a spectrum are a grid."""
 USUAL = 0.1
 """Deviation of log10 a_T from a law that is usual even for well measured shifts."""
 LEAST_SCATTER = 1e-3
@@ -31,8 +44,8 @@ FLOOR = 0.01
 |E*| may tell a shift that the storage modulus, nearly constant there, cannot."""
 LEAST_OVERLAP = 2
 """Fewest points of each curve in the overlap."""
-NEARBY, MOST_VARIANCE = 0.02, 1e4
-"""Change of log10 a_T that measures the curvature of its minimum, and the largest variance of a step."""
+BETTER = 4.0
+"""Ratio of sums of squares from which a vertical shift, or a reversal of shift factors, is not by chance."""
 LEAST_C_2, MOST_C_2 = 1.0, 1e4
 """Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant."""
 SAME = 1.5
@@ -85,6 +98,7 @@ class Shifted(NamedTuple):
     log_shift: Array
     log_vertical: Array
     errors: Array
+    notes: tuple[str, ...] = ()
 
 
 def read_factors(data: Any) -> tuple[Array, Array]:
@@ -120,13 +134,20 @@ def shifted(
     vertical: bool,
 ) -> Shifted:
     """Return the master curve of sweeps in order of temperature, at that nearest to `near` or midway."""
-    T = np.array([sweep.temperature for sweep in sweeps])
+    T, notes = np.array([sweep.temperature for sweep in sweeps]), []
+    pairs = [Pair(cold.moduli, warm.moduli) for cold, warm in pairwise(sweeps)]
     if factors is None:
-        steps = [_step(cold.moduli, warm.moduli, vertical) for cold, warm in pairwise(sweeps)]
-        rows = np.array([(0.0, 0.0, 0.0), *steps]).cumsum(axis=0)
+        steps = [pair.best(vertical=vertical) for pair in pairs]
+        variance = _variance(steps)
+        errors = [pair.error(step, variance) for pair, step in zip(pairs, steps, strict=True)]
+        rows = np.array([(step.shift, step.vertical) for step in steps])
+        rows = np.concatenate([np.zeros((1, 2)), rows.cumsum(axis=0)])
+        spread = np.append(0.0, np.square(errors).cumsum())
         first = int(np.abs(T - near).argmin()) if near is not None else T.size // 2
         rows, reference = rows - rows[first], float(T[first])
-        rows[:, 2] = np.sqrt(np.abs(rows[:, 2]))
+        sigma = np.sqrt(np.abs(spread - spread[first]))
+        if not vertical and sweeps[0].moduli.dynamic:
+            notes = _proposed(pairs, steps)
     else:
         place = np.abs(factors[0] - T[:, None]).argmin(axis=1)
         far = np.abs(factors[0][place] - T)
@@ -135,29 +156,157 @@ def shifted(
             message = f"the file of shift factors has none for {T[worst] - 273.15:.4g} degC"
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
-        rows = np.column_stack([factors[1][place], np.zeros((T.size, 2))])
+        shifts = factors[1][place]
+        given, other = (
+            sum(
+                pair.off(way * step).squares
+                for pair, step in zip(pairs, np.diff(shifts), strict=True)
+            )
+            for way in (1.0, -1.0)
+        )
+        if given > BETTER * other:
+            message = "the sweeps fall onto each other with their negatives, and not with these"
+            hint = "expected log10 a_T, which falls as the temperature rises, with f a_T on the master curve"
+            raise ValueError(f"`shift_factors`: are reversed: {message}; {hint}")
+        rows, sigma = np.column_stack([shifts, 0.0 * shifts]), 0.0 * shifts
     parts = [
         Moduli(s.moduli.x * 10.0 ** (a if s.moduli.dynamic else -a), s.moduli.values * 10.0**b)
-        for s, (a, b) in zip(sweeps, rows[:, :2], strict=True)
+        for s, (a, b) in zip(sweeps, rows, strict=True)
     ]
     x = np.concatenate([part.x for part in parts])
     order = np.argsort(x, kind="stable")
     whole = Moduli(x[order], np.concatenate([part.values for part in parts], axis=1)[:, order])
-    return Shifted(whole, reference, T, *rows.T)
+    return Shifted(whole, reference, T, *rows.T, sigma, tuple(notes))
 
 
-def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, float]:
-    """Return the changes of log10 a_T and b_T to the next warmer sweep, and the variance of the first."""
+class Step(NamedTuple):
+    """Changes of log10 a_T and log10 b_T to the next warmer sweep, the sum of squares, and its freedom."""
+
+    shift: float
+    vertical: float
+    squares: float
+    freedom: float
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Sweeps at neighbouring temperatures."""
+
+    cold: Moduli
+    warm: Moduli
+
+    def off(self, shift: float, vertical: float = 0.0, *, fine: bool = False) -> Step:
+        """Return the least sum of squares of both sweeps at a shift, over all non-negative spectra."""
+        x = self.warm.x * 10.0 ** (shift if self.warm.dynamic else -shift)
+        values = np.concatenate([self.cold.values, self.warm.values * 10.0**vertical], axis=1)
+        both = Moduli(np.append(self.cold.x, x), values)
+        times = np.append(np.inf, grid(both, BEYOND, PER_DECADE[fine]))
+        squares, freedom = 0.0, 0.0
+        rows = both.kernel(times).reshape(len(values), x.size + self.cold.x.size, -1)
+        for kernel, target in zip(rows, both.target.reshape(len(values), -1), strict=True):
+            held, norm = nnls(kernel, target, maxiter=30 * (times.size + 10))
+            lines = 1 + np.count_nonzero(
+                np.diff(np.flatnonzero(held)) > 1
+            )  # neighbours are one arm
+            squares += norm * norm
+            freedom += max(target.size - 2.0 * lines - 1.0, 0.25 * target.size)
+        return Step(shift, vertical, squares, freedom)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The shifts between which the sweeps overlap."""
+        (a, b), (c, d) = self.cold.times, self.warm.times
+        return math.log10(c / b), math.log10(d / a)
+
+    def best(self, *, vertical: bool) -> Step:
+        """Return the step of the least sum of squares; it is infinite where only sweeps apart agree."""
+        lift = _interpolated(self.cold, self.warm, vertical=vertical)
+        low, high = self.ends
+        tried = np.linspace(low, high, STEPS)
+        score = np.array([lift(shift)[0] for shift in tried])
+        guess = 0.5 * (low + high)
+        if np.isfinite(score).any():
+            guess = float(tried[score.argmin()])
+            low, high = max(low, guess - AROUND), min(high, guess + AROUND)
+
+        def off(shift: float, *, fine: bool = True) -> Step:
+            return self.off(shift, lift(shift)[1] if vertical else 0.0, fine=fine)
+
+        tried = np.linspace(low, high, TRIED)
+        score = np.array([off(shift, fine=False).squares for shift in tried])
+        place = int(np.abs(tried - guess).argmin())
+        while (
+            near := max(place - 1, 0) + int(score[max(place - 1, 0) : place + 2].argmin())
+        ) != place:
+            place = near  # the minimum there, as sweeps apart from each other always agree
+        if place in (0, TRIED - 1):
+            return off(guess)._replace(squares=math.inf)
+        found = minimize_scalar(
+            lambda shift: off(shift).squares, bounds=tried[[place - 1, place + 1]], method="bounded",
+            options={"xatol": RESOLVED},
+        )  # fmt: skip
+        return min((off(float(found.x)), off(float(tried[place]))), key=lambda step: step.squares)
+
+    def error(self, best: Step, variance: float) -> float:
+        """Return the standard error of a shift, by the longer side of its profile.
+
+        Where sweeps do not tell it, it is half of the range of shifts at which they overlap.
+        """
+        if math.isinf(best.squares):
+            return 0.5 * (self.ends[1] - self.ends[0])
+        rise = SIGMAS**2 * max(variance, best.squares / best.freedom, FINEST**2)
+        return max(self._limit(best, side, best.squares + rise) for side in (-1.0, 1.0)) / SIGMAS
+
+    def _limit(self, best: Step, side: float, most: float) -> float:
+        def above(move: float) -> bool:
+            return self.off(best.shift + side * move, best.vertical, fine=True).squares > most
+
+        low, high = 0.0, FIRST_STEP
+        while not above(high):
+            low, high = high, 2.0 * high
+            if not self.ends[0] - AROUND <= best.shift + side * high <= self.ends[1] + AROUND:
+                return SIGMAS * 0.5 * (self.ends[1] - self.ends[0])
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if above(middle) else (middle, high)
+        return high
+
+
+def _variance(steps: Sequence[Step]) -> float:
+    """Return the variance of a residual."""
+    told = [step for step in steps if math.isfinite(step.squares)]
+    return sum(step.squares for step in told) / max(sum(step.freedom for step in told), 1.0)
+
+
+def _proposed(pairs: Sequence[Pair], steps: Sequence[Step]) -> list[str]:
+    """Return a note if vertical shifts make the sweeps fall onto each other much better."""
+    if math.sqrt(_variance(steps)) < FINEST:
+        return []
+    free = [pair.best(vertical=True) for pair in pairs]
+    gain = _variance(steps) / max(_variance(free), FINEST**2)
+    if gain < BETTER:
+        return []
+    ends = np.append(0.0, np.cumsum([step.vertical for step in free]))
+    b_T = 10.0 ** (ends.max() - ends.min())
+    message = (
+        f"With vertical shifts the sweeps fall onto each other {math.sqrt(gain):.2g} times better"
+    )
+    return [
+        f"{message}: moduli change by a factor of {b_T:.3g} over the temperatures. Try `vertical`."
+    ]
+
+
+def _interpolated(cold: Moduli, warm: Moduli, *, vertical: bool) -> Any:
+    """Return a function of a shift: the mean square difference of sweeps over their overlap, and the mean."""
     sign = 1.0 if cold.dynamic else -1.0  # towards the stiff end
     one, two = (
-        (sign * np.log10(each.x), np.log10(np.maximum(each.values, FLOOR * each.scale)))
-        for each in (cold, warm)
+        (sign * np.log10(x[x > 0.0]), np.log10(np.maximum(values, FLOOR * scale))[:, x > 0.0])
+        for x, values, scale in ((each.x, each.values, each.scale) for each in (cold, warm))
     )
     one, two = ((x[np.argsort(x)], y[:, np.argsort(x)]) for x, y in (one, two))
     scatter = np.hypot(_scatter(*one), _scatter(*two))[:, None]
 
     def difference(shift: float) -> tuple[float, float]:
-        """Return the mean square difference over the overlap, and the mean difference."""
         gaps = []
         for (x, y), (u, v), side in ((two, one, 1.0), (one, two, -1.0)):
             at = x + side * shift
@@ -171,22 +320,7 @@ def _step(cold: Moduli, warm: Moduli, vertical: bool) -> tuple[float, float, flo
         mean = float((weight * gap).sum() / weight.sum())
         return float((weight * gap * gap).sum()) - vertical * mean * mean * weight.sum(), mean
 
-    low, high = one[0][0] - two[0][-1], one[0][-1] - two[0][0]
-    tried = np.linspace(low, high, STEPS)
-    score = np.array([difference(s)[0] for s in tried])
-    best = int(score.argmin())
-    if not math.isfinite(score[best]):
-        raise ValueError("two sweeps at neighbouring temperatures cannot overlap: too few points")
-    ends = tried[max(best - 1, 0)], tried[min(best + 1, STEPS - 1)]
-    found = minimize_scalar(lambda s: difference(s)[0], bounds=ends, method="bounded")
-    shift = float(found.x if found.fun <= score[best] else tried[best])
-    least, b_T = difference(shift)
-    sides: list[float] = [difference(shift + h)[0] for h in (-NEARBY, NEARBY)]
-    rise: float = np.maximum(min(sides) - least, np.finfo(float).tiny)
-    x = two[0] + shift
-    count = int(np.count_nonzero((x >= one[0][0]) & (x <= one[0][-1]))) * len(one[1])
-    variance = NEARBY * NEARBY * least / (rise * float(count - 1))
-    return shift, b_T if vertical else 0.0, min(variance, MOST_VARIANCE)
+    return difference
 
 
 def _scatter(x: Array, y: Array) -> Array:

@@ -70,7 +70,8 @@ class Moduli:
     @cached_property
     def times(self) -> tuple[float, float]:
         """The shortest and the longest time that they cover, in s."""
-        ends = np.array([self.x.min(), self.x.max()])
+        seen = self.x[self.x > 0.0]
+        ends = np.array([seen.min(), seen.max()])
         return tuple(np.sort(1.0 / ends if self.dynamic else ends).tolist())
 
     @cached_property
@@ -80,6 +81,11 @@ class Moduli:
         x, values = self.x[order], self.values[:, order]
         if x.size <= MOST_POINTS:
             return Moduli(x, values)
+        first = int(np.count_nonzero(x == 0.0))
+        if first:  # relaxation from its start
+            rest = Moduli(x[first:], values[:, first:]).thinned
+            start = values[:, :first].mean(axis=1, keepdims=True)
+            return Moduli(np.append(0.0, rest.x), np.concatenate([start, rest.values], axis=1))
         edges = np.geomspace(x[0], x[-1], MOST_POINTS + 1)
         starts = np.unique(np.searchsorted(x, edges[:-1]))
         count = np.diff(np.append(starts, x.size))

@@ -84,6 +84,8 @@ COARSER = (
     "or the difference from the previous, coarser run, divided by the ratio of their element counts"
 )
 
+NOT_AT_REST = "the motion does not start at rest"
+
 
 @dataclass(frozen=True)
 class Models:
@@ -137,6 +139,8 @@ def never_steady(scene: Scene) -> str:
     """
     if why := lacks_quadratic(scene) or lacks_kelvin_voigt(scene) or lacks_rigid_drive(scene):
         return why
+    if not scene.start.at_rest:
+        return NOT_AT_REST
     if not scene.held:
         resting = scene.drive.constant and scene.drive.final_velocity == 0.0
         return "" if resting else "the depth changes"
@@ -169,6 +173,7 @@ def _slow(models: Models, scene: Scene, request: Request) -> Offer:
     """Judge by scalars: the ratio of the rates, the initial layer at the first time, the least error."""
     need(lacks_rigid_paper_model(scene), "" if scene.drive.constant else "the drive changes")
     need("the indenter is fixed" if scene.held else "")
+    need("" if scene.start.at_rest else NOT_AT_REST)
     at_rest = StaticState.of(scene)
     number, tau = abs(at_rest.drive_number), scene.foundation.retardation_time
     given = slow_start.start(number, at_rest.inertia_number, at_rest.support_number)

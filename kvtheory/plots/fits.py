@@ -180,6 +180,10 @@ def _over_velocity(fit: FrictionFit, data: Any, name: str, off: Any, over: Any, 
             where = {**dict(zip(others, values[1:], strict=True)), "drive.velocity": curve}
             state = fit.data["solve"](fit.scene.replace(where))
             line = np.broadcast_to(getattr(state, name), curve.shape)
+            if "offset" in fit.parameters and name.startswith("friction"):
+                line = line + fit.parameters["offset"].value * (
+                    state.load if name.endswith("force") else 1.0
+                )
             over.plot(curve * x_factor, line * factor, color=colour, linewidth=1.0)
         rest.plot(V[own] * x_factor, off[own], "o", color=colour, markersize=3)
     over.set(xscale="log", xlabel=x_label, ylabel=label)

@@ -10,6 +10,7 @@ from kvtheory.results.errors import (
     TransientError,
 )
 from kvtheory.results.fits import FewerArms, FoundationFit, FrictionFit
+from kvtheory.results.impact import Impact
 from kvtheory.results.presented import ClimbStep, Solution, record
 from kvtheory.results.steady import (
     AsymptoteLine,
@@ -41,7 +42,8 @@ __all__ = [
     "AT_REST", "QUANTITIES", "SERIES_UNITS", "SHOWN_UNITS", "SPRING_UNITS", "STABILITY_UNITS",
     "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis",
     "BodyLimits", "Certificate", "Check", "ClimbStep", "Comparison", "DivergenceError", "Event",
-    "Explanation", "Failure", "FewerArms", "FoundationFit", "FrictionFit", "QuadratureError",
+    "Explanation", "Failure", "FewerArms", "FoundationFit", "FrictionFit", "Impact",
+    "QuadratureError",
     "Simulation", "Solution", "SprungSimulation", "SprungTransient", "Stability", "SteadyState",
     "Sweep", "ToleranceError", "Transient", "TransientError", "record", "units_for",
 ]  # fmt: skip

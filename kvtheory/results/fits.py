@@ -63,7 +63,8 @@ class FoundationFit(_Fit):
     of them; no series with non-negative arms has a misfit below `least_misfit`, however many arms it has.
 
     `shift_factors` are pairs of temperature (degrees Celsius) and log10 a_T, `shift_errors` the standard
-    errors of the latter, `shift_law` the law that was fitted to them. `frequencies` (Hz) are those that the
+    errors of the latter, `shift_law` the law that was fitted to them; the arms are those at the
+    `reference_temperature` (K), as in the scene, which shifts them. `frequencies` (Hz) are those that the
     data cover at the reference temperature; sliding at `velocities` (m/s), V over the length of the contact
     of `scene`, is within them. `notes` are remarks on the data. Without a layer there is no `scene`: its
     `foundation` needs `thickness` and `poisson_ratio`.
@@ -79,6 +80,7 @@ class FoundationFit(_Fit):
     shift_factors: tuple[tuple[float, float], ...] | None
     shift_errors: tuple[float, ...] | None
     shift_law: str | None
+    reference_temperature: float | None
     frequencies: tuple[float, float]
     velocities: tuple[float, float] | None
     source: str
@@ -91,6 +93,17 @@ class FoundationFit(_Fit):
     def foundation(self) -> GeneralizedMaxwell:
         """The foundation of `scene`."""
         return self._found.foundation  # type: ignore[return-value]
+
+    def to_card(self, suffix: str) -> str:
+        """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa and s."""
+        from kvtheory.fitting.cards import written
+        from kvtheory.fitting.spectrum import Series
+
+        nu = self.data["poisson_ratio"]
+        if self.modulus is None or nu is None:
+            raise ValueError("a card holds moduli and Poisson's ratio: give `poisson_ratio`")
+        E, tau = np.array(self.arms).T
+        return written(suffix, Series(self.modulus, E, tau), nu, self.source)
 
     @property
     def remarks(self) -> list[str]:
@@ -117,7 +130,9 @@ class FoundationFit(_Fit):
         heads = f"arm [{unit}]", "relaxation time [s]"
         rows = [(f"{E:.6g}", f"{tau:.6g}") for E, tau in self.arms]
         relaxed = self.stiffness if self.modulus is None else self.modulus
-        first = f"Prony series, relaxed {relaxed:.6g} {unit}"
+        T = self.reference_temperature
+        at = "" if T is None else f" at {T - ZERO_CELSIUS:.4g} degC"
+        first = f"Prony series{at}, relaxed {relaxed:.6g} {unit}"
         return "\n".join([first, *aligned(heads, rows), *self.remarks])
 
     def _columns(self) -> Columns:
@@ -147,7 +162,10 @@ class Parameter(NamedTuple):
 
 
 class WeighedModel(NamedTuple):
-    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all."""
+    """A foundation that was fitted: its unknowns, misfit, AICc above the least, and weight among all.
+
+    The weight is NaN where the best one does not fit to the scatter: weights hold if one of them is true.
+    """
 
     name: str
     unknowns: int
@@ -186,7 +204,7 @@ class FrictionFit(_Fit):
         """What should be known about the fit, a line each."""
         rows = sum(each.size for each in self.data["sets"])
         lines = [f"Fitted to {self.source}: {rows} rows, misfit {self.misfit:.3g}."]
-        for keys in self.not_identifiable:
+        for keys in dict.fromkeys(self.not_identifiable):
             apart = " apart: a combination of them" if len(keys) > 1 else ": it"
             doubt = "is uncertain by more than a factor of two"
             lines.append(f"The data cannot tell {', '.join(keys)}{apart} {doubt}.")
@@ -199,7 +217,7 @@ class FrictionFit(_Fit):
                 key,
                 f"{value:.5g}",
                 f"{error:.2g}",
-                specs[key].unit,
+                specs[key].unit if key in specs else "1",
                 f"{error / value:.2g}",
                 " or ".join(f"{low:.4g} to {high:.4g}" for low, high in (own, *others)),
             )
@@ -210,7 +228,13 @@ class FrictionFit(_Fit):
         if self.models:
             columns = "model", "unknowns", "misfit", "AICc", "weight"
             weighed = [
-                (m.name, str(m.unknowns), f"{m.misfit:.3g}", f"+{m.aicc:.1f}", f"{m.weight:.0%}")
+                (
+                    m.name,
+                    str(m.unknowns),
+                    f"{m.misfit:.3g}",
+                    f"+{m.aicc:.1f}",
+                    f"{m.weight:.0%}" if m.weight == m.weight else "-",
+                )
                 for m in self.models
             ]
             lines += ["", *aligned(columns, weighed)]

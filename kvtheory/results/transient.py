@@ -22,6 +22,12 @@ class TimeSeries(Presented):
     """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN.
 
     A note says if V/c, c the length of the contact, leaves the frequencies of a measured foundation.
+
+    Of a drop, from a gap, `restitution` is the speed up at the first take-off over the speed down at the
+    first landing, and `contact_time` (s) the time between both. Of an indenter that coasts, the sliding
+    velocity stays below one hundredth of that at the start from `stopping_time` (s) on, after a sliding
+    distance `stopping_distance` (m): friction vanishes with the velocity, so that the rest fades
+    exponentially and never ends. They are None where they do not occur within the run.
     """
 
     time: Value
@@ -39,6 +45,10 @@ class TimeSeries(Presented):
         default_factory=TRANSIENT_UNITS.copy, repr=False, compare=False
     )
     notes: tuple[str, ...] = field(default=(), compare=False)
+    restitution: float | None = None
+    contact_time: float | None = None
+    stopping_time: float | None = None
+    stopping_distance: float | None = None
 
     @property
     def _title(self) -> str:

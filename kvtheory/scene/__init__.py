@@ -14,11 +14,12 @@ from kvtheory.scene.indenters import (
 )  # fmt: skip
 from kvtheory.scene.mistakes import SceneError
 from kvtheory.scene.model import DeadWeight, Drive, Fixed, Run, Scene, Support, Suspended
+from kvtheory.scene.start import Start
 from kvtheory.scene.waveforms import Sine, SmoothRamp, Triangle
 
 __all__ = [
     "Circle", "DeadWeight", "Drive", "Fixed", "Foundation", "FractionalKelvinVoigt",
     "GeneralizedMaxwell", "Indenter", "Parabola", "PowerLaw", "Profile", "Revolved", "Run", "Scene",
-    "SceneError", "Sine", "SmoothRamp", "Sphere", "Support", "Suspended", "Triangle", "Wedge",
-    "load_scene", "template", "to_toml",
+    "SceneError", "Sine", "SmoothRamp", "Sphere", "Start", "Support", "Suspended", "Triangle",
+    "Wedge", "load_scene", "template", "to_toml",
 ]  # fmt: skip

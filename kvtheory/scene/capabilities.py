@@ -98,6 +98,8 @@ lacks_parabola = Needs(Scenes(("parabola",)))
 lacks_quadratic = Needs(Scenes(QUADRATIC))
 lacks_kelvin_voigt = Needs(Scenes(laws=KELVIN_VOIGT))
 lacks_arms = Needs(Scenes(laws=FINITE))
+lacks_drop = Needs(Scenes(QUADRATIC, KELVIN_VOIGT, MOVING))
+lacks_dropped = Needs(Scenes(QUADRATIC, supports=MOVING))
 lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
 lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
@@ -173,6 +175,11 @@ QUESTIONS = {
     "sweep": Question("sweeps of steady sliding", "sweep(scene, over=...)", lacks_quadrature),
     "sweep over time": Question(
         "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_arms, _NO_ELEMENTS
+    ),
+    "drop": Question(
+        "a drop in closed form", "restitution(scene)", lacks_drop,
+        "On other laws a drop has more than one number, and other shapes are not derived: `transient` and "
+        "`elements` follow it.",
     ),
     "footprint": Question(
         "the footprint", "footprint(scene)", lacks_ball,

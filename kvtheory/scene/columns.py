@@ -1,9 +1,8 @@
 """Measured tables as instruments export them: columns by name and unit, each value with its line.
 
-A header is the first row that names what is needed. Units are in the header (``E' [MPa]``, ``f/Hz``) or in
-the row below it (``Hz, MPa``; ``[Hz] [MPa]``). Rows above a header and rows of text between tables (the
-steps of TRIOS, the intervals of RheoCompass) are skipped; the tables of one file form one. What cannot be
-read, or could be read in two ways, raises ValueError with the column and the line.
+Where the tables of a file are, `layouts` finds; those of one file form one. A temperature that is in the
+head of each table is a column. What cannot be read, or could be read in two ways, raises ValueError with
+the column and the line.
 """
 
 import csv
@@ -22,34 +21,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.drives import history_points
+from kvtheory.scene.layouts import (
+    MARKS,
+    SPACES,
+    STARTS,
+    UNITLESS,
+    Layout,
+    best_row,
+    blank,
+    tables,
+)
 from kvtheory.scene.mistakes import mistake, shown
-from kvtheory.scene.tables import SEPARATED, SEPARATORS, number, parts, plain, read_text
+from kvtheory.scene.tables import number, parts, plain, read_text, suffixed
 from kvtheory.scene.units import bare, to_si
 
 Array = NDArray[np.float64]
 
-STARTS = re.compile(r"[\s,;\"]*(?:[-+.]*\d|nan\b)", re.IGNORECASE)
-"""The beginning of a row of numbers; its first cells may be empty."""
-UNITLESS = "", "-", "1"
-INCH = re.compile(r'(?<=[EG])"(?=\s*[\[(/])')
-"""A double prime written as a quotation mark, before a unit."""
 MISSPELT = 0.8
 """Similarity to a known name from which a name counts as misspelt."""
 SPELLINGS = {
-    "time": "time, t, Zeit",
-    "velocity": "velocity, V, v, speed, drive velocity, drive.velocity, v_drive, Geschwindigkeit",
-    "sliding_velocity": "sliding_velocity, v_s, v_slide, slip velocity, Gleitgeschwindigkeit",
+    "time": "time, t, elapsed time, test time, timestamp, Zeit, Versuchszeit",
+    "velocity": "velocity, V, v, V1, V_x, speed, drive velocity, drive.velocity, v_drive, "
+    "Geschwindigkeit",
+    "sliding_velocity": "sliding_velocity, v_s, v_slide, slip velocity, sliding speed, linear speed, "
+    "linear velocity, relative velocity, relative speed, Gleitgeschwindigkeit",
     "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
     "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
     "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
     "-depth_rate": "v_z, vz_A, dz_A/dt, z_A_dot, vertical velocity",
     "load": "load, W, Last",
-    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
-    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
-    "Reibkraft, Reibungskraft, Tangentialkraft",
+    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, vertical load, applied load, "
+    "Normalkraft, Vertikalkraft",
+    "friction_force": "friction_force, F_x, F_t, F, friction, lateral force, tangential force, "
+    "horizontal force, Reibkraft, Reibungskraft, Tangentialkraft",
     "spring_force": "spring_force, F_s, F_spring, drive force, pulling force, Federkraft, Zugkraft",
-    "friction_coefficient": "friction_coefficient, mu, μ, µ, coefficient of friction, COF, Reibungszahl, "
-    "Reibwert, Reibungskoeffizient",
+    "friction_coefficient": "friction_coefficient, mu, μ, µ, coefficient of friction, CoF, friction coeff, "
+    "friction coeff., friction factor, Reibungszahl, Reibwert, Reibungskoeffizient",
     "leading_edge": "leading_edge, x_LE, Vorderkante",
     "trailing_edge": "trailing_edge, x_TE, Hinterkante",
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
@@ -57,8 +64,12 @@ SPELLINGS = {
     "temperature": "temperature, T, temp, temp., Temperatur",
 }
 """Names of quantities in tables, case, spaces and underscores aside; a minus sign points the other way."""
-BEFORE_UNITS = 2
-"""Most blank rows between a header and its row of units."""
+BY_UNIT = {"T": ("t", "s"), "t": ("T", "K")}
+"""Letters that mean the other where their unit is of its dimension: T [s] is a time."""
+IN_HEAD = re.compile(
+    r"(?P<value>[-+]?\d+(?:[.,]\d+)?)[\s;\"]*(?P<unit>°\s?C|℃|deg\.? ?C|degC|K)(?![\w/])"
+)
+"""A temperature in the head of a table."""
 
 
 class Column(NamedTuple):
@@ -71,12 +82,15 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """The known columns by quantity, the line of each row, and the headers of other columns."""
+    """The known columns by quantity, the line of each row, the headers of other columns, and remarks."""
 
     source: str
     columns: Mapping[str, Column]
     lines: NDArray[np.int_]
     ignored: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    parts: NDArray[np.int_] | None = None
+    """The number of the table of each row, where a file holds several."""
 
     def __contains__(self, quantity: str) -> bool:
         return quantity in self.columns
@@ -105,11 +119,11 @@ class Table:
         raise self.error(quantity, message)
 
     def number(self, quantity: str) -> Array:
-        """Return a column of dimensionless numbers."""
+        """Return a column of dimensionless numbers; they may be given in percent."""
         column = self.columns[quantity]
-        if column.unit not in UNITLESS:
-            raise self.error(quantity, f'has the unit "{column.unit}"; expected none')
-        return column.values
+        if column.unit not in (*UNITLESS, "%"):
+            raise self.error(quantity, f'has the unit "{column.unit}"; expected none, or %')
+        return column.values * (0.01 if column.unit == "%" else 1.0)
 
     def require(self, quantity: str, good: NDArray[np.bool_], message: str) -> None:
         """Raise unless all values of a column are good; name the first line that is not."""
@@ -126,9 +140,21 @@ def _key(name: str) -> str:
     return name.strip() if len(name.strip()) == 1 else plain(name)
 
 
+FORCES = {"g": "gf", "kg": "kgf", "lb": "lbf", "gram": "gf", "grams": "gf"}
+"""Units of mass that stand for the weight of it, where a force is meant."""
+
+
 def _spelt(unit: str, si: str) -> str:
-    """Return a unit as `kvtheory.scene.units` reads it: instruments write C for degrees Celsius."""
-    return {"C": "degC", "F": "degF"}.get(unit, unit) if si == "K" else unit
+    """Return a unit as `kvtheory.scene.units` reads it: C is Celsius, and g the weight of a gram."""
+    if si == "K":
+        return {"C": "degC", "F": "degF", "ºC": "degC", "° C": "degC", "deg C": "degC"}.get(
+            unit, unit
+        )
+    unit = unit.replace("⁻¹", "^-1").replace("sec", "s")
+    if si in ("N", "N/m"):
+        weight, slash, width = unit.partition("/")
+        return f"{FORCES.get(weight, weight)}{slash}{width}"
+    return unit
 
 
 Known = dict[int, tuple[str, str, str]]
@@ -142,13 +168,14 @@ class Reader:
     `spellings` are the names of each quantity, separated by commas; only names of one letter must have the
     case that is listed: T is a temperature, t a time. `needed` tells from the quantities of a row whether it
     is a header; `example` is one, for messages. Cells of the quantities in `partial` may be empty or not
-    finite; an empty one is NaN.
+    finite; an empty one is NaN. With `in_head`, a temperature may stand in the head of each table.
     """
 
     spellings: Mapping[str, str]
     needed: Callable[[set[str]], bool]
     example: str
     partial: Container[str] = ()
+    in_head: bool = False
 
     @cached_property
     def known(self) -> dict[str, tuple[str, str]]:
@@ -208,79 +235,118 @@ class Reader:
         if "\0" in text:
             message = "not a text file; export a table as text or CSV"
             raise ValueError(f"{path}: {message}; expected {self.example}")
-        lines, at, header = text.splitlines(), 0, None
-        skipped = -1
-        tables: list[tuple[Known, dict[str, Array], list[int], tuple[str, ...]]] = []
-        while at < len(lines):
-            found_here = None if _blank(lines[at]) else self._header(lines[at], lines[0])
-            if found_here is None:
-                if not _blank(lines[at]):
-                    if STARTS.match(lines[at]):
-                        raise ValueError(f"{path}: {self._headless(lines, skipped, at)}")
-                    skipped = at
-                at += 1
-                continue
-            cells, separator = header = found_here
-            units, at = _units_below(lines, at + 1, separator, len(cells))
-            found = self._known(cells, str(path), units)
-            rows = []
-            while at < len(lines):
-                if STARTS.match(lines[at]):
-                    rows.append(at)
-                elif not _blank(lines[at]):
-                    break
-                at += 1
-            if rows:
-                values = _numbers(path, lines, rows, header, found, self.partial)
-                tables.append((found, values, rows, self._others(cells, found)))
-        if not tables:
-            message = (
-                "holds a header and no rows" if header else self._headless(lines, skipped, None)
-            )
-            raise ValueError(f"{path}: {message}")
+        lines = text.splitlines()
+        layouts, nameless = tables(lines, self._named)
+        if nameless is not None:
+            message = f"line {nameless + 1} holds numbers, and no row above it names the columns"
+            raise ValueError(f"{path}: {message}; expected {self.example}")
+        if not layouts:
+            raise ValueError(f"{path}: {self._headless(lines, path)}")
+        read, notes = [], self._unread(lines, layouts[0])
+        for each in layouts:
+            found = self._known(each.heads, str(path), each.units)
+            values, own = _numbers(path, lines, each, found, self.partial)
+            notes += own
+            read.append((found, values))
         kinds = {
-            tuple(sorted((name, unit) for name, _, unit in found.values())) for found, *_ in tables
+            tuple(sorted((name, unit) for name, _, unit in found.values())) for found, _ in read
         }
         if len(kinds) > 1:
             message = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
             raise ValueError(f"{path}: its tables differ in their columns or units: {message}")
         columns = {
-            name: Column(head, unit, np.concatenate([values[name] for _, values, *_ in tables]))
-            for name, head, unit in tables[0][0].values()
+            name: Column(head, unit, np.concatenate([values[name] for _, values in read]))
+            for name, head, unit in read[0][0].values()
         }
-        numbers = np.concatenate([np.array(rows) + 1 for _, _, rows, _ in tables])
-        return Table(str(path), columns, numbers, tables[0][3])
+        sizes = [len(each.rows) for each in layouts]
+        if self.in_head and "temperature" not in columns:
+            heads = [self._temperature(each.above) for each in layouts]
+            if any(head is not None for head in heads):
+                missing = [each.line for each, T in zip(layouts, heads, strict=True) if T is None]
+                if missing:
+                    message = "the head of this table names no temperature, as that of others does"
+                    raise ValueError(f"{path}: line {missing[0] + 1}: {message}")
+                T = np.repeat(np.array(heads, dtype=float), sizes)
+                columns["temperature"] = Column("temperature in the head of a table", "K", T)
+                notes.append("The temperature is that in the head of each table.")
+        numbers = np.concatenate([np.array(each.rows) + 1 for each in layouts])
+        others = self._others(
+            [""] * layouts[0].shift + layouts[0].heads[max(layouts[0].shift, 0) :], read[0][0]
+        )
+        return Table(
+            str(path), columns, numbers, others, tuple(dict.fromkeys(notes)),
+            np.repeat(np.arange(len(sizes)), sizes),
+        )  # fmt: skip
 
-    def _header(self, line: str, first: str) -> tuple[list[str], str] | None:
-        """Return the cells and the separator, that of ``sep=;`` or the best, of a row that is a header."""
-        named, best, most = SEPARATED.match(first), None, 0
-        for separator in named[1] if named else SEPARATORS:
-            cells = _split(line, separator)
-            known = {self._quantity(cell)[0] for cell in cells if cell} - {None}
-            if len(known) > most and self.needed({name for name in known if name}):
-                best, most = (cells, separator), len(known)
-        return best
+    def _unread(self, lines: Sequence[str], first: Layout) -> list[str]:
+        """Return a note on rows of numbers above the first header."""
+        rows = [k for k in range(first.line) if STARTS.match(lines[k]) and not blank(lines[k])]
+        several = [k for k in rows if len(re.findall(r"\d[\s;,]+[-+.]?\d", lines[k])) > 0]
+        if len(several) < 3:
+            return []
+        where = f"Lines {several[0] + 1} to {several[-1] + 1}, above the header"
+        return [f"{where} in line {first.line + 1}, are not used."]
 
-    def _quantity(self, cell: str) -> tuple[str | None, str]:
+    def _temperature(self, above: Sequence[str]) -> float | None:
+        """Return the temperature (K) in the head of a table: of a line with its name, or the only one."""
+        named, others = [], []
+        for line in above:
+            matches = [
+                to_si(
+                    f"{m['value'].replace(',', '.')} {_spelt(m['unit'].replace(' ', ''), 'K')}", "K"
+                )
+                for m in IN_HEAD.finditer(line)
+            ]
+            first = re.split(r"[:=\t;,]", line.lstrip("#% \t"), maxsplit=1)[0]
+            (named if self._name(first) == "temperature" else others).extend(matches)
+        if named:
+            return named[-1]
+        return others[0] if len(set(others)) == 1 else None
+
+    def _count(self, cells: Sequence[str], units: Sequence[str] = ()) -> set[str]:
+        """Return the quantities that cells name, with the units below them."""
+        found = set()
+        for i, cell in enumerate(cells):
+            name = self._quantity(cell, units[i] if i < len(units) else "")[0]
+            found |= {name} if name else set()
+        return found
+
+    def _named(self, cells: Sequence[str], units: Sequence[str]) -> int:
+        """Return how many quantities a header names; 0 where it is none."""
+        found = self._count(cells, units)
+        return len(found) if found and self.needed(found) else 0
+
+    def _quantity(self, cell: str, below: str = "") -> tuple[str | None, str]:
         """Return the quantity that a header names, and its unit; "G(t)" and "tan(delta)" are names."""
-        whole = self._name(cell)
-        name, unit = (cell, "") if whole else parts(cell)
-        return whole or self._name(name), unit
+        name, unit = self._name(cell), ""
+        for split in () if name else (parts, suffixed):
+            stem, unit = split(cell)
+            if name := self._name(stem):
+                break
+            unit = ""
+        stem, own = parts(cell)
+        letter, si = BY_UNIT.get(stem, ("", ""))
+        if letter and _fits(own or below, si) and (other := self._name(letter)):
+            name, unit = other, own
+        return name, unit
 
     def _name(self, head: str) -> str | None:
-        return self.known.get(_key(head), (None, ""))[0]
+        """Return the quantity of a name, or of a symbol behind words: Storage modulus G'."""
+        words = head.split()
+        symbol = words[-1] if len(words) > 1 and not words[-1].isalnum() else ""
+        return (self.known.get(_key(head)) or self.known.get(_key(symbol)) or (None, ""))[0]
 
     def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
         found: Known = {}
         seen: dict[str, str] = {}
         for i, cell in enumerate(cells):
-            name, unit = self._quantity(cell)
+            below = units[i] if i < len(units) else ""
+            name, unit = self._quantity(cell, below)
             if name is None:
                 continue
             if name in seen:
                 both = f'columns "{shown(seen[name])}" and "{shown(cell)}"'
                 raise ValueError(f"{source}: {both} are both the {name}; keep one of them")
-            below = units[i] if i < len(units) else ""
             if unit and below and unit != below:
                 message = f'has the unit "{unit}" in its name and "{below}" below it'
                 raise ValueError(f'{source}: column "{shown(cell)}": {message}')
@@ -291,19 +357,32 @@ class Reader:
     def _others(self, cells: Sequence[str], found: Known) -> tuple[str, ...]:
         return tuple(shown(cell) for i, cell in enumerate(cells) if cell and i not in found)
 
-    def _headless(self, lines: Sequence[str], text: int, numbers: int | None) -> str:
-        """Return that no header precedes a row of numbers, or the end; a row of text may be meant as one."""
-        if text >= 0:
-            cells = max((_split(lines[text], each) for each in SEPARATORS), key=len)
-            words = [cell for cell in cells if number(cell, ",") is None]
-            message = self._lacking(cells)
-            if 0 < len(words) < len(cells):  # a row of numbers with a mistake; no header has any
-                message = f'"{shown(words[0])}" is not a number'
-            return f'line {text + 1}, "{shown(lines[text])}": {message}'
-        message = "is empty"
-        if numbers is not None:
-            message = f"line {numbers + 1} holds numbers, and no row above it names the columns"
-        return f"{message}; expected {self.example}"
+    def _headless(self, lines: Sequence[str], path: Path) -> str:
+        """Return why a file holds no table: of the row that names most, or of the one above numbers."""
+        numbers = next(
+            (k for k, line in enumerate(lines) if STARTS.match(line) and not blank(line)), None
+        )
+        text = [
+            k
+            for k, line in enumerate(lines[:numbers])
+            if not STARTS.match(line) and not blank(line)
+        ]
+        at, cells = best_row(lines, lambda cells, units: len(self._count(cells, units)))
+        if at < 0 and text:
+            at, cells = text[-1], max((split(lines[text[-1]]) for split in MARKS.values()), key=len)
+        if at < 0:
+            message = "is empty"
+            if numbers is not None:
+                message = f"line {numbers + 1} holds numbers, and no row above it names the columns"
+            return f"{message}; expected {self.example}"
+        if self._named(cells, ()):
+            self._known(cells, str(path))
+            return f'holds a header and no rows: no numbers stand below line {at + 1}, "{shown(lines[at])}"'
+        words = [cell for cell in cells if number(cell, ",") is None]
+        message = self._lacking(cells)
+        if 0 < len(words) < len(cells):  # a row of numbers with a mistake; no header has any
+            message = f'"{shown(words[0])}" is not a number'
+        return f'line {at + 1}, "{shown(lines[at])}": {message}'
 
     def _lacking(self, heads: Sequence[str]) -> str:
         """Return what columns lack to be those of a table."""
@@ -316,62 +395,41 @@ class Reader:
         return "; ".join([message, *hints, f"expected {self.example}"])
 
 
-def _blank(line: str) -> bool:
-    """Whether a line is empty or a comment."""
-    return not line.strip(' \t\r;,"') or line.lstrip().startswith("#")
-
-
-def _split(line: str, separator: str) -> list[str]:
-    if '"' not in line and len(line) < csv.field_size_limit():
-        return [cell.strip() for cell in line.split(separator)]
-    quoted = INCH.sub("''", line)
-    if quoted.count('"') % 2:
-        quoted = quoted.replace('"', "''")
-    return [cell.strip() for cell in next(csv.reader([quoted], delimiter=separator))]
-
-
-def _units_below(
-    lines: Sequence[str], at: int, separator: str, count: int
-) -> tuple[list[str], int]:
-    """Return the units in the row below a header, if there is one, and where the rows of numbers begin."""
-    below = at
-    while below < min(at + BEFORE_UNITS, len(lines) - 1) and _blank(lines[below]):
-        below += 1
-    if below >= len(lines) or _blank(lines[below]):
-        return [], at
-    cells = [cell.strip("[]() ") for cell in _split(lines[below], separator)]
-    texts = [cell for cell in cells if cell]
-    is_number = [number(cell, ",") is not None for cell in texts if cell not in UNITLESS]
-    if not is_number or any(is_number) or len(cells) > count + 1:
-        return [], at
-    return cells, below + 1
+def _fits(unit: str, si: str) -> bool:
+    """Whether a unit is of a dimension."""
+    with suppress(ValueError):
+        return bool(unit) and to_si(f"1 {_spelt(unit, si)}", si) is not None
+    return False
 
 
 def _numbers(
-    path: Path, lines: Sequence[str], rows: Sequence[int], header: tuple[list[str], str], found: Known,
-    partial: Container[str],
-) -> dict[str, Array]:  # fmt: skip
-    """Return the known columns; if the fast reader fails, find the cell that is no number."""
-    names = [name for name, _, _ in found.values()]
-    (heads, separator), decimal = header, "." if header[1] == "," else ","
-    texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in rows]
-    mixed = (
-        decimal == "," and any("," in lines[k] for k in rows) and any("." in lines[k] for k in rows)
+    path: Path, lines: Sequence[str], own: Layout, found: Known, partial: Container[str]
+) -> tuple[dict[str, Array], list[str]]:
+    """Return the known columns, and notes; if the fast reader fails, find the cell that is no number."""
+    names, decimal = [name for name, _, _ in found.values()], own.decimal
+    texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in own.rows]
+    mixed = decimal == "," and any("," in lines[k] and "." in lines[k] for k in own.rows)
+    marks = (
+        {mark for k in own.rows for mark in ",." if mark in lines[k]} if decimal == "," else set()
     )
-    if not mixed and all(text.count(separator) < len(heads) for text in texts):
-        with suppress(ValueError):
-            options: Any = {"delimiter": separator, "usecols": list(found), "quotechar": '"'}
-            return dict(zip(names, np.loadtxt(texts, ndmin=2, **options).T, strict=True))
+    if not mixed and len(marks) < 2 and own.separator not in SPACES:
+        count = len(own.heads) - own.shift
+        if all(text.count(own.separator) < count for text in texts):
+            with suppress(ValueError):
+                places = [i - own.shift for i in found]
+                options: Any = {"delimiter": own.separator, "usecols": places, "quotechar": '"'}
+                return dict(zip(names, np.loadtxt(texts, ndmin=2, **options).T, strict=True)), []
+    notes = _footer(lines, own, found)
     values: list[list[float]] = []
-    marks: dict[str, int] = {}
-    for k in rows:
-        cells = _split(lines[k], separator)
-        while len(cells) > len(heads) and not cells[-1]:
+    seen: dict[str, int] = {}
+    for k in own.rows:
+        cells = own.cells(lines[k])
+        while len(cells) > len(own.heads) and not cells[-1]:
             del cells[-1]
-        if len(cells) > len(heads):
-            message = f"line {k + 1} has {len(cells)} cells, the header has {len(heads)}"
+        if len(cells) > len(own.heads):
+            message = f"line {k + 1} has {len(cells)} cells, the header has {len(own.heads)}"
             message += "; are there decimal commas? Then separate by semicolons" * (
-                separator == ","
+                own.separator == ","
             )
             raise ValueError(f"{path}: {message}")
         row = []
@@ -383,28 +441,51 @@ def _numbers(
                 hint += ", and no thousands separator" if "," in cell and "." in cell else ""
                 message = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
                 raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {message}')
-            marks |= {mark: k + 1 for mark in ",." if mark in cell}
-            if len(marks) > 1:
-                where = f"a comma in line {marks[',']} and a point in line {marks['.']}"
+            seen |= {mark: k + 1 for mark in ",." if mark in cell}
+            if len(seen) > 1:
+                where = f"a comma in line {seen[',']} and a point in line {seen['.']}"
                 raise ValueError(f"{path}: the decimal mark is {where}; expected one of them")
             row.append(value)
         values.append(row)
-    return dict(zip(names, np.array(values).T, strict=True))
+    return dict(zip(names, np.array(values).T, strict=True)), notes
+
+
+def _footer(lines: Sequence[str], own: Layout, found: Known) -> list[str]:
+    """Leave out the last rows of a table that begin with a word in place of a number, and return notes."""
+    notes = []
+    while len(own.rows) > 1 and 0 in found and own.cells(lines[own.rows[-1]])[0][:1].isalpha():
+        last = own.rows.pop()
+        notes.insert(0, f'Line {last + 1}, "{shown(lines[last])}", is not used.')
+    return notes
 
 
 KEY = "drive.file"
 HISTORY = Reader(
-    {name: SPELLINGS[name] for name in ("time", "velocity")},
-    {"time", "velocity"}.issubset,
-    'a first line such as "t [ms],V [mm/s]", and then numbers',
+    {
+        **{name: SPELLINGS[name] for name in ("time", "velocity")},
+        "position": "X, x, position, displacement, stage position, travel, Weg, Position X, x_pos",
+    },
+    lambda found: "time" in found and len(found) > 1,
+    'a first line such as "t [ms],V [mm/s]" or "t [ms],X [mm]", and then numbers',
 )
 
 
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
-    """Return the points (t, V) in SI of a table of time and velocity, or raise SceneError with the line."""
+    """Return the points (t, V) in SI of a table of time and velocity, or raise SceneError with the line.
+
+    Of a table of time and position, V is the derivative of the parabola through three neighbouring rows.
+    """
     try:
         table = HISTORY.read(path)
-        t, V = table.si("time", "s")[0], table.si("velocity", "m/s")[0]
+        t = table.si("time", "s")[0]
+        if "velocity" in table:
+            V = table.si("velocity", "m/s")[0]
+        else:
+            message = "does not follow the time before; positions need times that increase"
+            table.require("time", np.append(True, np.diff(t) > 0.0), message)
+            if t.size < 3:
+                raise table.error("position", f"{t.size} rows; at least 3 tell a velocity")
+            V = np.gradient(table.si("position", "m")[0], t, edge_order=2)
     except OSError as error:
         raise mistake(KEY, str(path), f"cannot be read: {error.strerror}") from None
     except ValueError as error:

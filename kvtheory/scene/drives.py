@@ -77,8 +77,8 @@ class Drive(Part):
     tolerance: float = 1e-12
     stiffness: Value = quantity(
         "N/m^2",
-        "k_x, stiffness of a spring between drive and indenter",
-        default=None, per_width=True,
+        "k_x, stiffness of a spring between drive and indenter; zero if it coasts",
+        exclusive=False, default=None, per_width=True,
     )  # fmt: skip
     damping: Value = quantity(
         "N*s/m^2", "c_x, damping beside the spring",
@@ -136,6 +136,11 @@ class Drive(Part):
     def rigid(self) -> bool:
         """Whether the indenter cannot move along x: there is no spring."""
         return self.stiffness is None
+
+    @property
+    def coasts(self) -> bool:
+        """Whether the indenter is free to move along x, without a spring that would hold it."""
+        return not (self.rigid or np.all(self.stiffness))
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:

@@ -39,14 +39,22 @@ from kvtheory.scene.quantities import (
     quantities,
     required,
 )
+from kvtheory.scene.start import Start
 from kvtheory.scene.tables import read_text
 from kvtheory.scene.waveforms import WAVEFORMS
 
 CHOOSERS = {section: chooser for section, (chooser, _) in SECTIONS.items() if chooser}
 """The key of each section that selects a model, on which the other keys depend."""
 MODELS = {section: models for section, (_, models) in SECTIONS.items()}
-DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run"}
-LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
+DEFAULTS = {
+    "indenter": "parabola", "foundation": "kelvin-voigt", "drive": "drive", "run": "run", "start": "start",
+}  # fmt: skip
+LISTS = {
+    ("foundation", "arms"),
+    ("foundation", "wlf"),
+    ("foundation", "shift_factors"),
+    ("drive", "history"),
+}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
@@ -94,7 +102,7 @@ def load_scene(
     tables, problems = _overridden(path, overrides)
     unknown = [name for name in tables if name not in SECTIONS]
     problems += [f"[{name}]: unknown section; {nearest(name, SECTIONS)}" for name in unknown]
-    optional = ("run",) if foundation else ("run", "foundation")
+    optional = ("run", "start") if foundation else ("run", "start", "foundation")
     needed = [name for name in absent(SECTIONS, tables) if name not in optional]
     problems += [f"[{name}]: this section is missing" for name in needed]
     parts: dict[str, Any] = {} if "foundation" in tables else {"foundation": Scene().foundation}
@@ -129,7 +137,10 @@ def to_toml(scene: Scene) -> str:
     shape = "parabola"
     """
     lines = []
-    for section, table in _tables(scene).items():
+    tables = _tables(scene)
+    if scene.start.at_rest:
+        del tables["start"]
+    for section, table in tables.items():
         lines.append(f"[{section}]")
         lines += [
             f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in table.items()
@@ -181,6 +192,9 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         tables["foundation"]["wlf"] = [foundation.wlf.c_1, _text(foundation.wlf.c_2, "K")]
     if foundation.stiffness_from == THIN_WAY:
         tables["foundation"]["stiffness_from"] = THIN_WAY
+    if foundation.shift_factors is not None:
+        pairs = foundation.shift_factors
+        tables["foundation"]["shift_factors"] = [[_text(T, "K"), log] for T, log in pairs]
     if drive.history is not None:
         tables["drive"]["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in drive.history]
     elif (wave := drive.waveform) is not None:
@@ -265,6 +279,8 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
         return ["activation_energy"]
     if section == "foundation" and name in (specs := quantities(Foundation)):
         return list(specs[name].excludes)
+    if section == "start" and name in (starts := quantities(Start)):
+        return list(starts[name].excludes)
     if section == "drive" and name in DRIVES and name not in table:
         wave = WAVEFORMS.get(str(table.get("waveform")))
         if wave is None or name not in quantities(wave):  # another motion, on the same spring
@@ -408,7 +424,7 @@ def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
     if cls in FOUNDATIONS.values():
-        lists = ("wlf", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
+        lists = ("wlf", "shift_factors", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))

@@ -43,7 +43,7 @@ DISTINCT = 1e-6
 """Relative difference of relaxation times below which two arms count as the same."""
 TIMES = "retardation_time", "relaxation_time", "damping"
 """The quantities that temperature shifts; a damper is a stiffness times a time."""
-THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf"
+THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf", "shift_factors"
 GAS_CONSTANT = 8.31446261815324
 """R, in J/(mol K), exact."""
 EXTRAPOLATED = (
@@ -67,6 +67,13 @@ LAWS = DAMPER, ARMS, DAMPED, SPRINGPOT
 NO_DAMPER = (
     "a layer has arms alone, as its damping would not follow its thickness; expected foundation.stiffness "
     "instead of modulus, thickness and poisson_ratio, or an arm with a short relaxation time"
+)
+FACTORS = 'pairs of temperature and log10 a_T as measured, such as ["0 degC", 2.155], that of T_ref with 0'
+SAME_TEMPERATURE = 0.01
+"""Difference in K up to which a temperature of shift factors is the reference temperature."""
+RELATIVE = (
+    ". Moduli g_i of Abaqus or ANSYS are relative to the instantaneous modulus E_0: the relaxed one is "
+    "E_0 (1 - sum g_i), and that of an arm is g_i E_0; `foundation` reads such a card"
 )
 WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
@@ -119,7 +126,8 @@ class _Relaxed(Part):
 
     At a `temperature` every time of the foundation is a_T times that at the `reference_temperature`
     (`shift_factor`); the moduli stay (fact F25). Times are given at the reference temperature; the attributes
-    are those at the temperature.
+    are those at the temperature. `shift_factors`, pairs of temperature and log10 a_T as measured, hold
+    exactly; the law goes through them, by adding to it what it misses, linear in between.
     """
 
     stiffness: Value = quantity(
@@ -169,6 +177,7 @@ class _Relaxed(Part):
     )  # fmt: skip
     wlf: WLF | None = None
     stiffness_from: str | None = None
+    shift_factors: Any = None
     kind: ClassVar[str]
     arms: ClassVar[Any] = ()
     damping: ClassVar[Any] = 0.0
@@ -219,6 +228,36 @@ class _Relaxed(Part):
         elif self.wlf is None and self.activation_energy is None and given:
             message = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
             problems.append(f"foundation.{given[0]}: {message}, or foundation.activation_energy")
+        if self.shift_factors is not None:
+            with problems.catching("foundation.shift_factors", self.shift_factors):
+                object.__setattr__(self, "shift_factors", self._read_factors())
+
+    def _read_factors(self) -> tuple[tuple[float, float], ...]:
+        """Return the measured shift factors by temperature (K), or raise."""
+        listed = isinstance(self.shift_factors, Sequence) and not isinstance(
+            self.shift_factors, str
+        )
+        if not listed or not self.shift_factors or not all(map(_is_pair, self.shift_factors)):
+            raise ValueError(f"expected {FACTORS}")
+        pairs = sorted((to_si(T, "K"), to_si(log, "1")) for T, log in self.shift_factors)
+        T, log = np.array(pairs).T
+        if self.reference_temperature is None or (
+            self.wlf is None and self.activation_energy is None
+        ):
+            raise ValueError(
+                "needs foundation.reference_temperature and a law, wlf or activation_energy"
+            )
+        if not np.isfinite(pairs).all() or T[0] <= 0.0 or (np.diff(T) <= 0.0).any():
+            raise ValueError(f"expected finite, different temperatures above 0 K; {FACTORS}")
+        place = np.abs(T - np.min(self.reference_temperature)).argmin()
+        if (
+            abs(T[place] - np.min(self.reference_temperature)) > SAME_TEMPERATURE
+            or log[place] != 0.0
+        ):
+            raise ValueError(
+                f"expected log10 a_T = 0 at foundation.reference_temperature; {FACTORS}"
+            )
+        return tuple(pairs)
 
     def _read_way(self, problems: Problems) -> None:
         """Take the way to the stiffness of a layer, at rest if none is given, and report a wrong one."""
@@ -296,9 +335,20 @@ class _Relaxed(Part):
         if T is None or T_ref is None:
             return 1.0
         with np.errstate(all="ignore"):  # what leaves double precision is reported by the keys
-            if self.wlf is None:
+            if self.shift_factors is None and self.wlf is None:
                 return np.exp(self.activation_energy / GAS_CONSTANT * (T_ref - T) / T / T_ref)[()]
-            return np.power(10.0, -self.wlf.c_1 * (T - T_ref) / (self.wlf.c_2 + T - T_ref))[()]
+            log = self._law(T)
+            if self.shift_factors is not None:
+                measured, known = np.array(self.shift_factors).T
+                log = log + np.interp(T, measured, known - self._law(measured))
+            return np.power(10.0, log)[()]
+
+    def _law(self, T: Any) -> Any:
+        """Return log10 a_T of the law alone."""
+        T_ref = self.reference_temperature
+        if self.wlf is None:
+            return self.activation_energy / GAS_CONSTANT * (T_ref - T) / T / T_ref / math.log(10.0)
+        return -self.wlf.c_1 * (T - T_ref) / (self.wlf.c_2 + T - T_ref)
 
     def _shift(self, times: Iterable[tuple[Any, str]]) -> None:
         """Multiply every time by a_T, and keep the given value in `Derived.given`."""
@@ -499,10 +549,18 @@ def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
                 copy.copy(pair) if whole else Arm(**{own: pair[0]}, relaxation_time=pair[1])
             )
         except SceneError as error:
-            problems += [line.replace("arm", key, 1) for line in error.problems]
+            hint = RELATIVE if isinstance(pair, Sequence) and _relative(pair[0]) else ""
+            problems += [line.replace("arm", key, 1) + hint for line in error.problems]
     problems += _equal_times(arms)
     problems.report()
     return tuple(arms.values())
+
+
+def _relative(value: Any) -> bool:
+    """Whether a modulus is a number from 0 to 1 without a unit, as in the cards of other programs."""
+    with suppress(ValueError):
+        return isinstance(value, str) and 0.0 < float(value) < 1.0
+    return False
 
 
 def _reads(value: Any, unit: str) -> bool:

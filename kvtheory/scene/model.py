@@ -31,6 +31,7 @@ from kvtheory.scene.quantities import (
     quantity,
     validate,
 )
+from kvtheory.scene.start import REST, Start, misplaced
 from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
@@ -141,7 +142,7 @@ class Run(Part):
 
 @dataclass(frozen=True, eq=False)
 class Scene(Part):
-    """An indenter, a foundation, a support and a drive; without arguments, the paper's Table 1.
+    """An indenter, a foundation, a support, a drive and a start; without arguments, the paper's Table 1.
 
     With arrays it stands for many scenes.
 
@@ -158,6 +159,7 @@ class Scene(Part):
     support: Support = DeadWeight(mass=1000.0)
     drive: Drive = Drive(velocity=0.1)
     run: Run = Run()
+    start: Start = REST
 
     def __post_init__(self) -> None:
         parts = vars(self)
@@ -210,7 +212,7 @@ class Scene(Part):
         arrayed = isinstance(velocity, np.ndarray) or self.arrayed
         vars(drive).update({**vars(self.drive), **way, "velocity": velocity, "arrayed": arrayed})
         vars(drive).pop("points", None)
-        own = {name: vars(self)[name] for name in ("indenter", "foundation", "support", "run")}
+        own = {name: vars(self)[name] for name in PARTS if name != "drive"}
         vars(scene).update({**own, "drive": drive, "arrayed": arrayed})
         if not self.arrayed:
             vars(scene)["shape"] = np.shape(velocity)
@@ -248,9 +250,9 @@ class Scene(Part):
         return cls(support=TABLE1_SUPPORTS[support])
 
     def parts(self) -> dict[str, Any]:
-        """Return the indenter, the foundation and the support, and the parts within them, by dotted name."""
+        """Return indenter, foundation, support and start, and the parts within them, by dotted name."""
         found: dict[str, Any] = {}
-        for name in ("indenter", "foundation", "support"):
+        for name in ("indenter", "foundation", "support", "start"):
             found[name] = part = getattr(self, name)
             found |= {f"{name}.{inner}": each for inner, each in part.nested()}
         return found
@@ -346,14 +348,14 @@ def _replaced(part: Any, values: Mapping[str, Any]) -> Any:
 PARTS: dict[str, tuple[Any, ...]] = {
     "indenter": (*SHAPES.values(), Profile, Revolved), "foundation": (*FOUNDATIONS.values(),),
     "support": (*SUPPORTS.values(),),
-    "drive": (Drive,), "run": (Run,),
+    "drive": (Drive,), "run": (Run,), "start": (Start,),
 }  # fmt: skip
 """The parts of a scene, and what each can be."""
 
 
 def inconsistencies(parts: Mapping[str, Any]) -> Problems:
-    """Report parts that do not fit: totals with a line contact, no mass for a spring, an unknown layer."""
-    found = Problems()
+    """Report parts that do not fit: totals with a line contact, no mass for a spring, a layer, a start."""
+    found = misplaced(parts)
     indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
     if indenter is not None:
         found += unfit(parts.get("foundation"), indenter)
@@ -376,7 +378,7 @@ def inconsistencies(parts: Mapping[str, Any]) -> Problems:
 
 SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "indenter": ("shape", SHAPES), "foundation": ("kind", FOUNDATIONS), "support": ("kind", SUPPORTS),
-    "drive": ("", {"drive": Drive}), "run": ("", {"run": Run}),
+    "drive": ("", {"drive": Drive}), "run": ("", {"run": Run}), "start": ("", {"start": Start}),
 }  # fmt: skip
 """By section of a file: the key that selects a class, empty if there is only one, and the classes."""
 

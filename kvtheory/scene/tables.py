@@ -15,22 +15,35 @@ MARKS = {
 """Byte order marks, and the encodings that they indicate."""
 MOST = 2**28
 """Largest size of a file in bytes; a million rows of ten columns are smaller."""
-SEPARATORS = "\t;,"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
 _HEADS = (
-    re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]$"),
-    re.compile(r"^(?P<name>.*?)\s*\((?P<unit>.*)\)$"),
+    re.compile(r"^(?P<name>.*\S)\s*\[(?P<unit>[^\]]*)\]$"),
+    re.compile(r"^(?P<name>.*\S)\s*\((?P<unit>(?:[^()]|\([^()]*\))*)\)$"),
     re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
+    re.compile(r"^(?P<name>[^,]*?),\s*(?P<unit>\S+)$"),
     re.compile(r"^(?P<name>[^/]*?)\s*/\s*(?P<unit>.+)$"),
 )
-"""A name and a unit: in brackets, after "in", or, as in ISO 80000, after a slash."""
+"""A name and a unit: in brackets, after "in" or a comma, or, as in ISO 80000, after a slash."""
+SUFFIXES = {
+    **{each.casefold(): each for each in ("Hz", "kHz", "mHz", "Pa", "kPa", "MPa", "GPa", "s", "ms", "min",
+                                          "m", "mm", "um", "N", "kN", "C", "degC", "K")},
+    "rads": "rad/s", "rad_s": "rad/s", "mm_s": "mm/s", "m_s": "m/s", "um_s": "um/s", "n_mm": "N/mm",
+    "n_m": "N/m", "sec": "s", "rad_per_s": "rad/s", "mm_per_s": "mm/s", "m_per_s": "m/s",
+}  # fmt: skip
+"""Units behind an underscore, as names in programs have them."""
+
+
+EXPONENT = re.compile(r"(?<=[0-9.])[dD](?=[-+]?[0-9]+$)")
+"""The exponent of a double in Fortran."""
 
 
 def number(cell: str, decimal: str) -> float | None:
     """Return a number, or None; a decimal comma is read where the comma is not the separator."""
     if decimal == "," and cell.count(",") == 1 and "." not in cell:
         cell = cell.replace(",", ".")
+    if EXPONENT.search(cell):
+        cell = EXPONENT.sub("e", cell)
     try:
         return float(cell) if "_" not in cell else None
     except ValueError:
@@ -51,6 +64,19 @@ def parts(head: str) -> tuple[str, str]:
     for pattern in _HEADS:
         if match := pattern.match(head):
             return match["name"].rstrip(" /"), match["unit"].strip(" ()[]")
+    return head, ""
+
+
+def suffixed(head: str) -> tuple[str, str]:
+    """Return the name and the unit of a column whose unit stands behind an underscore.
+
+    >>> suffixed("freq_hz"), suffixed("V_mm_s"), suffixed("mu")
+    (('freq', 'Hz'), ('V', 'mm/s'), ('mu', ''))
+    """
+    words = head.split("_")
+    for count in (3, 2, 1):
+        if len(words) > count and (unit := SUFFIXES.get("_".join(words[-count:]).casefold())):
+            return "_".join(words[:-count]), unit
     return head, ""
 
 

@@ -20,8 +20,14 @@ from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.deviation import DEVIATION
 from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import trajectory
-from kvtheory.models.continuum.run import DONE, ROOM, begin, with_more_room
-from kvtheory.models.continuum.solved_scene import SERIES, certified, method_of, scaled_drive
+from kvtheory.models.continuum.run import DONE, ROOM, Beginning, begin, with_more_room
+from kvtheory.models.continuum.solved_scene import (
+    SERIES,
+    beginning,
+    certified,
+    method_of,
+    scaled_drive,
+)
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.records import readable
 from kvtheory.results.errors import AT_REST
@@ -29,7 +35,17 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, UNSETTLED, Array, Column, Measured, Plan
+from kvtheory.sweeps.plan import (
+    CYCLE,
+    EVENTS,
+    FAILS,
+    LANDMARKS,
+    UNSETTLED,
+    Array,
+    Column,
+    Measured,
+    Plan,
+)
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = "friction_force", maxima.MAGNITUDE
@@ -85,6 +101,7 @@ class _Motions:
         self.friction = np.full(size, np.nan)
         self.texts = np.full(size, "", object)
         self.cycles = np.full((size, len(CYCLE)), np.nan)
+        self.landmarks = {name: np.full(size, np.nan) for name in LANDMARKS}
         self.found = bulk.Results(
             status=np.full(size, -1),
             other=np.full(size, -1),
@@ -110,7 +127,8 @@ class _Motions:
     def follow(self) -> None:
         """Solve the scenes one by one, and in one call of compiled kernels from where on that pays."""
         kernel, begun = kernel_of(self.plan.scene), thread_time()
-        plain = not (self.plan.scene.foundation.arms or self.plan.texts)
+        alone = any(column.measure in LANDMARKS for column in self.plan.columns)
+        plain = not (self.plan.scene.foundation.arms or self.plan.texts or alone)
         together = plain and all(units.rigid_drive for _, units, _ in self.scenes.values())
         waiting = list(self.scenes)
         while waiting:
@@ -139,7 +157,9 @@ class _Motions:
         numbers = float(units[0].inertia_number), float(units[0].support_number)
         runs = []
         for rtol, control in estimate.methods(self.plan.rtol):
-            run = begin(drives[0], numbers, None, drives[0].end, rtol, control, arrays=True)
+            run = begin(
+                drives[0], numbers, None, drives[0].end, rtol, control, Beginning(), arrays=True
+            )
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)
@@ -151,6 +171,7 @@ class _Motions:
             np.array([0.0 if u.fixed else float(u.support_number) for u in units]),
             ends,
             self.friction[indices],
+            np.array([beginning(*each)[:2] for each in kept]),
             np.cumsum([0, *(len(drive.pieces) for drive in drives)]),
             np.concatenate([drive.rows for drive in drives]),
         )
@@ -184,6 +205,8 @@ class _Motions:
             found.states[index] = motion.states(solution.scaled(self.plan.times))
         found.last[index] = motion.states([motion.end])[0]
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
+        for name, value in solution.landmarks.items():
+            self.landmarks[name][index] = value
         if not units.rigid_drive:
             self.cycles[index] = cycle(motion)
         if self.plan.texts:
@@ -202,6 +225,8 @@ class _Motions:
         scale = QUANTITIES[name].scale if name else ""
         if measure == EVENTS:
             return self.texts
+        if measure in LANDMARKS:  # in SI
+            return self.landmarks[measure]
         if measure == "series":
             values = found.states[name]
         elif measure == "end":

@@ -47,7 +47,13 @@ STABLE = "stable"
 """Whether steady sliding is stable on the spring in the drive: 1 or 0."""
 EVENTS = "events"
 """The only column of text (JSON)."""
-WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", EVENTS: ""}
+LANDMARKS = {
+    "restitution": "1", "contact_time": "s", "stopping_time": "s", "stopping_distance": "m",
+}  # fmt: skip
+"""Single values of a drop, and of an indenter that coasts."""
+WHOLE = {
+    "peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", **LANDMARKS, EVENTS: "",
+}  # fmt: skip
 """Single values of a transient, and their units."""
 UNSETTLED = (
     "in some scenes friction had not settled within 1 % when the run ended: settling_time is missing there, "

@@ -132,10 +132,11 @@ class Prony(NamedTuple):
         A, C = self.K * np.ones_like(sigma), self.K * eta * np.ones_like(sigma)
         B, D = np.zeros_like(sigma), np.zeros_like(sigma)
         square = (0.5 - eta) * (0.5 + eta)
+        first = phi(np.where(np.abs(sigma) < 1.0, sigma, 1.0).astype(complex))[0]
         for stiffness, length in zip(self.stiffness, self.time, strict=True):
             z = c / length
             one, two, three, _ = phi(z + sigma)
-            second, third, fourth = differences(z, sigma)
+            second, third, fourth = differences(z, sigma, first)
             whole = one + sigma * two
             A += stiffness * whole
             C -= stiffness * ((0.5 - eta) * whole - two - sigma * three)
@@ -258,23 +259,38 @@ def phi(m: Complex) -> list[Complex]:
     for n in range(1, 4):
         found.append((INVERSE_FACTORIALS[n] - found[-1]) / far)
     if near.any():
-        for each, (value, _) in zip(found, power_series(-m[near], 0.0), strict=True):
+        for each, value in zip(found, power_series(-m[near]), strict=True):
             each[near] = value
     return found
 
 
-def power_series(x: Any, y: Any) -> list[tuple[Any, Any]]:
-    """Return phi_1 to phi_4 at x by Horner's scheme, and their divided differences between x and y."""
+def power_series(x: Any) -> list[Any]:
+    """Return phi_1 to phi_4 at x by Horner's scheme."""
+    value = np.full_like(x, INVERSE_FACTORIALS[-1])
+    for coefficient in INVERSE_FACTORIALS[-2:3:-1]:
+        value *= x
+        value += coefficient
+    found = [value]
+    for coefficient in INVERSE_FACTORIALS[3:0:-1]:
+        found.append(found[-1] * x + coefficient)
+    return found[::-1]
+
+
+def divided_differences(x: Any, y: Any) -> list[Any]:
+    """Return those of phi_1 to phi_4 between x and y, by Horner's scheme, too."""
     value, divided, found = 0.0, 0.0, []
     for coefficient in INVERSE_FACTORIALS[:0:-1]:
         divided = divided * y + value
         value = value * x + coefficient
-        found.append((value, divided))
+        found.append(divided)
     return found[:-5:-1]
 
 
-def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
-    """Return phi_n(-z) - phi_n(-z - sigma) for n = 2, 3, 4, relative to their own size."""
+def differences(z: Array, sigma: Complex, first: Complex) -> tuple[Complex, ...]:
+    """Return phi_n(-z) - phi_n(-z - sigma) for n = 2, 3, 4, relative to their own size.
+
+    `first` is phi_1(-sigma) where |sigma| < 1.
+    """
     z = np.broadcast_to(z, sigma.shape)
     m = z + sigma
     fast = z >= np.abs(m)
@@ -283,12 +299,12 @@ def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
     pivot = np.where(near, NEAR, pivot)
     others = phi(np.where(fast, m, z).astype(complex))
     small, fall = np.abs(sigma) < 1.0, np.exp(-z)
-    slow = fall * phi(np.where(small, sigma, 1.0).astype(complex))[0]
-    found = [np.where(small, slow, (fall - np.exp(-m)) / np.where(small, 1.0, sigma))]
+    found = [np.where(small, fall * first, (fall - np.exp(-m)) / np.where(small, 1.0, sigma))]
     for n in range(4):
         found.append((others[n] - found[-1]) / pivot)
     if near.any():
-        for each, (_, divided) in zip(found[1:], power_series(-z[near], -m[near]), strict=True):
+        between = divided_differences(-z[near], -m[near])
+        for each, divided in zip(found[1:], between, strict=True):
             each[near] = divided
     return tuple(sigma * each for each in found[2:])
 

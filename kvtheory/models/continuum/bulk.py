@@ -15,13 +15,15 @@ from kvtheory.records import record
 class Scenes(NamedTuple):
     """Scenes in scaled form, one entry each: inertia and support number, end time, steady friction force.
 
-    The pieces of the drive of scene i are `pieces[first[i] : first[i + 1]]`.
+    A row of `start` holds d and d' at s = 0. The pieces of the drive of scene i are
+    `pieces[first[i] : first[i + 1]]`.
     """
 
     eps: Any
     kappa: Any
     end: Any
     friction: Any
+    start: Any
     first: Any
     pieces: Any
 
@@ -113,6 +115,7 @@ def perform(  # noqa: PLR0912  # a branch for each task
         for run in (one, two):
             run.given.eps, run.given.kappa = scenes.eps[i], scenes.kappa[i]
             run.given.end, run.now.nodes = scenes.end[i], 0
+            run.given.start_depth, run.given.start_rate = scenes.start[i, 0], scenes.start[i, 1]
         results.status[i] = walk(one, count)
         if results.status[i] != DONE:
             continue
@@ -139,7 +142,7 @@ def perform(  # noqa: PLR0912  # a branch for each task
 _ROW, _ROWS, _COUNTS = np.zeros(0), np.zeros((0, 0)), np.zeros(0, dtype=np.int64)
 _STATES = np.zeros(0, e_.STATE)
 NO_BULK = Bulk(
-    Scenes(_ROW, _ROW, _ROW, _ROW, _COUNTS, _ROWS),
+    Scenes(_ROW, _ROW, _ROW, _ROW, _ROWS, _COUNTS, _ROWS),
     Request(_ROWS, 0.0),
     Workspace(_ROW, _STATES, _ROW, _STATES, _STATES),
     Results(

@@ -2,14 +2,15 @@ r"""Where the work of the drive goes: the energy ledger of a transient (fact F14
 
 In units of W_0 delta_0, with integrals over the contact (in) and over the surface outside it (out),
 
-    int lambda_0 f_x ds + 2/5 = 1/2 eps d'^2 - (d - 1) + 1/2 kappa (d - 1)^2
+    int lambda_0 f_x ds + E_0 = 1/2 eps d'^2 - (d - 1) + 1/2 kappa (d - 1)^2
                               + 1/2 eps_x x'^2 + 1/2 kappa_x x^2 + int c_x x'^2 ds
                               + 3/8 int_in u^2 dxi + 3/8 int_out u^2 dxi
                               + 3/4 int int_in u'^2 dxi ds + 3/4 int int_out u'^2 dxi ds,
 
-where 2/5 is stored at rest, and x = 0 for a rigid drive. No term is the remainder of the others: under
-the indenter the integrals over xi are polynomials of the edges, the energy stored outside follows from the
-memory, and since u' = -u there, twice that energy is dissipated per unit of time (F14-surface).
+where E_0 is the right side at s = 0: 2/5 at rest; x = 0 for a rigid drive. No term is the remainder of the
+others: under the indenter the integrals over xi are polynomials of the edges, the energy stored outside
+follows from the memory, and since u' = -u there, twice that energy is dissipated per unit of time
+(F14-surface).
 """
 
 from collections.abc import Callable
@@ -26,9 +27,10 @@ from kvtheory.models.continuum.surface import Array, integrals, kept, relaxing
 class Ledger:
     """Energies at one time, or arrays of them: in units of W_0 delta_0, or in J/m.
 
-    `stored_at_rest` and the `work` of the drive since then are spent on the other entries; the
-    dissipated energies are sums since the start. Potential energies are zero at the static depth. The last
-    three are for a drive with a spring: kinetic along x, stored in the spring, dissipated in the damper.
+    What the foundation `stored_at_rest`, what the indenter had at the start, kinetic and potential
+    (`of_start`), and the `work` of the drive since then are spent on the other entries; the
+    dissipated energies are sums since the start. Potential energies are zero at the static depth. Three
+    are for a drive with a spring: kinetic along x, stored in the spring, dissipated in the damper.
     """
 
     stored_at_rest: Any
@@ -43,12 +45,13 @@ class Ledger:
     kinetic_along: Any = 0.0
     stored_drive: Any = 0.0
     dissipated_drive: Any = 0.0
+    of_start: Any = 0.0
 
     @property
     def balance(self) -> Any:
         """Energy given less energy spent: zero, but for the error of the solution."""
-        rest, work, *spent = astuple(self)
-        return rest + work - sum(spent)
+        rest, work, *spent, start = astuple(self)
+        return rest + start + work - sum(spent)
 
     def scaled(self, unit: float) -> "Ledger":
         """Return the ledger with every entry multiplied by `unit`."""
@@ -113,10 +116,18 @@ def entries(given: Any, moving: Array, sums: Array, stored: Any, shape: tuple[in
     """Return the ledger: of d, d', x, x'; of work and dissipated energies; of what the foundation stores."""
     d, v, x, w = moving
     work, in_contact, in_surface, in_damper = sums
+    eps, half_length = 0.0 if given.fixed else given.eps, np.sqrt(max(given.start_depth, 0.0))
+    d_0, v_0, w_0 = given.start_depth, given.start_rate, given.start_along
+
+    def full(value: float) -> Array:
+        return np.full(d.shape, value)
+
+    of_start = 1.0 - d_0 + 0.5 * (eps * v_0**2 + given.kappa * (d_0 - 1.0) ** 2)
     found = (
-        np.full(d.shape, _stored(1.0, -1.0, 1.0)), work, 0.5 * (0.0 if given.fixed else given.eps) * v**2,
+        full(_stored(d_0, -half_length, half_length)), work, 0.5 * eps * v**2,
         1.0 - d, 0.5 * given.kappa * (d - 1.0) ** 2, *stored, in_contact, in_surface,
         0.5 * given.eps_x * w * w, 0.5 * given.spring * x * x, in_damper,
+        full(of_start + 0.5 * given.eps_x * w_0**2),
     )  # fmt: skip
     return Ledger(*(entry.reshape(shape)[()] for entry in found))
 

@@ -77,10 +77,11 @@ GIVEN = record(
     eps="f8", kappa="f8", end="f8", fixed="?", rtol="f8", allowed="f8",
     first_step="f8", longest="f8", grow="f8", straight="f8",
     eps_x="f8", damping="f8", spring="f8", sprung="?", drives="i8",
+    start_depth="f8", start_rate="f8", start_along="f8",
 )  # fmt: skip
 """Inertia number, support number, the time at which to stop, whether the indenter is fixed, tolerance of a
 step, how far the state of an edge may be violated; step-size controls; inertia, damping and stiffness of a
-spring along x, whether there is one; the number of pieces of the drive."""
+spring along x, whether there is one; the number of pieces of the drive; d, d' and x' at s = 0."""
 _SQUARE = "f8", (MOST_STAGES, MOST_STAGES)
 METHOD = record(
     stages="i8", nodes=("f8", (MOST_STAGES,)), A=_SQUARE, inverse=_SQUARE, powers=_SQUARE,
@@ -112,6 +113,14 @@ class Spring(NamedTuple):
     stiffness: float = 0.0
 
 
+class Beginning(NamedTuple):
+    """d, d' and x' just after s = 0: at rest at the static depth by default, above flat ground if d <= 0."""
+
+    depth: float = 1.0
+    rate: float = 0.0
+    along_rate: float = 0.0
+
+
 class Run(NamedTuple):
     """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
@@ -140,7 +149,7 @@ KINDS = {
 
 def begin(
     drive: BaseMotion, numbers: tuple[float, float], spring: Spring | None, end: float,
-    rtol: float, control: StepControl, *, arrays: bool = False,
+    rtol: float, control: StepControl, start: Beginning, *, arrays: bool = False,
 ) -> Run:  # fmt: skip
     """Return a new run; `numbers` are eps and kappa. Its records are objects, or arrays if `arrays`."""
     (eps, kappa), sprung = numbers, spring is not None
@@ -148,6 +157,7 @@ def begin(
     given = (
         eps, 0.0 if fixed else kappa, end, fixed, rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR),
         *control, *(spring or Spring()), sprung, len(drive.pieces),
+        *start,
     )  # fmt: skip
     room, pieces = ROOM if arrays else ROOM // 2, drive.rows
     unknowns = 2 * stages if sprung else stages
@@ -163,15 +173,18 @@ def begin(
     )  # fmt: skip
 
 
-def rest(run: Run) -> None:
-    """Set the initial state of a run: the contact at rest, d = 1."""
-    now = run.now
-    now.s, now.d, now.v, now.span, now.kink, now.x, now.w = 0.0, 1.0, 0.0, math.inf, 0.0, 0.0, 0.0
+def set_off(run: Run) -> None:
+    """Set the initial state of a run: in contact with ground at rest, or in flight above flat ground."""
+    now, given = run.now, run.given
+    now.s, now.span, now.kink, now.x = 0.0, math.inf, 0.0, 0.0
+    now.d, now.v, now.w = given.start_depth, given.start_rate, given.start_along
     now.piece, now.slide, now.met, now.smooth, now.toggles = 0, 0, False, False, 0
     now.steps, now.nodes, now.events, now.rejected, now.evaluations = 0, 2, 0, 0, 0
+    half_length = math.sqrt(max(now.d, 0.0))
     for k in range(2):
         side, node = now.sides[k], run.nodes[k]
-        side.state, side.node, side.X = TOUCHING, k, SIDES[k]
+        side.state = TOUCHING if half_length > 0.0 else FREE
+        side.node, side.X = k, SIDES[k] * half_length
         for place in (node.inner, node.outer):
             place.X, place.s, place.d, place.Y = 0.0, -math.inf, 0.0, 0.0
         node.outer.X = SIDES[k] * FAR

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,15 +20,17 @@ from kvtheory.models.continuum.error_estimate import (
     certificate,
     methods,
 )
-from kvtheory.models.continuum.evaluation import SERIES
-from kvtheory.models.continuum.run import STATE_NAMES, Spring, StepControl
+from kvtheory.models.continuum.evaluation import SERIES, STATE
+from kvtheory.models.continuum.run import STATE_NAMES, Beginning, Spring, StepControl
 from kvtheory.models.continuum.solver import STEP_LIMIT, solve
 from kvtheory.progress import Progress
+from kvtheory.records import structured
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
+from kvtheory.scene.start import REST, Start
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
@@ -38,6 +40,8 @@ AFTER_END = 1e-12
 TO_A_CHANGE = 0.5 * AFTER_END
 """Share of the run by which it is extended if the drive changes so close to its end that both count as one
 time: the solver then includes the change."""
+STOPPED = 0.01
+"""Share of the sliding velocity at the start below which a coasting indenter counts as stopped."""
 STEPS_A_PIECE = 100
 """Upper bound on the steps for one piece of a drive; a stop takes 25."""
 
@@ -61,13 +65,15 @@ class SolvedScene:
     """A solved motion and its scales; evaluates every quantity of a transient in SI.
 
     `motion` is a `Trajectory`, on a Prony series one of `prony.trajectory`. `end` is that of the run in
-    scaled time; the motion may extend slightly beyond it.
+    scaled time; the motion may extend slightly beyond it. `coasts` is of the drive.
     """
 
     motion: Any
     drive: BaseMotion
     units: StaticState
     end: float
+    start: Start = REST
+    coasts: bool = False
 
     @property
     def natural_times(self) -> Array:
@@ -88,7 +94,7 @@ class SolvedScene:
     def events(self) -> tuple[Event, ...]:
         """The events of the contact, and the force maxima, in order of time (s)."""
         found: list[tuple[float, str]] = [*self.motion.events]
-        if self.drive.highest_speed > 0.0:  # else nothing moves
+        if self.drive.highest_speed > 0.0 or not self.start.at_rest:  # else nothing moves
             times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
             found += [(s, f"{force} force maximum") for s, force in times]
         found.sort(key=lambda event: event[0])
@@ -105,6 +111,38 @@ class SolvedScene:
             **{name: found[name] * own[name] for name in SERIES if name in own},
             "leading_state": tuple(map(STATE_NAMES.__getitem__, leading.tolist())),
             "trailing_state": tuple(map(STATE_NAMES.__getitem__, trailing.tolist())),
+        }
+
+    @cached_property
+    def landmarks(self) -> dict[str, Any]:
+        """Return restitution and contact time of a drop, and where and when a coasting indenter stops."""
+        motion, unit, found = self.motion, self.units, dict[str, float]()
+        hops = {kind: s for s, kind in reversed(motion.events) if kind in ("landing", "take-off")}
+        if self.start.gap is not None and len(hops) == 2:
+            down, up = motion.states([hops["landing"], hops["take-off"]])["depth_rate"]
+            found["restitution"] = float(-up / down)
+            found["contact_time"] = (hops["take-off"] - hops["landing"]) * unit.time
+        if self.coasts:
+            found |= self._stop()
+        return found
+
+    def _stop(self) -> dict[str, float]:
+        """Return when the sliding velocity stays below a share of the first one, and the distance slid."""
+        motion = self.motion
+        times, states, count = motion.samples
+        speed = np.abs(np.array(structured(states[:count], STATE)["sliding_velocity"]))
+        late = np.flatnonzero(speed > STOPPED * speed[0])
+        if not late.size or late[-1] == count - 1:
+            return {}
+        low, high = times[late[-1]], times[late[-1] + 1]
+        for _ in range(maxima.BISECTIONS):
+            middle = 0.5 * (low + high)
+            slides = abs(motion.states([middle])["sliding_velocity"][0]) > STOPPED * speed[0]
+            low, high = (middle, high) if slides else (low, middle)
+        way = abs(float(motion.states([high])["way"][0]))
+        return {
+            "stopping_time": float(high) * self.units.time,
+            "stopping_distance": way * self.units.half_length,
         }
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
@@ -141,7 +179,7 @@ def result(solution: SolvedScene, time: Array, errors: Certificate) -> Transient
     return kind(
         **solution.series(time), events=solution.events, steps=motion.counts.steps,
         evaluations=motion.counts.evaluations, compiled=motion.compiled, model="continuum",
-        certificate=errors, solution=solution,
+        certificate=errors, solution=solution, **solution.landmarks,
     )  # fmt: skip
 
 
@@ -152,6 +190,12 @@ def spring_of(units: StaticState) -> Spring | None:
     return Spring(
         units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
     )
+
+
+def beginning(scene: Scene, units: StaticState, drive: BaseMotion) -> Beginning:
+    """Return the scaled state just after t = 0."""
+    depth, rate, along = scene.start.at(units.depth, drive.velocity(0.0) * units.velocity)
+    return Beginning(depth / units.depth, rate / units.depth_rate, along / units.velocity)
 
 
 def force_maxima(motion: Any) -> tuple[float, float]:
@@ -242,6 +286,7 @@ def certified(
     method = method_of(scene, rtol)
     units = method.units
     drive, spring = scaled_drive(scene, units), spring_of(units)
+    start = beginning(scene, units, drive)
     limit = max_steps or method.steps + STEPS_A_PIECE * len(drive.pieces)
 
     def solved(part: int, tolerance: float, control: StepControl) -> Any:
@@ -251,7 +296,7 @@ def certified(
 
         return method.solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,
-            spring=spring, control=control, progress=report, max_steps=limit,
+            spring=spring, start=start, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     try:
@@ -260,7 +305,9 @@ def certified(
         lasts = drive.end * (units.time / scene.foundation.retardation_time)
         reason = f"{error.reason}, in a run of {lasts:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
-    fine = SolvedScene(motion, drive, units, end_of(scene) / units.time)
+    fine = SolvedScene(
+        motion, drive, units, end_of(scene) / units.time, scene.start, scene.drive.coasts
+    )
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     other = None
     for each in method.others if certify else ():

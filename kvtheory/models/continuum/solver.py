@@ -2,6 +2,8 @@ r"""The whole transient without discretizing the foundation: one equation of mot
 
     eps d'' = 1 - f_z - kappa (d - 1),    d(0) = 1, d'(0) = 0, at rest for s < 0
 
+(or from another `Beginning`: at another depth, in contact with ground at rest, or above flat ground)
+
 with f_z in closed form in d, d', lambda and the two edges (fact F11), and another equation along x if the
 drive has a spring (`collocation`). Between events the right-hand side is smooth; a step that runs over an
 event is cut there, for its polynomial continues the states of the edges that it began with. A fixed
@@ -30,7 +32,14 @@ from kvtheory.models.continuum import (
 )
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.compiled import NOTHING, Finished, Solver, finished
-from kvtheory.models.continuum.run import STATE_NAMES, TOUCHING, Run, Spring, StepControl
+from kvtheory.models.continuum.run import (
+    STATE_NAMES,
+    TOUCHING,
+    Beginning,
+    Run,
+    Spring,
+    StepControl,
+)
 from kvtheory.records import blanks, set_fields, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene import base_motion as b_
@@ -257,11 +266,11 @@ class Trajectory(Finished):
 
 def solve(
     drive: BaseMotion, inertia_number: float, support_number: float, end: float, rtol: float = 1e-9,
-    *, spring: Spring | None = None, fast: bool | None = None,
-    control: StepControl = StepControl(),  # noqa: B008 - immutable
+    *, spring: Spring | None = None, start: Beginning = Beginning(),  # noqa: B008 - immutable
+    fast: bool | None = None, control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
 ) -> Trajectory:  # fmt: skip
-    """Solve the transient of `drive` from rest until `end`, in scaled form.
+    """Solve the transient of `drive` from `start`, by default at rest, until `end`, in scaled form.
 
     The drive must reach `end`. Numbers are eps > 0 (not used if the support is fixed) and kappa >= 0, where
     infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
@@ -275,14 +284,14 @@ def solve(
     """
     if not 0.0 < end <= drive.end:
         raise ValueError(f"`end` must be positive and within the drive, got {end!r}")
-    if spring and not (spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0):
-        raise ValueError("expected a `spring` with inertia and stiffness > 0, damping >= 0")
+    if spring and not (spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness >= 0.0):
+        raise ValueError("expected a `spring` with inertia > 0, stiffness and damping >= 0")
     if not (inertia_number > 0.0 and support_number >= 0.0 and 1e-13 <= rtol <= 1e-2):
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
     numbers = float(inertia_number), float(support_number)
-    given = drive, numbers, spring, float(end), rtol, control
+    given = drive, numbers, spring, float(end), rtol, control, start
     followed = Solver(
         kernel=compiled.KERNEL, attempts=ATTEMPTS,
         begin=lambda arrays: r_.begin(*given, arrays=arrays), prepared=compiled.prepared,

@@ -18,7 +18,7 @@ from kvtheory.models.continuum.run import (
     TOUCHING,
     Run,
     has_room,
-    rest,
+    set_off,
 )
 from kvtheory.models.continuum.trial_step import Monitors, attempt, begin_along, sliding_now
 from kvtheory.scene import base_motion as b_
@@ -59,7 +59,7 @@ def walk(run: Run, attempts: int) -> int:
     """Integrate to the end of the run, or for at most `attempts` steps, tried or taken; return the status."""
     now, end = run.now, run.given.end
     if now.nodes == 0:
-        rest(run)
+        set_off(run)
     for _ in range(attempts):
         if not now.met:
             if not has_room(run):

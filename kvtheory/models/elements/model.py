@@ -17,6 +17,7 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
 from kvtheory.scene.indenters import Circle, Indenter, Revolved, Sphere
 from kvtheory.scene.model import Scene
+from kvtheory.scene.start import REST, Start, StartState
 from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Element
 
@@ -35,6 +36,11 @@ CREEP = 1e-12
 DEPTH_RTOL = 1e-12
 """The iteration for a depth ends when a step is below this share of it: the next one would be of the order of
 rounding errors."""
+IMPACT = 0.4
+"""Power of the energy of an impact, over that at rest, with which the depth grows that it reaches: that of a
+parabola; of a ball it is a third."""
+NO_SPRING = 1e-6
+"""Share of the load below which a spring does not change the time of a fall."""
 STALLED = 0.9
 """It also ends when a step is not below this share of the previous one."""
 
@@ -49,11 +55,12 @@ class Contact(NamedTuple):
 
 @dataclass(frozen=True)
 class Model:
-    """A scene in SI, as `constants` for the kernels, and what it is at rest."""
+    """A scene in SI, as `constants` for the kernels, what it is at rest, and how it starts."""
 
     constants: Constants
     contact: Contact
     at_rest: StaticState
+    start: Start = REST
 
     @classmethod
     def of(
@@ -105,7 +112,7 @@ class Model:
             c = c._replace(spring=float(support.spring))
         at_rest = contact(c, depth)
         static = StaticState.at(scene, depth, c.half_length, at_rest.force)
-        return cls(c._replace(creep=CREEP * static.velocity), at_rest, static)
+        return cls(c._replace(creep=CREEP * static.velocity), at_rest, static, scene.start)
 
     @property
     def sprung(self) -> bool:
@@ -125,7 +132,43 @@ class Model:
             return path.highest_speed
         swing = math.sqrt(self.constants.spring_along * self.constants.mass_along)
         thrown = self.at_rest.friction_force / swing if swing else math.inf
-        return path.highest_speed + min(thrown, self.at_rest.velocity)
+        own = abs(self.begun(path).along_rate)
+        return path.highest_speed + own + min(thrown, self.at_rest.velocity)
+
+    def begun(self, path: BaseMotion) -> StartState:
+        """Return the state just after t = 0."""
+        return self.start.at(self.constants.depth, path.velocity(0.0))
+
+    def impact(self, path: BaseMotion) -> tuple[float, float]:
+        """Return the speed of the indenter to expect after a start that is not at rest, and the depth.
+
+        It has the energy of its motion, of its weight and spring, and of the foundation under it.
+        """
+        c, (depth, rate, _) = self.constants, self.begun(path)
+        if self.start.at_rest or math.isinf(c.mass):
+            return 0.0, c.depth
+        off = depth - c.depth
+        energy = 0.5 * (c.mass * rate * rate + c.spring * off * off) + c.weight * abs(off)
+        energy += contact(c, depth).force * depth if depth > 0.0 else 0.0
+        deeper = c.depth * (energy / self.at_rest.energy) ** IMPACT
+        return math.sqrt(2.0 * energy / c.mass), max(c.depth, depth, deeper)
+
+    def landing(self, path: BaseMotion) -> float:
+        """Return the time (s) at which an indenter lands that starts above the ground, or infinity."""
+        c, (depth, rate, _) = self.constants, self.begun(path)
+        if depth > 0.0 or math.isinf(c.mass):
+            return math.inf
+        if c.spring * -depth <= NO_SPRING * c.weight:
+            speed = math.sqrt(rate * rate - 2.0 * depth * c.weight / c.mass)
+            return (
+                -2.0 * depth / (rate + speed) if rate > 0.0 else (speed - rate) * c.mass / c.weight
+            )
+        turns, sags = math.sqrt(c.spring / c.mass), c.depth + c.weight / c.spring
+        swing, phase = (
+            math.hypot(depth - sags, rate / turns),
+            math.atan2(-rate / turns, depth - sags),
+        )
+        return (-math.acos(max(-sags / swing, -1.0)) - phase) % (2.0 * math.pi) / turns
 
     @property
     def steepest(self) -> float:

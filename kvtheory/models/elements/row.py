@@ -30,6 +30,7 @@ from kvtheory.models.elements.model import span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.records import blanks, readable, structured
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
+from kvtheory.scene.start import StartState
 from kvtheory.theory.laws import Array, Element
 
 FORGOTTEN = 1e-12
@@ -63,17 +64,18 @@ class IndenterState(NamedTuple):
 
 
 class ElementRow:
-    """The stored elements and the indenter, at rest in them, above a moving base; `compiled` or not."""
+    """The stored elements and the indenter, at rest in them or above, on a moving base; `compiled` or not."""
 
     def __init__(
         self, constants: Constants, path: BaseMotion, scheme: Scheme = SCHEMES[DEFAULT],
-        kept_depth: float = KEPT_DEPTH,
+        kept_depth: float = KEPT_DEPTH, start: StartState | None = None,
     ) -> None:  # fmt: skip
         self.constants, self.path, self.compiled = constants, path, False
-        self.deepest, depth = kept_depth * constants.depth, constants.depth
+        depth, rate, along_rate = start or StartState(constants.depth, 0.0, 0.0)
+        self.deepest = kept_depth * max(constants.depth, depth)
         self.faded, tableau = np.ones(constants.law.rates.size), scheme.table
         (now,), (counts,) = blanks(1, k_.INDENTER), blanks(1, k_.COUNTS)
-        now.mean_force = constants.weight
+        now.mean_force, now.rate, now.along_rate = constants.weight, rate, along_rate
         self.stored = Row(
             constants=constants, tableau=tableau, fitted=scheme.fitted, deepest=self.deepest, now=now,
             counts=counts, faded=self.faded, rates=Motion(*np.zeros((4, len(tableau)))),

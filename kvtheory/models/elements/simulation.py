@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.elements import kernels, stability
-from kvtheory.models.elements.kernels import REPORT, Constants, Instants
-from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.kernels import REPORT, Instants
+from kvtheory.models.elements.model import Model, contact
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, course_of
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.progress import Progress, silent
@@ -133,10 +133,10 @@ def simulate(
         )
     own_step = time_step is None and not scheme.tableau
     graded = _graded(model, path, h, max(wanted)) if own_step else {}
-    jumps = set(_jumps(path, max(wanted))) if own_step and at is not None else set[float]()
+    jumps = set(_jumps(model, path, max(wanted))) if own_step and at is not None else set[float]()
     fine = _timetable(path, wanted, h, graded, jumps)
     if certify:
-        fine = _watched(path, fine)
+        fine = _watched(model, path, fine)
     times, steps, instants = fine
     asked = np.searchsorted(instants.time, wanted)
     h = float(steps.max(initial=0.0)) or h
@@ -163,7 +163,7 @@ def simulate(
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
     )
-    unsure = _unsure(model.constants, path, h)
+    unsure = _unsure(model, path, h)
     certificate = _estimate(model, unsure, rows, [other for other, _ in others])
     kind, names = (
         (Simulation, TRANSIENT_UNITS) if not model.sprung else (SprungSimulation, SERIES_UNITS)
@@ -187,11 +187,13 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
                 f'such as "{0.01 * law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    # That of the mass on the contact at rest, as stiff as arms are within such a period.
-    shorter = math.inf
+    # That of the mass on the contact at rest, or after an impact, as stiff as arms are within such a period.
+    shorter, extent = math.inf, model.contact.extent
+    if not model.start.at_rest:
+        extent = contact(c, model.impact(path)[1]).extent
     while True:
         period, within = shorter, shorter / (2.0 * math.pi)
-        stiffness = model.contact.extent * law.stiffness_within(within) + c.spring
+        stiffness = extent * law.stiffness_within(within) + c.spring
         shorter = 2.0 * math.pi * math.sqrt(c.mass / stiffness)
         if not shorter < ROUGHLY * period:
             break
@@ -210,14 +212,14 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
-    """Return times after jumps of the drive, from which steps are shorter, as dampers stop M in M/(C L)."""
+    """Return times after jumps and a landing, from which steps are shorter, as dampers stop M in M/(C L)."""
     c = model.constants
     resistance = c.law.damping * model.contact.extent
     if not resistance or math.isinf(c.mass):
         return {}
     stopping, steps = c.mass / resistance, max(PER_STOPPING, FINER * c.half_length / c.spacing)
     count, found = math.ceil(math.log2(max(steps * h / stopping, 1.0))), {}
-    for jump, after in itertools.pairwise([*_jumps(path, end), end]):
+    for jump, after in itertools.pairwise([*_jumps(model, path, end), end]):
         for k in range(count + 1 if count else 0):
             start = jump + stopping * (2.0**k - 1.0)
             if start < after:
@@ -225,11 +227,12 @@ def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float,
     return found
 
 
-def _jumps(path: BaseMotion, end: float) -> list[float]:
-    """Return the times before the end at which the velocity of the drive jumps; the first is 0."""
-    least = JUMP * path.highest_speed
-    return [0.0] + [t for t in path.changes if 0.0 < t < end
-                    and abs(path.velocity(t) - path.velocity(t, before=True)) > least]  # fmt: skip
+def _jumps(model: Model, path: BaseMotion, end: float) -> list[float]:
+    """Return the times before the end at which a velocity jumps, or the indenter first lands; one is 0."""
+    least, landing = JUMP * path.highest_speed, model.landing(path)
+    jumps = [t for t in path.changes
+             if abs(path.velocity(t) - path.velocity(t, before=True)) > least]  # fmt: skip
+    return sorted({0.0, *(t for t in (*jumps, landing) if 0.0 < t < end)})
 
 
 def _instants(scene: Scene, path: BaseMotion, h: float) -> list[float]:
@@ -278,11 +281,11 @@ def _instants_of(rows: list[Any]) -> Instants:
     return Instants(np.array(after), *np.array(columns, dtype=float))
 
 
-def _watched(path: BaseMotion, table: Timetable) -> Timetable:
+def _watched(model: Model, path: BaseMotion, table: Timetable) -> Timetable:
     """Return steps with earlier instants added, ends of steps of all runs, unless others are as near."""
     times, lengths, asked = table
     after, instants = asked.after, asked.time
-    jumps = np.array(_jumps(path, math.inf))
+    jumps = np.array(_jumps(model, path, math.inf))
     since = instants - jumps[np.maximum(np.searchsorted(jumps, instants) - 1, 0)]
     stride = RECENT / WATCHED * since
     earlier = instants - np.outer(np.arange(1.0, WATCHED + 1.0), stride)
@@ -309,9 +312,9 @@ def _run(
     c, h, kept = model.constants, float(steps.max(initial=0.0)), KEPT_DEPTH
     deepest = DEEPEST[c.surface.ball]
     while True:
-        row = ElementRow(c, path, scheme, kept)
+        row = ElementRow(c, path, scheme, kept, model.begun(path))
         limits = stability.limits(model, path)
-        course = course_of(path, c.law, *table, _unsure(c, path, h).at_jumps, limits)
+        course = course_of(path, c.law, *table, _unsure(model, path, h).at_jumps, limits)
         found = row.reports(instants.time.size)
         status, done, reported, until, begun = kernels.DONE, 0, 0, -1, thread_time()
         while status == kernels.DONE and until < len(steps):
@@ -337,10 +340,12 @@ def _run(
             raise error
 
 
-def _unsure(c: Constants, path: BaseMotion, h: float) -> Unsure:
+def _unsure(model: Model, path: BaseMotion, h: float) -> Unsure:
     """Return how unsure edges are with steps of at most h."""
+    c = model.constants
     known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
-    jump = known if len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :]) else 0.0
+    changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
+    jump = known if changes or not model.start.at_rest else 0.0
     return Unsure(jump, known if math.isfinite(c.mass_along) else jump)
 
 

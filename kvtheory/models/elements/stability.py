@@ -48,7 +48,8 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     held = math.isinf(c.mass)
     depths = {V: c.depth if held else min(sunk_depth(c, V), c.depth) for V in chosen}
     steady = max(contact(c, depth, V).extent for V, depth in depths.items())
-    return steady, max(contact(c, c.depth, V).extent for V in chosen)
+    deepest = model.impact(path)[1]
+    return steady, max(contact(c, deepest, V).extent for V in chosen)
 
 
 def limit_at(scheme: Scheme, c: Constants, length: float) -> float:
@@ -133,7 +134,7 @@ def limits(model: Model, path: BaseMotion) -> Limits:
     arms = model.contact.extent * float(c.law.arm_stiffness.sum())
     yields = c.law.stiffness / c.law.damping if c.law.damping else 1.0 / c.law.retardation_time
     rates = yields + math.sqrt(c.spring / c.mass) + math.sqrt(arms / c.mass)
-    thrown = c.depth * rates + fastest * model.steepest
+    thrown = c.depth * rates + fastest * model.steepest + model.impact(path)[0]
     return Limits(
         rate=-RISE * thrown if math.isfinite(c.mass) else -math.inf,
         along_rate=RISE * (fastest + math.sqrt(model.at_rest.energy / c.mass_along)),

@@ -14,7 +14,13 @@ from kvtheory.models.continuum.error_estimate import (
     TIGHTER,
 )
 from kvtheory.models.continuum.evaluation import SERIES
-from kvtheory.models.continuum.prony.records import ARM, ARM_STATE, together
+from kvtheory.models.continuum.prony.records import (
+    ARM,
+    ARM_STATE,
+    METHOD,
+    POLYNOMIAL,
+    together,
+)
 from kvtheory.models.continuum.prony.trajectory import Trajectory
 from kvtheory.models.continuum.run import FREE, StepControl
 from kvtheory.records import readable
@@ -27,12 +33,15 @@ Array = NDArray[np.float64]
 
 ROUNDING = 4e-16
 """Rounding of the moments, relative to A_i (1 + A_i) of the largest accumulator."""
+SAFETY = 3.0
+"""Factor on the vibration that the steps lose."""
 LESS_TIGHT = 10.0
 """First over second tolerance where a solution with the one over `TIGHTER` fails."""
 OTHERS = TIGHTER, LESS_TIGHT
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with at most {1 / LESS_TIGHT:g} times the tolerance and "
-    "other step sizes, plus a bound of rounding; `jump_time` is the error of the time of a take-off or "
+    "other step sizes, which for rates includes what steps lose of the vibration of the masses on the "
+    "contact, plus a bound of rounding; `jump_time` is the error of the time of a take-off or "
     "landing, relative to the retardation time; `pressure` holds inside the contact, `surface` for the whole "
     "foundation"
 )
@@ -60,7 +69,7 @@ def certificate(
     stiffness, deepest = together(run.arms, ARM)["stiffness"], np.abs(depths).max(axis=0)
     rounding = ROUNDING * float(np.sum(stiffness * deepest * (1.0 + deepest)))
     measures = scales(StaticState.of(scene))  # in other units of time
-    errors, widths = {"time": 0.0}, np.zeros_like(s)
+    errors, widths, lost = {"time": 0.0}, np.zeros_like(s), _lost(other)
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
     for name, values in here.items():
@@ -71,9 +80,10 @@ def certificate(
             1.0, measures[name] / own[name]
         )  # of a very short run that of velocity is large
         least += float(np.max(np.abs(np.nan_to_num(values)), initial=0.0))
-        errors[name] = max(MARGIN * apart, FLOOR * rtol * least) + rounding
+        apart = MARGIN * apart + SAFETY * lost.get(name, 0.0)
+        errors[name] = max(apart, FLOOR * rtol * least) + rounding
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}
-    everywhere, jump_time = _anywhere(fine, other, rtol, scene.drive.tolerance)
+    everywhere, jump_time = _anywhere(fine, other, lost, rtol, scene.drive.tolerance)
     for name, error in everywhere.items():
         errors[name] = error + rounding
     errors["jump_time"] = jump_time * (own["time"] / measures["time"])
@@ -88,8 +98,45 @@ def _series(states: NDArray[Any], own: Mapping[str, float]) -> dict[str, Array]:
     return {name: states[name] for name in SERIES if name in own}
 
 
+def _lost(motion: Trajectory) -> dict[str, float]:
+    """Return how much of the vibration of each mass on the contact the steps lose, as a scaled rate.
+
+    Steps may be longer than the period of light masses. They then follow the mean motion, and so may those of
+    another solution: both agree on what they leave out. Where the acceleration jumps by a from one step to
+    the next, this vibration e^(sigma t) has the amplitude a/|sigma| as a rate, and a step h makes of it R(z),
+    z = sigma h, instead of e^z, R being the stability function of the method. The masses are those on the
+    contact at rest, sigma of eps sigma^2 + (3/4) c I_0 sigma + (3/4) G(0)/K I_0 + kappa = 0, and along x with
+    3 I_2.
+    """
+    given, run, steps = readable(motion.run.given[0]), motion.run, motion.steps
+    n, glass = given.stages, 1.0 + given.glass
+    passes = steps["lasts"] > 0.0
+    span = steps["span"][passes, None]
+    ends = np.append(steps["start"][1:], motion.counts.s)[passes, None]
+    share, powers = (ends - steps["start"][passes, None]) / span, np.arange(1, n + 1)
+    A, rates = together(run.method, METHOD)["A"], together(run.polynomials, POLYNOMIAL)
+    masses = []
+    if not given.fixed:
+        masses.append(("depth_rate", rates["depth_rate"], given.eps, 0.0, given.kappa, 1.5))
+    if given.sprung:
+        along = rates["offset_rate"], given.eps_x, given.damping, given.spring, 2.0
+        masses.append(("sliding_velocity", *along))
+    found = {}
+    for name, rate, eps, damping, stiffness, below in masses:
+        slopes = powers * rate[: motion.counts.steps][passes, 1:] / span
+        jumps = slopes[1:, 0] - np.sum(slopes * share ** (powers - 1), axis=1)[:-1]
+        damped = damping + below * given.damper
+        root = np.sqrt(damped * damped - 4.0 * eps * (stiffness + below * glass) + 0j)
+        sigma = -(damped + root) / (2.0 * eps)
+        z = sigma * span[1:, :, None]
+        kept = np.linalg.solve(np.eye(n) - z * A, np.ones((n, 1)))[:, -1, 0]
+        missing = np.abs(kept - np.exp(z[:, 0, 0])) * np.abs(jumps / sigma)
+        found[name] = float(np.sum(missing))
+    return found
+
+
 def _anywhere(
-    fine: Any, other: Trajectory, rtol: float, tolerance: float
+    fine: Any, other: Trajectory, lost: Mapping[str, float], rtol: float, tolerance: float
 ) -> tuple[dict[str, float], float]:
     """Return the scaled errors of pressure and surface, and that of the times of take-offs and landings.
 
@@ -106,7 +153,8 @@ def _anywhere(
     def error(name: str) -> float:
         apart = np.nanmax(np.abs(here[name] - there[name]), initial=0.0)
         largest = np.nanmax(np.abs(here[name]), initial=0.0)
-        return float(max(MARGIN * apart, FLOOR * rtol * (1.0 + largest)))
+        apart = MARGIN * apart + SAFETY * lost.get(name, 0.0)
+        return float(max(apart, FLOOR * rtol * (1.0 + largest)))
 
     arm = float(np.nanmax(np.abs(here["edges"]), initial=1.0))
     way = tolerance * (1.0 + fine.drive.highest_speed) * fine.drive.end

@@ -6,7 +6,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum.run import SIDES, TOUCHING, Spring, StepControl, radau, stages_for
+from kvtheory.models.continuum.run import (
+    FREE,
+    SIDES,
+    TOUCHING,
+    Beginning,
+    Spring,
+    StepControl,
+    radau,
+    stages_for,
+)
 from kvtheory.records import blanks, new, record, structured
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
@@ -58,12 +67,12 @@ and u' of the free element that was evaluated last."""
 GIVEN = record(
     eps="f8", kappa="f8", end="f8", rtol="f8", eps_x="f8", damping="f8", spring="f8", damper="f8", glass="f8",
     last_power="f8", farthest="f8", first_step="f8", longest="f8", grow="f8", stages="i8", arms="i8",
-    fixed="?", sprung="?",
+    fixed="?", sprung="?", start_depth="f8", start_rate="f8", start_along="f8",
 )  # fmt: skip
 """Inertia and support number, the end, the tolerance of a step; inertia, damping and stiffness along x; C/K
 and sum K_i/K of the foundation; the last coefficient of a polynomial in Legendre's over that of its last
 power; the largest sum of A_i that a step may reach; controls of the step size; numbers of stages and of arms;
-whether the indenter is fixed, and held by a spring."""
+whether the indenter is fixed, and held by a spring; d, d' and x' just after s = 0."""
 
 
 METHOD = record(A="f8", inverse="f8", powers="f8")
@@ -169,18 +178,19 @@ def together(views: Any, kind: np.dtype[Any]) -> Any:
 
 def begin(
     drive: BaseMotion, arms: Any, numbers: tuple[float, float], spring: Spring | None, end: float,
-    rtol: float, control: StepControl, damper: float, *, arrays: bool,
+    rtol: float, control: StepControl, damper: float, start: Beginning, *, arrays: bool,
 ) -> Run:  # fmt: skip
-    """Return a new run at rest; `arms` are pairs k_i, T_i, `damper` is C/K, `numbers` are eps and kappa."""
+    """Return a new run; `arms` are pairs k_i, T_i, `damper` is C/K, `numbers` are eps and kappa."""
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
-    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0)
+    starts = start.rate != 0.0 or start.along_rate != 0.0
+    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
         damper, float(sum(k for k, _ in arms)), 1.0 / math.comb(2 * n, n),
         max(FARTHEST * math.sqrt(rtol), 100.0), control.first_step, control.longest, control.grow, n,
-        count, fixed, spring is not None,
+        count, fixed, spring is not None, *start,
     )  # fmt: skip
     element = Element.of(1.0, damper, arms)
     k, T = np.array(arms, dtype=float).reshape(-1, 2).T
@@ -205,19 +215,21 @@ def begin(
         **{f"{kind}jacobian": np.zeros((unknowns, unknowns)) for kind in ("", "inverse_")},
         **{name: np.zeros(shape, NAMED[name]) for name, shape in shapes.items()},
     )  # fmt: skip
-    _rest(run._replace(now=run.now[0]))
+    _set_off(run._replace(given=run.given[0], now=run.now[0]))
     if not arrays:
         return run._replace(**{name: named(getattr(run, name)) for name in NAMED})
     run = as_arrays(run)
     return run._replace(steps=_longer(run.steps, ROOM), segments=_longer(run.segments, 2 * ROOM))
 
 
-def with_pauses(drive: BaseMotion, end: float, *, needed: bool) -> tuple[Any, Any, float]:
+def with_pauses(
+    drive: BaseMotion, end: float, *, needed: bool, starts: bool = False
+) -> tuple[Any, Any, float]:
     """Return the pieces of a drive on the clock of a run, what time it is in them, and the clock at the end.
 
     Where the velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
-    runs on for a while in which time stands still and the velocity changes uniformly. Without a damper
-    there is no such pause, and the clock shows the time.
+    runs on for a while in which time stands still and the velocity changes uniformly: also at first, if the
+    indenter `starts` with a velocity. Without a damper there is no such pause, and the clock shows the time.
     """
     if not needed:
         clock = np.zeros(len(drive.rows), PIECE)
@@ -230,7 +242,8 @@ def with_pauses(drive: BaseMotion, end: float, *, needed: bool) -> tuple[Any, An
     pause = end / (1.0 + len(rows))
     for row in rows:
         start, after = row[b_.START], row[b_.POWERS]
-        if start <= end and abs(after - before) > SMOOTH * (1.0 + abs(after)):
+        jumps = abs(after - before) > SMOOTH * (1.0 + abs(after)) or (starts and start <= 0.0)
+        if start <= end and jumps:
             new = np.zeros_like(row)
             new[: b_.POWERS] = start + lost, start + lost + pause, row[b_.DISPLACEMENT]
             new[b_.POWERS : b_.POWERS + 2] = before, (after - before) / pause
@@ -257,26 +270,37 @@ def as_arrays(run: Run) -> Run:
     return run._replace(**found)
 
 
-def _rest(run: Run) -> None:
-    """Set the contact at rest: both edges touch, and write segments at both ends of it."""
-    now = run.now
-    now.d, now.segments, now.chain, now.count, now.unused[1] = 1.0, 3, 3, 3, 3
+def _set_off(run: Run) -> None:
+    """Set the initial state: in flight above flat ground, or in contact with ground at rest.
+
+    In contact both edges touch, with segments at both ends of it.
+    """
+    now, given = run.now, run.given
+    now.d, now.span, now.limit = given.start_depth, math.inf, math.inf
+    if not run.clock["paused"][0]:  # else they change in the pause
+        now.v, now.w = given.start_rate, given.start_along
+    half_length = math.sqrt(max(now.d, 0.0))
+    for k in range(2):
+        side = now.sides[k]
+        side.state, side.segment, side.own = FREE, NEVER, NEVER
+        side.xi, side.pace = SIDES[k] * half_length, 1.0
+        now.kinked[k] = 1
+    if half_length == 0.0:
+        return
+    now.segments, now.chain, now.count, now.unused[1] = 3, 3, 3, 3
     now.unused[0] = -1
-    now.span = now.limit = math.inf
     for k, edge, step, a, b in (
         (0, 0, 0, -1.0, -1.0),
         (1, 1, NEVER, -1.0, 1.0),
         (2, 1, 0, 1.0, 1.0),
     ):
         segment = run.segments[k]
-        segment.edge, segment.step, segment.next, segment.X_a, segment.X_b = edge, step, NEVER, a, b
+        segment.edge, segment.step, segment.next = edge, step, NEVER
+        segment.X_a, segment.X_b = a * half_length, b * half_length
         segment.b = 0.0 if step == NEVER else math.inf
         run.chain[k] = k
     for k in range(2):
-        side = now.sides[k]
-        side.state, side.segment, side.own = TOUCHING, NEVER, 2 * k
-        side.xi, side.pace = SIDES[k], 1.0
-        now.kinked[k] = 1
+        now.sides[k].state, now.sides[k].own = TOUCHING, 2 * k
 
 
 def with_more_room(run: Run) -> Run:

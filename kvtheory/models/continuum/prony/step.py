@@ -16,6 +16,7 @@ from kvtheory.models.continuum.prony import contact as c_
 from kvtheory.models.continuum.prony.contact import Motion
 from kvtheory.models.continuum.prony.records import Run
 from kvtheory.models.continuum.run import FREE, PEELING
+from kvtheory.scene.base_motion import END
 
 ITERATIONS, SHARE, STALL = 30, 0.02, 0.5
 """Iteration limit; share of the tolerance below which a correction is the last one, and that below which it
@@ -215,21 +216,34 @@ def update(run: Run, free: int, size: int) -> None:
             inverse[i, j] += factor * back[j]
 
 
+def gained(run: Run) -> float:
+    """Return the share of its first velocities that the indenter gains in a step of the first pause."""
+    if run.now.piece > 0 or not run.clock.paused[0]:
+        return 0.0
+    return float(run.steps[run.now.steps].span / run.pieces[0, END])
+
+
 def guess(run: Run, free: int) -> None:
     """Write initial changes of d' and x' over the stages: those that continue the last step smoothly."""
-    now, given = run.now, run.given
+    now, given, begun = run.now, run.given, gained(run)
     if not given.fixed:
-        guess_rate(run, 0, run.polynomials.depth_rate[now.steps - 1], now.v)
+        rates = run.polynomials.depth_rate[now.steps - 1]
+        guess_rate(run, 0, rates, now.v, begun * given.start_rate)
     if given.sprung:
-        guess_rate(run, free, run.polynomials.offset_rate[now.steps - 1], now.w)
+        rates = run.polynomials.offset_rate[now.steps - 1]
+        guess_rate(run, free, rates, now.w, begun * given.start_along)
 
 
-def guess_rate(run: Run, first: int, powers: Any, begin: float) -> None:
-    """Write the changes of one rate, the unknowns from `first` on; `powers` are those of the last step."""
+def guess_rate(run: Run, first: int, powers: Any, begin: float, gain: float) -> None:
+    """Write the changes of one rate, the unknowns from `first` on; `powers` are those of the last step.
+
+    In a pause they are known: `gain` at its end.
+    """
     now, change = run.now, run.unknowns.change
+    paused = run.steps[now.steps].lasts == 0.0
     for j in range(run.given.stages):
-        change[first + j] = 0.0
-        if now.smooth:
+        change[first + j] = gain * float(run.stages.node[j])
+        if now.smooth and not paused:
             last = run.steps[now.steps - 1]
             theta = (float(run.stages.s[j]) - last.start) / last.span
             change[first + j] = c_.value(powers, theta) - begin
@@ -378,6 +392,7 @@ def balance(run: Run, free: int) -> None:
     given, n = run.given, run.given.stages
     change, residual = run.unknowns.change, run.unknowns.residual
     span, stages, arm, c = run.steps[run.now.steps].lasts, run.stages, run.arm_stages, given.damper
+    begun = gained(run)
     for j in range(n):
         first = second = 0.0
         for i in c_.over(given.arms):
@@ -393,10 +408,12 @@ def balance(run: Run, free: int) -> None:
             if given.sprung:
                 along += run.method.inverse[j, k] * change[free + k]
         if free:
-            residual[j] = given.eps * down - span * (1.0 - f_z - given.kappa * (d - 1.0))
+            residual[j] = given.eps * (down - begun * given.start_rate)
+            residual[j] -= span * (1.0 - f_z - given.kappa * (d - 1.0))
         if given.sprung:
             held = given.damping * stages.offset_rate[j] + given.spring * x
-            residual[free + j] = given.eps_x * along - span * (f_x - held)
+            residual[free + j] = given.eps_x * (along - begun * given.start_along)
+            residual[free + j] -= span * (f_x - held)
 
 
 def linearize(run: Run, free: int, size: int) -> None:

@@ -37,7 +37,7 @@ from kvtheory.models.continuum.prony.records import (
     named,
     with_more_room,
 )
-from kvtheory.models.continuum.run import FREE, TOUCHING, Spring, StepControl
+from kvtheory.models.continuum.run import FREE, TOUCHING, Beginning, Spring, StepControl
 from kvtheory.models.continuum.solver import ScaledEvent
 from kvtheory.records import readable, structured
 from kvtheory.scene import base_motion as b_
@@ -137,7 +137,8 @@ class Trajectory(Finished):
         steps, found = self.steps, []
         for k, name in enumerate(("left", "right")):
             states = steps["sides"]["state"][:, k]
-            before = np.append(TOUCHING, states[:-1])
+            first = TOUCHING if self.given.start_depth > 0.0 else FREE
+            before = np.append(first, states[:-1])
             for start, old, new in zip(steps["time"], before, states, strict=True):
                 kind = f"{name} edge {'touches' if new == TOUCHING else 'peels'}"
                 if FREE in (old, new):
@@ -240,11 +241,12 @@ class Trajectory(Finished):
 
 def solve(
     drive: BaseMotion, arms: Any, numbers: tuple[float, float], end: float, rtol: float,
-    *, damper: float = 0.0, spring: Spring | None = None, fast: bool | None = None,
-    control: StepControl = StepControl(),  # noqa: B008 - immutable
+    *, damper: float = 0.0, spring: Spring | None = None,
+    start: Beginning = Beginning(),  # noqa: B008 - immutable
+    fast: bool | None = None, control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
 ) -> Trajectory:  # fmt: skip
-    """Solve the transient of `drive` from rest until `end`, in scaled form.
+    """Solve the transient of `drive` from `start`, by default at rest, until `end`, in scaled form.
 
     `arms` are pairs k_i = K_i/K and T_i = tau_i/tau, `damper` is C/(K tau), `numbers` eps and kappa,
     which is infinite for a fixed
@@ -261,7 +263,7 @@ def solve(
     >>> print(f"{motion.states([2.0])['depth'][0]:.6f}")
     0.417162
     """
-    given = drive, arms, numbers, spring, end, rtol, control, damper
+    given = drive, arms, numbers, spring, end, rtol, control, damper, start
     solver = Solver(
         kernel=KERNEL, attempts=ATTEMPTS, begin=lambda arrays: begin(*given, arrays=arrays),
         prepared=prepared, as_arrays=as_arrays, with_more_room=with_more_room, walk=_walk,

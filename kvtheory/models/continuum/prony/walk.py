@@ -80,7 +80,8 @@ def walk(run: Run, attempts: int) -> int:
     now, end = run.now, run.given.end
     if now.steps == 0 and now.span == math.inf:
         now.span = _first(run)
-        _jump(run)
+        if not h_.flies(run):
+            _jump(run)
     for _ in range(attempts):
         until = min(run.pieces[now.piece, b_.END], end)
         if now.s >= end:
@@ -128,7 +129,7 @@ def _next_piece(run: Run) -> None:
     _, last, last_slope = b_.evaluate(run.pieces[now.piece], now.s)
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
-    jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    jumps = paused or abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = _first(run) if paused else min(now.span, _first(run))
         if not h_.flies(run):
@@ -141,6 +142,10 @@ def _jump(run: Run) -> None:
     """Let edges turn where a jump of the drive changes the rate of the pressure."""
     now, damped, at = run.now, run.given.damper > 0.0, c_.present(run)
     _, _, slope = b_.evaluate(run.pieces[now.piece], now.s)
+    faster = 0.0  # d'' and lambda' while the clock runs in a pause
+    if now.piece == 0 and run.clock.paused[0]:
+        faster = run.given.start_rate / run.pieces[0, b_.END]
+        slope -= run.given.start_along / run.pieces[0, b_.END]
     for k in range(2):
         side = now.sides[k]
         peels = side.state == PEELING
@@ -149,7 +154,8 @@ def _jump(run: Run) -> None:
         rise = left_behind(run, k) if peels else side.rise
         rises, terms = _pressing(side.xi, at.v, at.number, rise)
         if damped and abs(rises) <= _allowed(run) * terms:  # p = 0, and its rate tells
-            rises, terms = -2.0 * side.xi * slope, 1.0 + abs(slope)
+            rises = faster - 2.0 * side.xi * slope
+            terms = 1.0 + abs(faster) + abs(slope)
         if (-rises if peels else rises) < -_allowed(run) * terms:
             turn(run, k)
 

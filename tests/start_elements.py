@@ -1,0 +1,194 @@
+"""Motions that do not start at rest, by elements on a spring, a damper and arms, with steps of Heun's method.
+
+Scaled: stiffness 1, f_z = 3/4 int p dx, f_x = -3/2 int x p dx. It shares no code with the package but the
+motion of the base. `python -m tests.start_elements KIND COUNT [SEED]` compares random scenes with the
+solvers.
+"""
+
+import math
+import sys
+
+import numpy as np
+from scipy.linalg import expm
+
+from kvtheory.models.continuum import solver
+from kvtheory.models.continuum.prony import trajectory
+from kvtheory.models.continuum.run import Beginning, Spring
+from kvtheory.scene.base_motion import BaseMotion
+
+COUNT, STEP = 48, 4e-3
+"""Elements in half the static contact, and the step, of the coarsest of three runs."""
+MEASURED = "depth", "depth_rate", "normal_force", "friction_force", "sliding_velocity"
+
+
+class Ground:
+    """Elements at X: u, s_i, and their law over steps of length h."""
+
+    def __init__(self, arms, damper, X, depth, h):
+        self.k, T = np.array(arms, dtype=float).reshape(-1, 2).T
+        self.c, self.X, self.dx = damper, X, X[1] - X[0]
+        self.u, self.s = np.maximum(depth - X * X, 0.0), np.zeros((self.k.size, X.size))
+        n, rates = self.k.size, np.diag(1.0 / T)
+        if damper:  # u' = -(u + sum s)/c
+            free = np.zeros((n + 1, n + 1))
+            free[0], free[1:, 1:] = -1.0 / damper, -rates
+            free[1:] += np.outer(self.k, free[0])
+        else:  # u = -sum s
+            free = -np.linalg.solve(np.eye(n) + np.outer(self.k, np.ones(n)), rates)
+        self.free, z = expm(free * h), h / T
+        self.fall, self.gain = np.exp(-z)[:, None], (-self.k * np.expm1(-z) / z)[:, None]
+
+    def moved(self, g):
+        """Return u, s_i, and by how much the indenter presses, after a step that ends with overlaps g."""
+        if self.c:
+            u, *s = self.free @ np.vstack([self.u, self.s])
+        else:
+            s = self.free @ self.s
+            u = -np.sum(s, axis=0)
+        pressed = g > u
+        held = self.fall * self.s + self.gain * (g - self.u)
+        return (
+            np.where(pressed, g, u),
+            np.where(pressed, held, np.array(s).reshape(held.shape)),
+            g - u,
+        )
+
+    def forces(self, s, over, g, rise, x):
+        """Return f_z and f_x; elements at the edges count to where the overlap vanishes."""
+        inside = np.flatnonzero(over > 0.0)
+        if not inside.size:
+            return 0.0, 0.0
+        p = np.where(over > 0.0, g + self.c * rise + s.sum(axis=0), 0.0)
+        weight = np.where(over > 0.0, 1.0, 0.0)
+        for n, out in (inside[0], -1), (inside[-1], 1):
+            weight[n] += over[n] / (over[n] - over[n + out]) - 0.5
+        p = p * weight
+        return 0.75 * self.dx * p.sum(), -1.5 * self.dx * (x @ p)
+
+
+def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
+    """Return rows of the `MEASURED` at the times; `spring` is eps_x, c_x, k_x or None."""
+    d, v, w = start
+    end, dx, h = times[-1], 1.0 / (COUNT * finer), STEP / finer
+    low, high = drive.extremes(0.0, end)
+    deepest = max(1.0, d, (eps * v * v + abs(d - 1.0) * (2.0 + kappa * abs(d - 1.0))) ** 0.4)
+    pad = 1.3 * math.sqrt(deepest) + (abs(w) * end + 1.0 if spring else 0.0) + 4.0
+    X = dx * np.arange(math.floor((-pad - high) / dx), math.ceil((pad - low) / dx) + 1)
+    ground, x, rows, t = Ground(arms, damper, X, d, h), 0.0, [], 0.0
+    eps_x, c_x, k_x = spring or (math.inf, 0.0, 0.0)
+    state, over = ground.s, np.where(ground.u > 0.0, ground.u, -1.0)
+
+    def pulls(s, over, d, v, x, w, t):
+        place = X + drive.displacement(t) - x
+        number = drive.velocity(t) - w
+        g = d - place * place
+        f_z, f_x = ground.forces(s, over, g, v - 2.0 * number * place, place)
+        along = (f_x - c_x * w - k_x * x) / eps_x if spring else 0.0
+        return (1.0 - f_z - kappa * (d - 1.0)) / eps, along, f_z, f_x
+
+    def overlap(d, x, t):
+        place = X + drive.displacement(t) - x
+        return d - place * place
+
+    for stop in times:
+        for n in range(round((stop - t) / h)):
+            now, then = t + n * h, t + (n + 1) * h
+            a, b, *_ = pulls(state, over, d, v, x, w, now)
+            d_1, x_1, v_1, w_1 = (
+                d + h * (v + 0.5 * h * a),
+                x + h * (w + 0.5 * h * b),
+                v + h * a,
+                w + h * b,
+            )
+            for _ in range(2):
+                _, s_1, over_1 = ground.moved(overlap(d_1, x_1, then))
+                a_1, b_1, *_ = pulls(s_1, over_1, d_1, v_1, x_1, w_1, then)
+                v_1, w_1 = v + 0.5 * h * (a + a_1), w + 0.5 * h * (b + b_1)
+                d_1, x_1 = d + 0.5 * h * (v + v_1), x + 0.5 * h * (w + w_1)
+            d, v, x, w = d_1, v_1, x_1, w_1
+            ground.u, ground.s, over = ground.moved(overlap(d, x, then))
+            state = ground.s
+        t = stop
+        _, _, f_z, f_x = pulls(state, over, d, v, x, w, t)
+        rows.append((d, v, f_z, f_x, drive.velocity(t) - w))
+    return np.array(rows)
+
+
+def extrapolated(*given):
+    """Return these rows for fine elements and steps, and their error, column by column."""
+    a, b, c = (run(*given, finer) for finer in (1, 2, 4))
+    fine = np.abs(c - b).max(axis=0)
+    return c, 2.0 * np.maximum(fine, 0.5 * np.abs(b - a).max(axis=0)) + 1e-6
+
+
+def solved(drive, arms, damper, eps, kappa, start, spring, times, rtol=1e-7):
+    """Return the same rows by the solver of the law."""
+    how = {"start": Beginning(*start), "spring": Spring(*spring) if spring else None}
+    if arms:
+        given = drive, arms, (eps, kappa), times[-1], rtol
+        motion = trajectory.solve(*given, damper=damper, max_steps=3000, **how)
+    else:
+        motion = solver.solve(drive, eps, kappa, times[-1], rtol, **how)
+    states = motion.states(times)
+    return np.array([states[name] for name in MEASURED]).T
+
+
+LAWS = (
+    lambda rng: ([], 1.0),
+    lambda rng: ([(10 ** rng.uniform(-0.3, 0.8), 10 ** rng.uniform(-1.0, 0.5))], 0.0),
+    lambda rng: (
+        [(10 ** rng.uniform(-0.3, 0.8), 10 ** rng.uniform(-1.0, 0.5))],
+        rng.uniform(0.1, 0.5),
+    ),
+)
+"""Arms and damper: a damper alone, an arm, and both."""
+KINDS = {
+    "drop": lambda rng: ((-rng.uniform(0.0, 3.0), rng.uniform(-1.0, 6.0), 0.0), None),
+    "release": lambda rng: ((rng.uniform(0.2, 2.5), rng.uniform(-3.0, 3.0), 0.0), None),
+    "oblique": lambda rng: (
+        (-rng.uniform(0.0, 2.0), rng.uniform(0.0, 5.0), rng.uniform(-3.0, 3.0)),
+        (rng.uniform(0.3, 3.0), 0.0, 0.0 if rng.random() < 0.5 else rng.uniform(0.1, 3.0)),
+    ),
+    "coasting": lambda rng: ((1.0, 0.0, 0.0), (rng.uniform(0.3, 3.0), 0.0, 0.0)),
+    "drawn": lambda rng: (
+        (1.0, 0.0, None), (rng.uniform(0.3, 3.0), rng.uniform(0.0, 0.5), rng.uniform(0.1, 3.0))
+    ),
+}  # fmt: skip
+"""The start and the spring of a random scene; x' is that of the drive where it is None."""
+
+
+def drawn(kind, seed):
+    """Return a random scene."""
+    rng = np.random.default_rng(seed)
+    number, end = rng.uniform(-3.0, 3.0), 2.4
+    drive = BaseMotion.constant(number, end=end)
+    (d, v, w), spring = KINDS[kind](rng)
+    arms, damper = LAWS[seed % 3](rng)
+    kappa = 0.0 if rng.random() < 0.6 else rng.uniform(0.1, 3.0)
+    times = [0.12 * n for n in range(1, 21)]
+    start = d, v, number if w is None else w
+    return drive, arms, damper, 10 ** rng.uniform(-1.0, 0.3), kappa, start, spring, times
+
+
+def compared(kind, seed):
+    """Return the differences over the error of the elements, by quantity."""
+    given = drawn(kind, seed)
+    known, error = extrapolated(*given)
+    found = solved(*given)
+    return np.abs(known - found).max(axis=0) / error, np.abs(known - found).max(axis=0)
+
+
+if __name__ == "__main__":
+    kind, count, first = sys.argv[1], int(sys.argv[2]), int((*sys.argv, 0)[3])
+    outside = 0
+    for seed in range(first, first + count):
+        try:
+            ratio, apart = compared(kind, seed)
+        except (ValueError, ArithmeticError) as error:
+            print(seed, "failed:", error, flush=True)
+            outside += 1
+            continue
+        if ratio.max() > 1.0:
+            outside += 1
+            print(seed, ratio.round(2).tolist(), apart, flush=True)
+    print(f"{kind}: {outside} of {count} outside", flush=True)

@@ -1,0 +1,263 @@
+"""Motions that do not start at rest: drops, releases, coasting, drawn springs, and restitution (F32)."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.models.continuum import solver
+from kvtheory.models.continuum.prony import trajectory
+from kvtheory.models.continuum.run import Beginning, Spring
+from kvtheory.results.table import scales
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.static_state import StaticState
+from kvtheory.theory.drop import drop, number_of
+from tests import start_elements
+
+WEIGHT = kv.DeadWeight(mass=1000.0)
+ARMS = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)])
+BOTH = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)], damping=5e8)
+
+
+def dropped(**changes):
+    """Return a scene with a line, almost without weight, that lands at 1 m/s."""
+    given = {
+        "foundation": kv.Foundation(1e10, 2e-5), "support": kv.DeadWeight(mass=1.0, load=1e-3),
+        "drive": kv.Drive(0.0), "run": kv.Run(2e-3), "start": kv.Start(gap=1e-4, depth_rate=1.0),
+    }  # fmt: skip
+    return kv.Scene(**{**given, **changes})
+
+
+@pytest.mark.parametrize(
+    ("kind", "seed"), zip(start_elements.KINDS, range(1200, 1205), strict=True)
+)
+def test_starts_agree_with_an_independent_program(kind, seed):
+    """The seeds draw all laws; run the module itself for more of them."""
+    ratio, _ = start_elements.compared(kind, seed)
+    assert ratio.max() < 1.0
+
+
+STARTS = {
+    "release": ((0.5, 2.0, 0.0), None), "thrown off": ((3.0, -8.0, 0.0), None),
+    "drop": ((-1.0, 3.0, 0.0), None), "thrown up": ((0.0, -2.0, 0.0), None),
+    "laid down": ((0.0, 0.0, 0.0), None), "oblique": ((-1.0, 2.0, 2.0), Spring(1.0, 0.0, 0.0)),
+    "drawn": ((1.0, 0.0, 4.0), Spring(1.0, 0.1, 2.0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_both_solvers_agree_and_the_energy_of_the_start_is_in_the_ledger(name):
+    (start, spring), drive, end = STARTS[name], BaseMotion.constant(4.0, end=2.0), 2.0
+    how = {"spring": spring, "start": Beginning(*start)}
+    one = solver.solve(drive, 0.4, 0.5, end, 1e-8, **how)
+    two = trajectory.solve(drive, [], (0.4, 0.5), end, 1e-8, damper=1.0, **how)
+    times = np.linspace(0.0, end, 11)
+    for quantity in ("depth", "normal_force", "friction_force", "sliding_velocity"):
+        apart = one.states(times)[quantity] - two.states(times)[quantity]
+        assert np.abs(apart).max() < 2e-5 * (1.0 + np.abs(one.states(times)[quantity]).max())
+    for motion in (one, two):
+        books = motion.ledger(times)
+        given = books.stored_at_rest + books.of_start
+        assert np.abs(books.balance).max() < 1e-6 * (np.abs(given) + np.abs(books.work)).max()
+        first = motion.states([0.0])[0]
+        assert (first["depth"], first["depth_rate"]) == pytest.approx(start[:2], abs=1e-12)
+        assert first["sliding_velocity"] == pytest.approx(4.0 - start[2], abs=1e-12)
+
+
+def test_a_start_at_rest_by_its_numbers_is_that_without_a_start():
+    scene = kv.Scene(run=kv.Run(0.02))
+    told = replace(scene, start=kv.Start(depth=StaticState.of(scene).depth, depth_rate=0.0))
+    at = [0.0, 1e-3, 0.02]
+    one, two = (kv.transient(each, at=at, certify=False) for each in (scene, told))
+    assert np.array_equal(one.depth, two.depth)
+    assert np.array_equal(one.friction_force, two.friction_force)
+
+
+def test_the_force_just_after_a_start_at_another_depth():
+    """F11 with the edges of this depth: W_0 (d^(3/2) + (3/2) d^(1/2) d') while both edges touch."""
+    scene = kv.Scene(drive=kv.Drive(0.0), start=kv.Start(depth="0.2 mm", depth_rate="1 mm/s"))
+    rest, tau = StaticState.of(scene), scene.foundation.retardation_time
+    d, rate = 2e-4 / rest.depth, 1e-3 * tau / rest.depth
+    found = kv.transient(scene, at=[0.0], certify=False)
+    assert found.normal_force[0] == pytest.approx(rest.load * (d**1.5 + 1.5 * math.sqrt(d) * rate))
+    assert found.leading_edge[0] == pytest.approx(-math.sqrt(2.0 * 0.01 * 2e-4))
+
+
+@pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.05), ARMS, BOTH])
+@pytest.mark.parametrize(
+    ("start", "drive"),
+    [
+        (kv.Start(gap="0.2 mm"), kv.Drive(0.1)),
+        (kv.Start(sliding_velocity=0.0), kv.Drive(0.1, stiffness=1e6)),
+        (kv.Start(), kv.Drive(0.05, stiffness=0.0)),
+    ],
+)
+def test_elements_and_solver_agree_within_their_certificates(law, start, drive):
+    scene = kv.Scene(foundation=law, support=WEIGHT, drive=drive, start=start, run=kv.Run(0.02))
+    at = np.linspace(0.0, 0.02, 9)[1:]
+    one, two = kv.transient(scene, at=at), kv.elements(scene, at=at, per_length="100 /mm")
+    unit = scales(StaticState.of(scene))
+    for name in ("depth", "depth_rate", "normal_force", "friction_force"):
+        apart = np.abs(getattr(one, name) - getattr(two, name)).max() / unit[name]
+        allowed = one.certificate.relative_error[name] + two.certificate.relative_error[name]
+        assert apart <= allowed, name
+
+
+def test_a_ball_falls_by_elements_and_an_impact_has_the_restitution_of_the_closed_form():
+    ball = kv.Scene(
+        kv.Sphere(0.01), kv.Foundation(1e10, 1e-4), kv.DeadWeight(mass=0.03, load=0.01),
+        kv.Drive(0.0), kv.Run(2.5e-3), kv.Start(gap=1e-4, depth_rate=0.5),
+    )  # fmt: skip
+    known = kv.restitution(ball, speed=0.5)
+    run = kv.elements(ball, per_length="40 /mm", certify=False)
+    assert -run.depth_rate[-1] / 0.5 == pytest.approx(known.restitution, rel=4e-3)
+    assert run.depth.max() == pytest.approx(known.peak_depth, rel=4e-3)
+
+
+@pytest.mark.parametrize(
+    ("eta", "line", "ball"),
+    [(0.05, 0.9101172, 0.9108869), (0.2, 0.7067313, 0.7129687), (1.0, 0.2808203, 0.3053201)],
+)
+def test_restitution_is_that_of_the_derivation(eta, line, ball):
+    assert drop(eta, line=True).restitution == pytest.approx(line, abs=6e-8)
+    assert drop(eta, line=False).restitution == pytest.approx(ball, abs=6e-8)
+
+
+def test_restitution_tends_to_its_series_and_its_inverse_returns_eta():
+    for line, first, second in ((True, 1.941177, 3.083547), (False, 1.937184, 3.360324)):
+        lost = 1.0 - drop(1e-3, line=line).restitution
+        assert lost == pytest.approx(first * 1e-3 - second * 1e-6, rel=1e-5)
+        for eta in (1e-4, 0.3, 20.0):
+            assert number_of(drop(eta, line=line).restitution, line=line) == pytest.approx(
+                eta, rel=1e-6
+            )
+    with pytest.raises(ValueError, match="expected a restitution"):
+        number_of(1.0, line=True)
+
+
+@pytest.mark.parametrize("tau", [1e-6, 2e-5, 1e-3])
+def test_the_closed_form_of_a_drop_is_the_transient_without_weight(tau):
+    scene = dropped(foundation=kv.Foundation(1e10, tau))
+    known, found = kv.restitution(scene), kv.transient(scene, rtol=1e-8)
+    assert found.restitution == pytest.approx(known.restitution, rel=1e-5)
+    assert found.contact_time == pytest.approx(known.contact_time, rel=1e-5)
+    assert found.depth.max() == pytest.approx(known.peak_depth, rel=1e-3)
+
+
+def test_a_damper_beside_weak_arms_has_the_restitution_of_the_damper_alone():
+    law = kv.GeneralizedMaxwell(1e10, arms=[(1e2, 1e-3)], damping=1e10 * 2e-5)
+    known, found = kv.restitution(dropped()), kv.transient(dropped(foundation=law), certify=False)
+    assert found.restitution == pytest.approx(known.restitution, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("indenter", "support"),
+    [
+        (kv.Parabola(0.01), kv.DeadWeight(mass=30.0)),
+        (kv.Sphere(0.01, 0.02), kv.DeadWeight(mass=0.03)),
+    ],
+)
+def test_foundations_have_the_drop_and_the_mode_that_they_were_made_for(indenter, support):
+    scene = kv.Scene(indenter, support=support, drive=kv.Drive(0.0))
+    wanted = {"restitution": 0.6, "contact_time": 2e-3}
+    made = kv.foundation_of_drop(scene, speed=1.0, **wanted)
+    found = kv.restitution(replace(scene, foundation=made), speed=1.0)
+    assert {name: getattr(found, name) for name in wanted} == pytest.approx(wanted, rel=1e-6)
+    made = kv.foundation_of_mode(scene, frequency=400.0, damping_ratio=0.3)
+    rates = kv.stability(replace(scene, foundation=made)).rates
+    assert rates[:, 0] == pytest.approx([-120.0, -120.0], rel=1e-9)
+    assert np.abs(rates[:, 1]) == pytest.approx([400.0 * math.sqrt(0.91)] * 2, rel=1e-9)
+
+
+def test_a_coasting_indenter_stops_as_its_momentum_says():
+    """Friction of slow sliding is W V tau/R (Eq. 42): the rest decays with M_x R/(W tau)."""
+    drive = kv.Drive(1e-4, stiffness=0.0, mass=1000.0)
+    scene = kv.Scene(foundation=kv.Foundation(1e10, 0.02), drive=drive, run=kv.Run(0.6))
+    found = kv.transient(scene, rtol=1e-8)
+    decay = 1000.0 * 0.01 / (WEIGHT.weight * 0.02)
+    assert found.stopping_time == pytest.approx(decay * math.log(100.0), rel=0.02)
+    assert found.stopping_distance == pytest.approx(0.99e-4 * decay, rel=0.02)
+    assert np.all(found.spring_force == 0.0)
+    assert kv.transient(kv.Scene(run=kv.Run(1e-3))).stopping_time is None
+
+
+def test_which_end_of_the_spring_is_drawn():
+    """Constant friction would differ as much: the spring is loaded from zero where its far end is drawn."""
+    drive = kv.Drive("10 mm/s", stiffness="3 MN/m^2")
+    based = kv.transient(kv.Scene(drive=drive), at=[0.0, 1e-3], certify=False)
+    drawn = kv.transient(
+        kv.Scene(drive=drive, start=kv.Start(sliding_velocity=0.0)), at=[0.0, 1e-3], certify=False
+    )
+    assert based.sliding_velocity[0] == 0.01
+    assert drawn.sliding_velocity[0] == 0.0
+    assert drawn.spring_force[1] > 10.0 * abs(based.spring_force[1])
+
+
+def test_a_sweep_over_gaps_has_the_values_of_single_motions():
+    scene = dropped()
+    names = ["restitution", "contact_time", "depth.max", "hops", "stopping_time"]
+    table = kv.sweep(scene, over={"start.gap": [1e-4, 1e-3]}, quantities=names)
+    one = kv.transient(scene.replace({"start.gap": 1e-3}))
+    assert table["restitution"][1] == pytest.approx(one.restitution, rel=1e-6)
+    assert table["contact_time"][1] == pytest.approx(one.contact_time, rel=1e-6)
+    assert np.isnan(table["stopping_time"]).all()
+
+
+def test_solve_and_compare_know_the_start():
+    scene = kv.Scene(start=kv.Start(gap="0.1 mm"), run=kv.Run(0.03))
+    solved = kv.solve(scene, at=[0.01, 0.03], rtol=1e-3)
+    assert solved.model == "continuum"
+    assert solved.depth == pytest.approx(kv.transient(scene, at=[0.01, 0.03]).depth, rel=1e-3)
+    held = kv.Scene(support=kv.Fixed(3e-4), drive=kv.Drive(0.1, stiffness=1e6, mass=10.0))
+    started = replace(held, start=kv.Start(sliding_velocity=0.0), run=kv.Run(1e-3))
+    assert kv.solve(started, at=[1e-4], quantity="depth").model == "continuum"
+    assert kv.compare(scene).verdict == "agrees"
+    rest = kv.compare(replace(scene, start=kv.Start()), data=kv.transient(scene))
+    assert rest.verdict == "disagrees"
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"start": {"gap": -1e-3}}, "start.gap = -0.001: is out of range"),
+        (
+            {"start": {"gap": 1e-3, "depth": 1e-4}},
+            "start.gap = 0.001: cannot be given beside start.depth",
+        ),
+        ({"start": {"depth": 0.0}}, "start.depth = 0.0: is out of range"),
+        ({"start": {"gap": 1e-3}, "support": kv.Fixed(1e-4)}, "which holds the depth"),
+        ({"start": {"sliding_velocity": 0.0}}, "needs drive.stiffness"),
+    ],
+)
+def test_a_wrong_start_costs_one_clear_message(parts, message):
+    with pytest.raises(kv.SceneError) as caught:
+        kv.Scene(**{**parts, "start": kv.Start(**parts["start"])})
+    (problem,) = caught.value.problems
+    assert message in problem
+
+
+def test_a_coasting_indenter_has_no_steady_state_to_be_stable():
+    scene = kv.Scene(drive=kv.Drive(0.1, stiffness=0.0))
+    with pytest.raises(ValueError, match="coasts to rest"):
+        kv.stability(scene)
+    with pytest.raises(kv.ToleranceError, match="coasts to rest"):
+        kv.solve(scene)
+    assert "unstable" in kv.steady(scene).notes[0]
+
+
+def test_a_scene_file_keeps_the_start_and_an_override_replaces_what_it_excludes(tmp_path):
+    scene = kv.Scene(start=kv.Start(gap="2 mm", depth_rate="1 m/s"))
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(scene), "utf-8")
+    assert kv.load_scene(path) == scene
+    other = kv.load_scene(path, overrides=["start.depth=0.2 mm"])
+    assert (other.start.gap, other.start.depth, other.start.depth_rate) == (None, 2e-4, 1.0)
+    assert "[start]" not in kv.to_toml(kv.Scene())
+
+
+def test_a_drop_without_a_speed_and_a_start_says_so():
+    with pytest.raises(ValueError, match=r"needs a `speed`"):
+        kv.restitution()
+    assert kv.restitution(kv.Scene(start=kv.Start(gap=1e-3))).number > 0.0
