@@ -50,6 +50,7 @@ def scene(
     from kvtheory.results.presented import value_range
     from kvtheory.scene import Drive, load_scene, template
     from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
+    from kvtheory.scene.start import REST
 
     given = bool(scene or overrides or as_json)
     if (problem and (given or support)) or (support and given):
@@ -93,7 +94,7 @@ def scene(
     quantities |= numbers
     notes: tuple[str, ...] = ()
     if foundation.modulus is not None:  # whether the layer is thin for the contact at rest
-        notes = steady(replace(checked, drive=Drive(velocity=0.0))).notes
+        notes = steady(replace(checked, drive=Drive(velocity=0.0), start=REST)).notes
     kinds = {
         "shape": checked.indenter.shape, "foundation": foundation.kind,
         "support": checked.support.kind,
