@@ -66,7 +66,7 @@ def wrong():
         "at": ("x", {}, np.nan, np.inf, -1.0, [[1.0], [1.0, 2.0]], [], {1: 2}, xarray.Dataset()),
         "time_step": size, "per_length": size,
         "name": (5, None, "wegde", *arrays), "data": (5, np.nan, *arrays),
-        **dict.fromkeys(("indenter", "foundation", "support", "drive", "run"), (5, None)),
+        **dict.fromkeys(("indenter", "foundation", "support", "drive", "run", "start"), (5, None)),
     }  # fmt: skip
 
 

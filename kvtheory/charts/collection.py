@@ -197,6 +197,8 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
     require(lacks_one_scene, scene, "the chart")
     require(lacks_rigid_continuum, scene, "the chart of transients")
+    if not scene.start.at_rest:
+        raise ValueError("the chart of transients is for a start at rest: leave out [start]")
     jobs: list[Job] = []
     for name in STANDARD if ALL in standard else standard or ("this scene",):
         sliding = scene if suits(scene) and not standard else None

@@ -394,8 +394,9 @@ def _spring_response(
     disturbed scene covers that. Besides, the friction b a/R acts on the spring at once.
     """
     swing = theory.swing
-    first = np.searchsorted(time, time - QUARTER * swing, side="left")
-    after = np.searchsorted(time, time + QUARTER * swing, side="right")
+    beside = QUARTER * (swing if swing < math.inf else theory.scene.foundation.retardation_time)
+    first = np.searchsorted(time, time - beside, side="left")
+    after = np.searchsorted(time, time + beside, side="right")
     ends = np.stack([first, after], axis=1).reshape(-1)
     moved = {name: np.zeros_like(time) for name in CURVES}
     lasting = float(np.trapezoid(force, time)) / float(time[-1] - time[0]) / theory.static.load
@@ -405,9 +406,9 @@ def _spring_response(
             off = np.append(np.nan_to_num(np.abs(found[name] - now[name])), 0.0)
             moved[name] += np.maximum.reduceat(off, ends)[::2]
     kick = OVERSHOOT * force * theory.static.half_length / theory.radius
-    turned = np.clip(time / swing, 0.0, 1.0)  # a mass needs time to move
-    moved["spring_force"] += kick * turned**2
-    moved["sliding_velocity"] += kick * turned * swing / theory.scene.drive_mass
+    acted = np.clip(time, 0.0, swing)  # a mass needs time to move
+    moved["spring_force"] += kick * (acted / swing) ** 2
+    moved["sliding_velocity"] += kick * acted / theory.scene.drive_mass
     return moved
 
 

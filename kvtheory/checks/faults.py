@@ -197,7 +197,8 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
             "oscillates on the spring of the scene (F22)"
         )
         rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
-        yield other("rigid drive instead of a spring", text, drive=rigid)
+        start = replace(scene.start, sliding_velocity=None)
+        yield other("rigid drive instead of a spring", text, drive=rigid, start=start)
         if scene.drive.damping:
             text = "the spring in the drive has no damper beside it, which the scene has"
             yield other(f"{WRONG}c_x", text, drive=scene.drive.changed(damping=0.0))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
 from kvtheory.scene import Drive, Sphere
 from kvtheory.scene.model import Scene
-from kvtheory.scene.start import StartState
+from kvtheory.scene.start import REST, StartState
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.closed_forms import trailing_edge_ratio
 
@@ -149,7 +149,9 @@ class Theory:
     @cached_property
     def steady_state(self) -> Any:
         """Steady sliding at the last velocity."""
-        return self.methods.steady(replace(self.scene, drive=Drive(self.final_velocity)))
+        return self.methods.steady(
+            replace(self.scene, drive=Drive(self.final_velocity), start=REST)
+        )
 
     @cached_property
     def rates(self) -> Rates | None:

@@ -51,6 +51,7 @@ def scene(
     from kvtheory.results.presented import value_range
     from kvtheory.scene import Drive, load_scene, template
     from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
+    from kvtheory.scene.start import REST
 
     given = bool(scene or overrides or as_json)
     if (problem and (given or support)) or (support and given):
@@ -94,7 +95,7 @@ def scene(
     quantities |= numbers
     notes: tuple[str, ...] = ()
     if foundation.modulus is not None:  # how far the foundation is from the layer
-        still = replace(checked, drive=Drive(velocity=0.0))
+        still = replace(checked, drive=Drive(velocity=0.0), start=REST)
         there = checked if checked.drive.ends else still
         notes = tuple(filter(None, [layer_note(there, steady(still).half_length)]))
     kinds = {

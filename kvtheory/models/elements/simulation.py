@@ -83,6 +83,8 @@ masses, and a difference vanishes twice in a swing, at times for both coarse run
 instant alone, one in a thousand was off by more than claimed, on springs in two scenes of five."""
 RECENT = 0.5
 """Share of the time since the last jump of the drive over which these instants lie."""
+STOPPED = 0.01
+"""Share of the sliding velocity at the start below which a coasting indenter counts as stopped."""
 ROUNDING = 1e-12
 """Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
@@ -145,7 +147,9 @@ def simulate(
         warn(warning)
     best, halved = SCHEMES[DEFAULT], instants._replace(after=instants.after // 2)
     half = Timetable(times[::2], 2.0 * steps[::2], halved)
-    runs = [(model, scheme, fine, 1.0)]
+    marked = model.start.gap is not None or scene.drive.coasts
+    whole = _everywhere(path, fine) if marked else fine
+    runs = [(model, scheme, whole, 1.0)]
     if certify:
         for shift in SHIFTS:
             coarse = Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0)
@@ -163,6 +167,9 @@ def simulate(
     (rows, row), *others = (
         _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
     )
+    marks = _landmarks(model, path, rows) if marked else {}
+    kept = np.isin(whole.instants.after, instants.after)
+    rows = {name: column[kept] for name, column in rows.items()}
     unsure = _unsure(model, path, h)
     certificate = _estimate(model, unsure, rows, [other for other, _ in others])
     kind, names = (
@@ -172,7 +179,7 @@ def simulate(
         **{name: rows[name][asked] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing,
         time_step=h, steps=len(steps),
         element_updates=int(value(row.stored.counts, "updates")), warning=warning, model="elements",
-        certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names),
+        certificate=certificate, compiled=row.compiled, units=units_for(scene.indenter, names), **marks,
     )  # fmt: skip
 
 
@@ -298,6 +305,38 @@ def _watched(model: Model, path: BaseMotion, table: Timetable) -> Timetable:
     for n, t in zip(more.tolist(), times[more].tolist(), strict=True):
         rows.append((n, t, path.velocity(t), path.forward(t), path.displacement(t)))
     return Timetable(times, lengths, _instants_of(sorted(rows, key=itemgetter(0))))
+
+
+def _everywhere(path: BaseMotion, table: Timetable) -> Timetable:
+    """Return steps with every second one reported, too."""
+    times, lengths, asked = table
+    more = np.setdiff1d(np.arange(0, times.size, 2), asked.after)
+    rows = list(zip(*asked, strict=True))
+    for n, t in zip(more.tolist(), times[more].tolist(), strict=True):
+        rows.append((n, t, path.velocity(t), path.forward(t), path.displacement(t)))
+    return Timetable(times, lengths, _instants_of(sorted(rows, key=itemgetter(0))))
+
+
+def _landmarks(model: Model, path: BaseMotion, rows: Rows) -> dict[str, Any]:
+    """Return restitution and contact time of a drop, or where and when a coasting indenter stops.
+
+    The first landing is known. The take-off is between two rows, and the velocity hardly changes there.
+    """
+    time, flies, found = rows["time"], np.isnan(rows["leading_edge"]), dict[str, Any]()
+    landing = model.landing(path)
+    up = np.flatnonzero(flies & (time > landing) & (np.cumsum(~flies & (time > landing)) > 0))
+    if model.start.gap is not None and up.size:
+        found["restitution"] = float(-rows["depth_rate"][up[0]] / model.landing_speed)
+        found["contact_time"] = float(0.5 * (time[up[0] - 1] + time[up[0]]) - landing)
+    slides = rows["sliding_velocity"]
+    late = np.flatnonzero(np.abs(slides) > STOPPED * abs(slides[0]))
+    if model.sprung and not model.constants.spring_along and late.size and late[-1] + 1 < time.size:
+        last = slice(late[-1], late[-1] + 2)
+        share = np.interp(STOPPED * abs(slides[0]), np.abs(slides[last])[::-1], [1.0, 0.0])
+        way = np.append(0.0, np.cumsum(0.5 * (slides[1:] + slides[:-1]) * np.diff(time)))
+        found["stopping_time"] = float(np.interp(share, [0.0, 1.0], time[last]))
+        found["stopping_distance"] = abs(float(np.interp(share, [0.0, 1.0], way[last])))
+    return found
 
 
 def _run(
