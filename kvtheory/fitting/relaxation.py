@@ -2,8 +2,8 @@ r"""A Prony series for any relaxation function, or for any spectrum of relaxatio
 
 Within the factors 1 - eps and 1 + eps lie the slopes -H' of the series over those of G, from the shortest
 time to the longest, the integrals of -H' t and -H' t^2 before, and H - K at the end. So do, at an equal
-length of the contact, load and friction in steady sliding, for every contact that is passed in a time up to the
-longest; faster times than the shortest act as dampers.
+length of the contact, load and friction in steady sliding, for every contact that is passed in a time up
+to the longest; faster times than the shortest act as dampers.
 """
 
 from collections.abc import Callable

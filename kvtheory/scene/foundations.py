@@ -554,7 +554,7 @@ class GeneralizedMaxwell(_Relaxed):
     @classmethod
     def _of(cls, K: float, series: Any, deviation: float) -> "GeneralizedMaxwell":
         pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
-        found = cls(K, arms=[list(pair) for pair in pairs])
+        found = cls(K, arms=tuple(Arm(*pair) for pair in pairs))
         object.__setattr__(found, "deviation", deviation)
         return found
 
