@@ -151,7 +151,7 @@ def _flows(data: Moduli) -> bool:
 
 def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
     """Return a series with a relaxed modulus for data that do not reach it."""
-    found = series
+    found = Series(0.0, series.modulus, series.time)
     while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
         found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
     if _no_plateau(data, found) or not found.time.size:
