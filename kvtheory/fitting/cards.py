@@ -6,6 +6,7 @@ have no units: a comment names them.
 """
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -93,13 +94,16 @@ def _ansys(path: Path, lines: list[str]) -> Card:
     return elastic["EX"], nu, False, shear, bulk
 
 
-def written(suffix: str, series: Series, poisson_ratio: float, source: str) -> str:
+def written(
+    suffix: str,
+    relaxed: float,
+    arms: Sequence[tuple[float, float]],
+    poisson_ratio: float,
+    source: str,
+) -> str:
     """Return the card of a series, in Pa and s."""
-    instant = series.relaxed + float(series.modulus.sum())
-    pairs = [
-        (f"{E / instant:.9g}", f"{tau:.9g}")
-        for E, tau in zip(series.modulus, series.time, strict=True)
-    ]
+    instant = relaxed + sum(E for E, _ in arms)
+    pairs = [(f"{E / instant:.9g}", f"{tau:.9g}") for E, tau in arms]
     if suffix == SUFFIXES[0]:
         rows = [f"{g}, {g}, {tau}" for g, tau in pairs]
         lines = [

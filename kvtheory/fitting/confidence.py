@@ -190,16 +190,17 @@ def large(problem: Problem, point: Array) -> list[str]:
     own = dict(zip(problem.keys, np.exp(point).tolist(), strict=True))
     if problem.scene.indenter.shape not in PARABOLAS:
         return []
-    most = 0.0
+    long = deep = 0.0
     for data in problem.data:
         V = {} if data.time is None else {"drive.velocity": 0.0}
         scene = problem.of({**data.conditions, **V, **own})
-        state = problem.solve(scene)
-        for size in (state.half_length, state.depth):
-            most = max(most, float(np.max(size / scene.values()["indenter.radius"])))
-    if most <= LARGE:
+        state, R = problem.solve(scene), scene.values()["indenter.radius"]
+        long = max(long, float(np.max(state.half_length / R)))
+        deep = max(deep, float(np.max(state.depth / R)))
+    if max(long, deep) <= LARGE:
         return []
-    message = f"Half length or depth of the fitted contact is up to {most:.3g} radii"
+    message = f"The fitted contact is up to {long:.3g} radii long on each side of the lowest point"
+    message += f" and {deep:.3g} radii deep"
     return [f"{message}, where no ball or cylinder is a parabola: check radius, load and friction."]
 
 

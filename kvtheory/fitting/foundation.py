@@ -110,8 +110,8 @@ def fit(
 def of_card(path: Path) -> tuple[Fitted, float]:
     """Return the series of a card of Abaqus or ANSYS, sampled over its times, and Poisson's ratio."""
     series, poisson_ratio, notes = cards.read(path)
-    ends = BEYOND_CARD ** np.array([-1.0, 1.0]) / series.time[[-1, 0]]
-    omega = np.geomspace(*ends, CARD_POINTS)
+    low, high = (1.0 / series.time[[-1, 0]]).tolist()
+    omega = np.geomspace(low / BEYOND_CARD, high * BEYOND_CARD, CARD_POINTS)
     data = Moduli(omega, series.values(omega, dynamic=True))
     measured = moduli.Measured(str(path), (moduli.Sweep(math.nan, data),), "E", tuple(notes))
     return Fitted(measured, data, series, 0.0, None, None, tuple(notes)), poisson_ratio
@@ -151,7 +151,7 @@ def _flows(data: Moduli) -> bool:
 
 def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
     """Return a series with a relaxed modulus for data that do not reach it."""
-    found = series
+    found = Series(0.0, series.modulus, series.time)
     while _no_plateau(data, found) and found.time.size and found.time[-1] > data.times[1]:
         found = refined(data, Series(float(found.modulus[-1]), found.modulus[:-1], found.time[:-1]))
     if _no_plateau(data, found) or not found.time.size:

@@ -279,7 +279,8 @@ def _dynamic(
 
 def _completed(table: Table, parts: Any, found: dict[str, Array]) -> tuple[Array, Array]:
     """Return storage and loss modulus from two of storage, loss, size and tangent."""
-    E, L, size, tangent = (found.get(part) for part in DYNAMIC)
+    values: list[Any] = [found.get(part) for part in DYNAMIC]
+    E, L, size, tangent = values
     if E is not None and L is not None:
         return E, L
     if tangent is not None:
@@ -289,7 +290,6 @@ def _completed(table: Table, parts: Any, found: dict[str, Array]) -> tuple[Array
         E = size / np.hypot(1.0, tangent) if E is None else E
         return E, E * tangent if L is None else L
     own = E if L is None else L  # beside the size
-    assert size is not None  # for mypy
     table.require(parts["size"][0], size > own, "is not above the modulus beside it")
     rest = np.sqrt(size**2 - own**2)
     return (own, rest) if L is None else (rest, L)

@@ -94,9 +94,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
         values[quantity], heads[quantity] = -array if name != quantity else array, column.head
     _raise(table.source, problems)
     if not {"time", "velocity"} & values.keys() and "sliding_velocity" in values:  # of a curve
-        values["velocity"], heads["velocity"] = (
-            held.pop("sliding_velocity") for held in (values, heads)
-        )
+        values["velocity"] = values.pop("sliding_velocity")
+        heads["velocity"] = heads.pop("sliding_velocity")
     return _checked(values, heads, table, known)
 
 

@@ -176,7 +176,7 @@ def shifted(
     x = np.concatenate([part.x for part in parts])
     order = np.argsort(x, kind="stable")
     whole = Moduli(x[order], np.concatenate([part.values for part in parts], axis=1)[:, order])
-    return Shifted(whole, reference, T, *rows.T, sigma, tuple(notes))
+    return Shifted(whole, reference, T, rows[:, 0], rows[:, 1], sigma, tuple(notes))
 
 
 class Step(NamedTuple):

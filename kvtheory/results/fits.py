@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from kvtheory.export import Columns
-from kvtheory.results.presented import Exported, Recorded, aligned
+from kvtheory.results.presented import Exported, Recorded, above, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene
@@ -96,14 +96,11 @@ class FoundationFit(_Fit):
 
     def to_card(self, suffix: str) -> str:
         """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa and s."""
-        from kvtheory.fitting.cards import written
-        from kvtheory.fitting.spectrum import Series
-
         nu = self.data["poisson_ratio"]
         if self.modulus is None or nu is None:
             raise ValueError("a card holds moduli and Poisson's ratio: give `poisson_ratio`")
-        E, tau = np.array(self.arms).T
-        return written(suffix, Series(self.modulus, E, tau), nu, self.source)
+        text: str = above("fitting.cards").written(suffix, self.modulus, self.arms, nu, self.source)
+        return text
 
     @property
     def remarks(self) -> list[str]:

@@ -289,7 +289,8 @@ class Reader:
 
     def _temperature(self, above: Sequence[str]) -> float | None:
         """Return the temperature (K) in the head of a table: of a line with its name, or the only one."""
-        named, others = [], []
+        named: list[float] = []
+        others: list[float] = []
         for line in above:
             matches = [
                 to_si(
@@ -452,7 +453,7 @@ def _numbers(
 
 def _footer(lines: Sequence[str], own: Layout, found: Known) -> list[str]:
     """Leave out the last rows of a table that begin with a word in place of a number, and return notes."""
-    notes = []
+    notes: list[str] = []
     while len(own.rows) > 1 and 0 in found and own.cells(lines[own.rows[-1]])[0][:1].isalpha():
         last = own.rows.pop()
         notes.insert(0, f'Line {last + 1}, "{shown(lines[last])}", is not used.')

@@ -8,9 +8,10 @@ int (G - K) dt, which governs slow sliding; and the `retardation_time` int (G - 
 
 import copy
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass, fields
+from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,6 +24,7 @@ from kvtheory.scene.quantities import (
     Quantity,
     Value,
     as_given,
+    convert,
     derive,
     is_derived,
     missing,
@@ -452,6 +454,25 @@ class Arm(Part):
             object.__setattr__(self, "relaxation_time", time)
 
 
+def _share(rtol: float) -> float:
+    if not 0.0 < rtol < 1.0:
+        raise ValueError(f"`rtol` = {rtol!r}: expected a number above 0 and below 1")
+    return rtol
+
+
+def _range(over: Any) -> tuple[float, float]:
+    """Return two times in s, the shortest and the longest."""
+    spec = quantities(Arm)["relaxation_time"]
+    if not _is_pair(over):
+        raise ValueError(f"`over` = {over!r}: expected the shortest and the longest time")
+    shortest, longest = (convert(each, spec) for each in over)
+    if not shortest < longest:
+        raise ValueError(
+            f"`over` = {over!r}: expected the shortest time first, and then a longer one"
+        )
+    return shortest, longest
+
+
 @dataclass(frozen=True, eq=False)
 class GeneralizedMaxwell(_Relaxed):
     """A spring in parallel with Maxwell arms and a damper: G = K + C delta(t) + sum K_i e^(-t/tau_i).
@@ -472,6 +493,63 @@ class GeneralizedMaxwell(_Relaxed):
         "N*s/m^3", "C, damping per unit area of a damper beside the arms; 0 if not given",
         default=None, exclusive=False,
     )  # fmt: skip
+
+    deviation: ClassVar[float] = 0.0
+    """eps of fact F27, of a foundation from a relaxation function or a spectrum."""
+
+    @classmethod
+    def from_relaxation(
+        cls, G: Callable[[float], float], *, rtol: float = 0.01, over: Any, stiffness: Any = None
+    ) -> "GeneralizedMaxwell":
+        """Return the fewest arms for any relaxation function G(t), with a bound on the change of friction.
+
+        `G` takes a time in s and returns N/m^3, its relaxed value included, which is G(inf) or `stiffness`.
+        It has to fall with time, and may be infinite at t = 0. `over` are the shortest and the longest time
+        in which a contact is passed, in s or with a unit. At an equal length of the contact, load and
+        friction in steady sliding are within the factors 1 - eps and 1 + eps of those of G, eps =
+        `deviation` <= `rtol` (fact F27), while c/V, c the contact length, is within `over`; so at a given
+        load is mu, but for the factors that its growth with the load adds.
+
+        Raises ValueError if `G` does not fall, or no series is within `rtol`.
+
+        >>> from math import exp, inf
+        >>> stretched = lambda t: 1e9 + 3e9 * exp(-((t / 0.01) ** 0.5))  # Kohlrausch, Williams and Watts
+        >>> found = GeneralizedMaxwell.from_relaxation(stretched, rtol=0.1, over=("0.1 ms", "0.1 s"))
+        >>> found.stiffness, found.deviation < 0.1, 5 <= len(found.arms) <= 12
+        (1000000000.0, True, True)
+        """
+        K = (
+            float(G(math.inf))
+            if stiffness is None
+            else convert(stiffness, quantities(cls)["stiffness"])
+        )
+        fit = import_module("kvtheory.fitting.relaxation")  # a higher room
+        return cls._of(K, *fit.arms_of(G, K, _share(rtol), _range(over)))
+
+    @classmethod
+    def from_spectrum(
+        cls, stiffness: Any, H: Callable[[float], float], *, rtol: float = 0.01, over: Any
+    ) -> "GeneralizedMaxwell":
+        """Return the fewest arms for a spectrum H(tau) in N/m^3: G = K + int H e^(-t/tau) d ln tau.
+
+        `stiffness` is K; for the rest see `from_relaxation`.
+
+        >>> from math import exp, log
+        >>> lognormal = lambda tau: 2e9 * exp(-0.5 * (log(tau / 1e-3) / 2.0) ** 2)
+        >>> found = GeneralizedMaxwell.from_spectrum("1 GN/m^3", lognormal, rtol=0.1, over=(1e-5, 0.1))
+        >>> found.deviation < 0.1
+        True
+        """
+        K = convert(stiffness, quantities(cls)["stiffness"])
+        fit = import_module("kvtheory.fitting.relaxation")
+        return cls._of(K, *fit.arms_of_spectrum(H, _share(rtol), _range(over)))
+
+    @classmethod
+    def _of(cls, K: float, series: Any, deviation: float) -> "GeneralizedMaxwell":
+        pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
+        found = cls(K, arms=tuple(Arm(*pair) for pair in pairs))
+        object.__setattr__(found, "deviation", deviation)
+        return found
 
     def _read_arms(self, problems: Problems) -> Sequence[Arm]:
         with problems.catching("foundation.arms", self.arms):

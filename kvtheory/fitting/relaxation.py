@@ -1,0 +1,96 @@
+r"""A Prony series for any relaxation function, or for any spectrum of relaxation times (fact F27).
+
+Within the factors 1 - eps and 1 + eps lie the slopes -H' of the series over those of G, from the shortest
+time to the longest, the integrals of -H' t and -H' t^2 before, and H - K at the end. So do, at an equal
+length of the contact, load and friction in steady sliding, for every contact that is passed in a time up
+to the longest; faster times than the shortest act as dampers.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kvtheory.fitting.fewer import EARLY, Slopes
+from kvtheory.fitting.spectrum import Array, Series, fewer, refined, solved
+
+STEP = 1e-3
+"""Change of ln t by which a relaxation function is differentiated, with an error of its fourth power."""
+GRID, BEYOND = 8, 1.0
+"""Relaxation times per decade from which the series is chosen, and decades beyond the range."""
+NODES, POWER = 64, 8
+"""Nodes of the integrals from t = 0, in the root of this power of t, as a function may be infinite there."""
+DENSE, FAR = 32, 3.0
+"""Times per decade at which a spectrum is summed, and decades beyond the range."""
+
+
+@dataclass(frozen=True)
+class Measured(Slopes):
+    """The slopes of a function, its integrals before the first time, and its value at the last one."""
+
+    own: Array
+
+    @property
+    def _own(self) -> Array:
+        return self.own
+
+
+def arms_of(
+    G: Callable[[Any], Any], K: float, rtol: float, over: tuple[float, float]
+) -> tuple[Series, float]:
+    """Return the fewest arms for a relaxation function (N/m^3), and eps; or raise ValueError."""
+    shortest, longest = over
+    first = EARLY * rtol * shortest
+    x = Slopes.of(np.ones(1), np.ones(1), first, longest).x
+
+    def at(t: Array) -> Array:
+        return np.array([float(G(each)) for each in t.tolist()])
+
+    moves = (at(x * np.exp(k * STEP)) for k in (-2, -1, 1, 2))
+    weights = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * STEP)
+    slope = -np.einsum("k,ki->i", weights, np.stack(list(moves))) / x
+    start, end = float(G(first)), float(G(longest))
+    u, weight = np.polynomial.legendre.leggauss(NODES)
+    t = first * (0.5 + 0.5 * u) ** POWER
+    weight = weight * 0.5 * POWER * first * (0.5 + 0.5 * u) ** (POWER - 1)
+    above = at(t) - start  # int -G' t^n dt = n int (G - G(first)) t^(n - 1) dt
+    slope[-3], slope[-2] = float(above @ weight), 2.0 * float((above * t) @ weight)
+    slope[-1] = end - K
+    if not (np.isfinite(slope).all() and (slope > 0.0).all()):
+        message = (
+            "expected a finite function that falls, to more than its relaxed value within the range"
+        )
+        raise ValueError(f"`G`: {message}")
+    return _fewest(Measured(x, np.ones((1, x.size)), np.ones(1), np.array(over), slope), over, rtol)
+
+
+def arms_of_spectrum(
+    H: Callable[[Any], Any], rtol: float, over: tuple[float, float]
+) -> tuple[Series, float]:
+    """Return the fewest arms for a spectrum, G - K = int H(tau) e^(-t/tau) d ln tau, and eps."""
+    low, high = np.log10(over) + FAR * np.array([-1.0, 1.0])
+    tau = np.logspace(low, high, int((high - low) * DENSE) + 1)
+    size = np.array([float(H(each)) for each in tau.tolist()]) * np.log(tau[1] / tau[0])
+    if not (np.isfinite(size).all() and (size >= 0.0).all() and size.any()):
+        raise ValueError("`H`: expected finite values of at least 0, not all of them 0")
+    data = Slopes.of(size[size > 0.0], tau[size > 0.0], EARLY * rtol * over[0], over[1])
+    return _fewest(data, over, rtol)
+
+
+def _fewest(data: Slopes, over: tuple[float, float], rtol: float) -> tuple[Series, float]:
+    low, high = np.log10([data.x.min(), over[1]]) + BEYOND * np.array([-1.0, 1.0])
+    series = solved(data, np.logspace(low, high, int((high - low) * GRID) + 1))
+    series = Series(0.0, series.modulus, series.time)
+    best, least = series, data.deviation(series)
+    if least > rtol:
+        raise ValueError(
+            f"`rtol` = {rtol:g}: no series was found within it; the best is off by {least:.2g}"
+        )
+    while series.time.size > 1:
+        series = refined(data, fewer(data, series, 0))
+        series = Series(0.0, series.modulus, series.time)
+        if (off := data.deviation(series)) > rtol:
+            break
+        best, least = series, off
+    return best, least
