@@ -93,11 +93,7 @@ def scene(
             quantities[f"shifted_{name}"] = shifted
     numbers = {} if lacks_quadratic(checked) else _dimensionless(checked)
     quantities |= numbers
-    notes: tuple[str, ...] = ()
-    if foundation.modulus is not None:  # how far the foundation is from the layer
-        still = replace(checked, drive=Drive(velocity=0.0), start=REST)
-        there = checked if checked.drive.ends else still
-        notes = tuple(filter(None, [layer_note(there, steady(still).half_length)]))
+    notes = _notes(checked)
     kinds = {
         "shape": checked.indenter.shape, "foundation": foundation.kind,
         "support": checked.support.kind,
@@ -119,6 +115,15 @@ def scene(
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
     for note in notes:
         click.echo(f"\n{note}")
+
+
+def _notes(scene: Scene) -> tuple[str, ...]:
+    """Say how far a foundation is from the layer that it stands for."""
+    if scene.foundation.modulus is None:
+        return ()
+    still = replace(scene, drive=Drive(velocity=0.0), start=REST)
+    there = scene if scene.drive.ends else still
+    return tuple(filter(None, [layer_note(there, steady(still).half_length)]))
 
 
 def _dimensionless(scene: Any) -> dict[str, Any]:
