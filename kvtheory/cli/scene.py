@@ -44,14 +44,11 @@ def scene(
     """
     import numpy as np  # not needed for help texts
 
-    from kvtheory.api import steady
-    from kvtheory.api._edge import layer_note
     from kvtheory.reference_problems import problem_text, problems
     from kvtheory.results import record
     from kvtheory.results.presented import value_range
-    from kvtheory.scene import Drive, load_scene, template
+    from kvtheory.scene import load_scene, template
     from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
-    from kvtheory.scene.start import REST
 
     given = bool(scene or overrides or as_json)
     if (problem and (given or support)) or (support and given):
@@ -117,8 +114,13 @@ def scene(
         click.echo(f"\n{note}")
 
 
-def _notes(scene: Scene) -> tuple[str, ...]:
+def _notes(scene: Any) -> tuple[str, ...]:
     """Say how far a foundation is from the layer that it stands for."""
+    from kvtheory.api import steady
+    from kvtheory.api._edge import layer_note
+    from kvtheory.scene import Drive
+    from kvtheory.scene.start import REST
+
     if scene.foundation.modulus is None:
         return ()
     still = replace(scene, drive=Drive(velocity=0.0), start=REST)
