@@ -12,11 +12,10 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.explorer import save_explorer
-from kvtheory.explorer.controls import controls
+from kvtheory.explorer.controls import SECTIONS, controls
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.layer import THIN, layer_number
-from kvtheory.scene.model import SECTIONS
 from kvtheory.scene.quantities import quantities
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms

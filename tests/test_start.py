@@ -274,3 +274,16 @@ def test_a_drop_without_a_speed_and_a_start_says_so():
     with pytest.raises(ValueError, match=r"needs a `speed`"):
         kv.restitution()
     assert kv.restitution(kv.Scene(start=kv.Start(gap=1e-3))).number > 0.0
+
+
+def test_a_fit_of_a_drop_returns_the_foundation_and_the_gap():
+    scene = kv.problem("drop")
+    seen = kv.transient(scene, at=np.linspace(0.0, 0.04, 60), certify=False)
+    data = {
+        "time [s]": seen.time, "normal_force [N/m]": seen.normal_force, "depth [m]": seen.depth,
+    }  # fmt: skip
+    first = scene.replace({"foundation.stiffness": 7e9, "start.gap": 1.1e-3})
+    free = ["foundation.stiffness", "foundation.retardation_time", "start.gap"]
+    found = kv.fit(first, data=data, free=free)
+    values = [found.parameters[key].value for key in free]
+    assert values == pytest.approx([1e10, 1e-3, 1e-3], rel=1e-4)
