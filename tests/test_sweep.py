@@ -222,7 +222,7 @@ def test_a_scene_with_an_empty_list_is_not_swept():
         ({(V, TAU): 1.0}, ["a list for each key"]),
         ({"a.b": [1.0], V: "x", TAU: [-1.0]}, ["a.b", V, TAU]),  # all mistakes at once
         ({"quantities": ["friction_coeficient"]}, ['did you mean "friction_coefficient"']),
-        ({"quantities": ["WRONG"]}, ["expected one of 72 names, such as"]),
+        ({"quantities": ["WRONG"]}, ["expected one of 76 names, such as"]),
         ({"quantities": []}, ["empty"]),
         ({"quantities": "depth.mean"}, ["depth.mean", "depth.min"]),
         ({"at": ["1 s"], "quantities": "depth"}, ["after the end"]),
