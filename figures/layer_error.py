@@ -18,7 +18,7 @@ from kvtheory.layer.model_error import relative_error
 VELOCITIES = np.geomspace(1e-2, 1e3, 101)
 THICKNESSES = np.geomspace(0.1, 100.0, 61)
 RATIOS = {0.3: "#2171b5", 0.45: "#41ab5d", 0.5: "#cb181d"}
-STIFFENING, WIDTHS, NEARLY = 6.0, {0.0: "-", 6.0: "--"}, 0.49
+STIFFENING, WIDTHS, NEARLY = 6.0, {0.0: ("-", "one arm"), 6.0: ("--", "six decades")}, 0.49
 LEVELS = np.array([0.05, 0.1, 0.2, 0.5, 1.0])
 KINDS = {"line": "cylinder", "ball": "ball"}
 
@@ -57,20 +57,19 @@ def draw(data: Data) -> Figure:
             ax.contourf(VELOCITIES, THICKNESSES, error, levels=[0.0, *LEVELS, 10.0], cmap="YlOrRd",
                         norm="log", vmin=5e-3, vmax=3.0)  # fmt: skip
             lines = ax.contour(
-                VELOCITIES, THICKNESSES, error, levels=LEVELS, colors="0.2", linewidths=0.7
+                VELOCITIES, THICKNESSES, error, levels=LEVELS, colors="black", linewidths=0.7
             )
             ax.clabel(lines, fmt=lambda level: f"{level:.0%}", fontsize=8)
             ax.set(xscale="log", yscale="log", title=f"{words}: {name}")
         row[0].set_ylabel("$H/a$")
         for (name, nu, width), largest in data.largest.items():
             if name == kind:
-                label = rf"$\nu = {nu:g}$" if width == 0.0 else None
-                row[2].plot(
-                    largest, THICKNESSES, WIDTHS[width], color=RATIOS[nu], linewidth=1, label=label
-                )
+                label = rf"$\nu = {nu:g}$, {WIDTHS[width][1]}"
+                style = {"linestyle": WIDTHS[width][0], "color": RATIOS[nu], "linewidth": 1}
+                row[2].plot(largest, THICKNESSES, label=label, **style)
         row[2].set(xlim=(0.0, None), title=f"{words}: friction, any velocity")
         row[2].xaxis.set_major_formatter("{x:.0%}")
-        row[2].legend(fontsize=8)
+        row[2].legend(fontsize=7)
     for ax in axes[1, :2]:
         ax.set_xlabel("$V/V^*$")
     axes[1, 2].set_xlabel("largest error")
