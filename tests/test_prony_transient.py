@@ -93,7 +93,7 @@ def test_the_rate_of_a_light_mass_in_a_short_run_is_within_its_claim():
 
 
 def test_an_edge_beside_a_stiff_damper_peels_where_the_indenter_slowly_rises():
-    """After a stop, the damper alone presses there; the depth falls by 7e-10. Numbers of elements of 5e-8 a_0."""
+    """After a stop only the damper presses there; the depth falls by 7e-10. From elements 5e-8 apart."""
     history = [(0.0, 2.0), (8e-6, 2.0), (8e-6, -2.0), (2e-5, -2.0), (2e-5, 0.0), (4e-5, 0.0)]
     rubber = kv.GeneralizedMaxwell(0.75, arms=[(0.15, 0.5)], damping=0.75)
     scene = of_unit_scales(0.5, 0.0, kv.Drive(history=history), 4e-5)
