@@ -92,13 +92,11 @@ def test_the_rate_of_a_light_mass_in_a_short_run_is_within_its_claim():
     assert off <= claimed <= 5.0 * off
 
 
-def test_an_edge_beside_a_stiff_damper_peels_where_the_indenter_slowly_rises():
-    """After a stop only the damper presses there; the depth falls by 7e-10. From elements 5e-8 apart."""
-    history = [(0.0, 2.0), (8e-6, 2.0), (8e-6, -2.0), (2e-5, -2.0), (2e-5, 0.0), (4e-5, 0.0)]
+def test_the_claim_of_an_edge_beside_a_stiff_damper_covers_the_tension_that_no_event_sees():
+    """After a stop only the damper presses there, as the indenter slowly rises. From elements 5e-8 apart."""
+    history = [(0.0, 2.0), (5e-6, 2.0), (5e-6, -2.0), (1e-5, -2.0), (1e-5, 0.0), (2e-5, 0.0)]
     rubber = kv.GeneralizedMaxwell(0.75, arms=[(0.15, 0.5)], damping=0.75)
-    scene = of_unit_scales(0.5, 0.0, kv.Drive(history=history), 4e-5)
-    found = kv.transient(replace(scene, foundation=rubber), at=[2.2e-5, 3e-5, 4e-5], rtol=1e-3)
-    off = np.abs(found.leading_edge - 1.0 + [1.1164e-5, 1.0041e-5, 8.909e-6]).max()
-    claimed = found.certificate.relative_error["leading_edge"]
-    assert off <= claimed < 1e-4
-    assert off < 5e-6
+    scene = of_unit_scales(0.1, 0.0, kv.Drive(history=history), 2e-5)
+    found = kv.transient(replace(scene, foundation=rubber), at=[1.1e-5, 1.5e-5, 2e-5], rtol=1e-3)
+    off = np.abs(found.leading_edge - 1.0 + [2.6462e-5, 2.3733e-5, 2.109e-5]).max()
+    assert off <= found.certificate.relative_error["leading_edge"] < 1e-4

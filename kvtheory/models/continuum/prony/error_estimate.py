@@ -22,7 +22,7 @@ from kvtheory.models.continuum.prony.records import (
     together,
 )
 from kvtheory.models.continuum.prony.trajectory import Trajectory
-from kvtheory.models.continuum.prony.walk import slowest, violation
+from kvtheory.models.continuum.prony.walk import least_violation
 from kvtheory.models.continuum.run import FREE, StepControl
 from kvtheory.records import readable
 from kvtheory.results import AT_REST, Certificate
@@ -72,7 +72,7 @@ def certificate(
     measures = scales(StaticState.of(scene))  # in other units of time
     errors, widths, lost = {"time": 0.0}, np.zeros_like(s), _lost(other)
     given = readable(run.given[0])
-    tension = given.damper * violation(given) * slowest(given)  # at an edge, which no event sees
+    tension = given.damper * least_violation(given.rtol)  # at an edge, which no event sees
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
     for name, values in here.items():

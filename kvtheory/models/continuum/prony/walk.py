@@ -1,7 +1,7 @@
 """From step to step on a Prony series: step sizes, and events: edges turn, or pass to other ground."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kvtheory.models.continuum.prony import contact as c_
 from kvtheory.models.continuum.prony import hops as h_
@@ -44,9 +44,6 @@ BISECTIONS = 60
 ALLOWED, ROUNDING, MORE = 1e-3, 1e-13, 8.0
 """Share of the tolerance, and least violation, that an event needs, and the factor on it after each change at
 the same instant: where the pressure hardly changes at an edge, both states are right within the tolerance."""
-STIFF, SLOW = 10.0, 1e-10
-"""The damper from which on events see slower rises, for it makes pressure of them; the slowest that they see:
-others are lost in the rounding of the gap above ground which an edge has just left."""
 LATE = 0.9
 """Share of a step before which an event, rather than the error, sets the length of the next attempt."""
 PROBES = 3
@@ -155,33 +152,28 @@ def _jump(run: Run) -> None:
         if peels and damped and not run.clock.paused[now.piece]:
             continue  # its motion tells, see `_keeps`
         rise = left_behind(run, k) if peels else side.rise
-        rises, allowed = _pressing(run, side.xi, at.v, at.number, rise)
-        if damped and abs(rises) <= allowed:  # p = 0, and its rate tells
+        rises, terms = _pressing(side.xi, at.v, at.number, rise)
+        if damped and abs(rises) <= _allowed(run) * terms:  # p = 0, and its rate tells
             rises = faster - 2.0 * side.xi * slope
-            allowed = _allowed(run) * (1.0 + abs(faster) + abs(slope))
-        if (-rises if peels else rises) < -allowed:
+            terms = 1.0 + abs(faster) + abs(slope)
+        if (-rises if peels else rises) < -_allowed(run) * terms:
             turn(run, k)
 
 
-def _pressing(run: Run, xi: float, v: float, number: float, rise: float) -> tuple[float, float]:
-    """Return how much faster the indenter presses at an edge than free ground rises, and what is allowed."""
-    terms = abs(v) + 2.0 * abs(xi * number) + abs(rise)
-    return v - 2.0 * xi * number - rise, _allowed(run) * (slowest(run.given) + terms)
-
-
-def slowest(given: Any) -> float:
-    """Return the rate that `violation` is relative to where none is larger."""
-    return float(max(STIFF / max(given.damper, STIFF), min(1.0, SLOW / violation(given))))
+def _pressing(xi: float, v: float, number: float, rise: float) -> tuple[float, float]:
+    """Return how much faster the indenter presses at an edge than free ground rises there, and the terms."""
+    pressed = v - 2.0 * xi * number
+    return pressed - rise, 1.0 + abs(v) + 2.0 * abs(xi * number) + abs(rise)
 
 
 def _allowed(run: Run) -> float:
     """Return the violation that an event needs."""
-    return violation(run.given) * math.pow(MORE, run.now.toggles)
+    return least_violation(run.given.rtol) * math.pow(MORE, run.now.toggles)
 
 
-def violation(given: Any) -> float:
-    """Return that of the first event at an instant."""
-    return float(max(ALLOWED * given.rtol, ROUNDING))
+def least_violation(rtol: float) -> float:
+    """Return the least violation that an event needs, of rates relative to 1 + their size."""
+    return float(max(ALLOWED * rtol, ROUNDING))
 
 
 def monitors(run: Run, theta: float, exact: bool) -> Monitors:
@@ -220,8 +212,8 @@ def _keeps(run: Run, k: int, at: Motion) -> float:
         error = n * (n + 1) * run.given.last_power * abs(powers[n])
         return error + _allowed(run) - outward
     rise = c_.value(run.polynomials.rise[index, :, k], theta)
-    rises, allowed = _pressing(run, c_.value(powers, theta), at.v, at.number, rise)
-    return rises + allowed
+    rises, terms = _pressing(c_.value(powers, theta), at.v, at.number, rise)
+    return rises / terms + _allowed(run)
 
 
 def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
