@@ -90,3 +90,13 @@ def test_the_rate_of_a_light_mass_in_a_short_run_is_within_its_claim():
     claimed = found.certificate.relative_error["depth_rate"]
     assert truth.steps > 5 * found.steps
     assert off <= claimed <= 5.0 * off
+
+
+def test_the_claim_of_an_edge_beside_a_stiff_damper_covers_the_tension_that_no_event_sees():
+    """After a stop only the damper presses there, as the indenter slowly rises. From elements 5e-8 apart."""
+    history = [(0.0, 2.0), (5e-6, 2.0), (5e-6, -2.0), (1e-5, -2.0), (1e-5, 0.0), (2e-5, 0.0)]
+    rubber = kv.GeneralizedMaxwell(0.75, arms=[(0.15, 0.5)], damping=0.75)
+    scene = of_unit_scales(0.1, 0.0, kv.Drive(history=history), 2e-5)
+    found = kv.transient(replace(scene, foundation=rubber), at=[1.1e-5, 1.5e-5, 2e-5], rtol=1e-3)
+    off = np.abs(found.leading_edge - 1.0 + [2.6462e-5, 2.3733e-5, 2.109e-5]).max()
+    assert off <= found.certificate.relative_error["leading_edge"] < 1e-4

@@ -22,6 +22,7 @@ from kvtheory.models.continuum.prony.records import (
     together,
 )
 from kvtheory.models.continuum.prony.trajectory import Trajectory
+from kvtheory.models.continuum.prony.walk import least_violation
 from kvtheory.models.continuum.run import FREE, StepControl
 from kvtheory.records import readable
 from kvtheory.results import AT_REST, Certificate
@@ -70,6 +71,8 @@ def certificate(
     rounding = ROUNDING * float(np.sum(stiffness * deepest * (1.0 + deepest)))
     measures = scales(StaticState.of(scene))  # in other units of time
     errors, widths, lost = {"time": 0.0}, np.zeros_like(s), _lost(other)
+    given = readable(run.given[0])
+    tension = given.damper * least_violation(given.rtol)  # at an edge, which no event sees
     for each in (here, there):
         widths += np.nan_to_num(np.abs(each["leading_edge"] - each["trailing_edge"]))
     for name, values in here.items():
@@ -82,6 +85,8 @@ def certificate(
         least += float(np.max(np.abs(np.nan_to_num(values)), initial=0.0))
         apart = MARGIN * apart + SAFETY * lost.get(name, 0.0)
         errors[name] = max(apart, FLOOR * rtol * least) + rounding
+        if "edge" in name:
+            errors[name] += tension  # p rises by 1 or more per unit of xi
     errors = {name: error * (own[name] / measures[name]) for name, error in errors.items()}
     everywhere, jump_time = _anywhere(fine, other, lost, rtol, scene.drive.tolerance)
     for name, error in everywhere.items():

@@ -168,7 +168,12 @@ def _pressing(xi: float, v: float, number: float, rise: float) -> tuple[float, f
 
 def _allowed(run: Run) -> float:
     """Return the violation that an event needs."""
-    return max(ALLOWED * run.given.rtol, ROUNDING) * math.pow(MORE, run.now.toggles)
+    return least_violation(run.given.rtol) * math.pow(MORE, run.now.toggles)
+
+
+def least_violation(rtol: float) -> float:
+    """Return the least violation that an event needs, of rates relative to 1 + their size."""
+    return float(max(ALLOWED * rtol, ROUNDING))
 
 
 def monitors(run: Run, theta: float, exact: bool) -> Monitors:
