@@ -187,23 +187,26 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     if isinstance(block, Given):
         return f'<li class="given">{_printed(sentence(block, labels))}</li>'
     shown = f'<span class="number">({block.tag})</span>' if block.tag else ""
-    chain = _chain(block.step.latex)
+    badge, reason = _badge(block.step.status), _printed(remark(block.step, labels))
+    chain = _chain(block.step.latex, "" if reason else badge)
     return (
         f'<li class="{"result" if block.tag else "step"}">'
         f'<div class="line"><div class="scroll">{chain}</div>'
-        f'<p class="reason">{_printed(remark(block.step, labels))} {_badge(block.step.status)}</p></div>'
-        f"{shown}</li>"
+        + (f'<p class="reason">{reason} {badge}</p>' if reason else "")
+        + f"</div>{shown}</li>"
     )
 
 
-def _chain(latex: str) -> str:
-    """Return a relation in pieces, between which a browser may break the line."""
+def _chain(latex: str, end: str = "") -> str:
+    """Return a relation in pieces, between which a browser may break the line; the last one has the end."""
     shown = []
     for link in relations(latex):
         first, *rest = cut_at_signs(link, _NARROW)
         shown.append(mathml(first, "block"))
         # Else a sign at the beginning would be that of a number, without space about it.
         shown += [mathml(each, "block").replace("<mo>", '<mo form="infix">', 1) for each in rest]
+    if end:
+        shown[-1] = f'<span class="end">{shown[-1]} {end}</span>'
     return "".join(shown)
 
 

@@ -75,7 +75,10 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
   \startline
   \sbox{\number@}{#1}%
   \room=\dimexpr\linewidth-\indented-\wd\number@-1em\relax
-  \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{\small\quad #3~#2}%
+  \def\reason{#3}%
+  \ifx\reason\@empty
+    \sbox{\formula}{\fit{\room}{#4\quad\mbox{\small#2}}}\sbox{\remark}{}%
+  \else \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{\small\quad #3~#2}\fi
   \ifdim\dimexpr\wd\formula+\wd\remark\relax>\room
     \hspace*{\indented}\usebox{\formula}\hfill\usebox{\number@}\par\nopagebreak
     {\small\leftskip=2\indented\raggedright\hangindent=1em #3~#2\par}%
@@ -196,10 +199,12 @@ def tabular(
     rows = [" & ".join(words(cell, labels) for cell in row) + r" \\" for row in table.rows]
     heads = " & ".join(rf"\textbf{{{words(head, labels)}}}" for head in table.heads)
     long = environment == "longtable"
-    repeat, style = (r"\endhead", "") if long else ("", r"\everymath{\displaystyle}")
+    repeat, apart, style = (
+        (r"\endhead", "", "") if long else ("", r"\nopagebreak", r"\everymath{\displaystyle}")
+    )
     return "\n".join(
         [
-            rf"\par{{\small\renewcommand{{\arraystretch}}{{{stretch}}}{style}",
+            rf"\par{apart}{{\small\renewcommand{{\arraystretch}}{{{stretch}}}{style}",
             rf"\begin{{{environment}}}{{@{{}}{columns}@{{}}}}",
             rf"\hline {heads} \\ \hline{repeat}",
             *rows,

@@ -71,6 +71,7 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
   align-items: baseline; row-gap: 0.4rem; padding-left: 1.5rem; }
 .line .scroll math { flex: none; width: max-content; margin: 0; }
 .line .scroll math:first-child { margin-left: -1.5rem; }
+.line .scroll .end { flex: none; display: flex; column-gap: 1.5rem; align-items: baseline; }
 .unbroken { white-space: nowrap; }
 td math { math-style: normal; }
 .domain { margin: 0.2rem 0; font-size: 0.9rem; }
