@@ -34,10 +34,8 @@ _CORRECTIONS = (
     (re.compile(r"<mi>(&#x00(?:0[4-7]|39|3A)[0-9A-F];)</mi>"), r'<mi mathvariant="normal">\1</mi>'),
     (re.compile("<mi>(&#x027F[8-A];)</mi>"), r"<mo>\1</mo>"),  # \iff and its halves
     (re.compile("<mo>(&#x0221E;)</mo>"), r"<mi>\1</mi>"),  # \infty
-    (
-        re.compile("<mo>&#x0002A;</mo>"),
-        "<mo>&#x02217;</mo>",
-    ),  # TeX sets a star as low as an operator
+    # TeX sets a star as low as an operator.
+    (re.compile("<mo>&#x0002A;</mo>"), "<mo>&#x02217;</mo>"),
     (re.compile("<mo>(/|&#x0002F;)</mo>"), r'<mo lspace="0" rspace="0">\1</mo>'),
     # TeX sets a sign after a relation, a fence or a comma tight, and a function name apart.
     (

@@ -73,7 +73,8 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
   align-items: baseline; row-gap: 0.4rem; padding-left: 1.5rem; }
 .line .scroll math { flex: none; width: max-content; margin: 0; }
 .line .scroll > :first-child { margin-left: -1.5rem; }
-.line .scroll .term { display: flex; flex-wrap: wrap; align-items: baseline; row-gap: 0.4rem; max-width: 100%; }
+.line .scroll .term { display: flex; flex-wrap: wrap; align-items: baseline; row-gap: 0.4rem;
+  max-width: 100%; }
 .line .scroll .end { flex: none; display: flex; column-gap: 1.5rem; align-items: baseline; }
 .unbroken { white-space: nowrap; }
 td math { math-style: normal; }
