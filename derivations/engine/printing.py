@@ -11,6 +11,9 @@ one order are one root; dots and primes are derivatives.
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
 >>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
 ('\\frac{\\partial}{\\partial R} \\left(- \\frac{C}{R}\\right)', '\\left. \\frac{C}{R} \\right|_{R \\to R V}')
+>>> t, u = sp.Symbol("t", real=True), sp.Function("u")
+>>> doprint(W * u(t) + C * u(t).diff(t)), doprint(sp.Derivative(delta, t))
+('W u + C \\dot{u}', '\\dot{\\delta}')
 >>> doprint(C * V * (1 - C / W) / R)
 '\\frac{C V}{R} \\left(1 - \\frac{C}{W}\\right)'
 """

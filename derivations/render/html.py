@@ -34,6 +34,7 @@ _CORRECTIONS = (
     (re.compile(r"<mi>(&#x00(?:0[4-7]|39|3A)[0-9A-F];)</mi>"), r'<mi mathvariant="normal">\1</mi>'),
     (re.compile("<mi>(&#x027F[8-A];)</mi>"), r"<mo>\1</mo>"),  # \iff and its halves
     (re.compile("<mo>(&#x0221E;)</mo>"), r"<mi>\1</mi>"),  # \infty
+    (re.compile('<mo [^>]*fence="true"[^>]*/>'), ""),  # \left. takes no room
     # TeX sets a star as low as an operator.
     (re.compile("<mo>&#x0002A;</mo>"), "<mo>&#x02217;</mo>"),
     (re.compile("<mo>(/|&#x0002F;)</mo>"), r'<mo lspace="0" rspace="0">\1</mo>'),
@@ -57,8 +58,10 @@ _CORRECTIONS = (
 
 _NARROW = 18
 """Width in em of a formula that fits on a telephone."""
-_PUNCTUATED = re.compile(r"(<math(?:(?!</math>).)*</math>[.,;:)]+)")
+_PUNCTUATED = re.compile(r"(\((?=<math))?(<math(?:(?!</math>).)*</math>)([.,;:)]+)?")
 """A formula and the punctuation that must stay on its line."""
+_TWO_PRIMES = re.compile(r"(_(?:\w|\{[^{}]*\}))''")
+"""After an index, where the converter would raise the second prime above the first."""
 
 _LOW_FENCES = re.compile(
     r"\\left([(\[])((?:(?!\\left|\\right|\\frac|\\int|\\sqrt|\\sum).)*)\\right([)\]])"
@@ -107,7 +110,8 @@ def mathml(latex: str, display: str = "inline") -> str:
     RenderError
         For a macro that the converter does not know; it would print its name.
     """
-    found = str(convert(_with_low_fences(latex), display=display))
+    plain = _TWO_PRIMES.sub(r"\1^{\\prime\\prime}", _with_low_fences(latex))
+    found = str(convert(plain, display=display))
     unknown = re.search(r"<m[ion]>(\\[^<]*)", found)
     if unknown:
         raise RenderError(f"no MathML for the macro {unknown[1]} in {latex}")
@@ -194,7 +198,7 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     return (
         f'<li class="{"result" if block.tag else "step"}">'
         f'<div class="line"><div class="scroll">{chain}</div>'
-        + (f'<p class="reason">{reason}&nbsp;{badge}</p>' if reason else "")
+        + (f'<p class="reason">{reason}&#160;{badge}</p>' if reason else "")
         + f"</div>{shown}</li>"
     )
 
@@ -266,4 +270,9 @@ def _printed(content: Iterable[Piece]) -> str:
         "link": lambda piece: f'<a href="#{piece.target}">{escape(piece.content)}</a>',
     }
     shown = "".join(printed[piece.kind](piece) for piece in content)
-    return _PUNCTUATED.sub(r'<span class="unbroken">\1</span>', shown)
+    return _PUNCTUATED.sub(_unbroken, shown)
+
+
+def _unbroken(formula: re.Match[str]) -> str:
+    marked = formula[1] or formula[3]
+    return f'<span class="unbroken">{formula[0]}</span>' if marked else formula[0]
