@@ -8,6 +8,9 @@ prove anything it returns False.
 True
 >>> proves_positive(1 - x**2)
 False
+>>> y = sp.Symbol("y", positive=True)
+>>> [proves_positive(sp.sin(3 * y), Conditions(positive=(end - y,))) for end in (sp.pi / 3, sp.pi / 2)]
+[True, False]
 """
 
 from collections.abc import Callable, Iterator
