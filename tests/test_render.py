@@ -293,6 +293,11 @@ def test_html_is_well_formed_and_complete_and_needs_nothing_from_elsewhere(page,
     assert {each.label for each in everything} <= inside <= set(names)
     outside = {target for _, target in targets if not target.startswith("#")}
     assert outside == {f"https://doi.org/{frame.DOI}"}
+    given = tree.find(".//section[@id='nomenclature']")
+    assert {"#scaling", "#load"} <= {each.get("href") for each in given.iter("a")}
+    reasons = [each for each in tree.iter("p") if each.get("class") == "reason"]
+    assert all((each.text or "").strip() or len(each) > 1 for each in reasons)  # no sign alone
+    assert "Kelvin-Voigt" not in page
 
 
 def test_mathml_knows_every_macro_and_is_upright_where_the_symbol_is():
@@ -301,6 +306,8 @@ def test_mathml_knows_every_macro_and_is_upright_where_the_symbol_is():
     assert html.mathml(r"l_{\mathrm{r}}").count('mathvariant="normal"') == 1
     assert html.mathml(r"l_{r}").count('mathvariant="normal"') == 0
     assert "<mo>&#x0223C;</mo>" in html.mathml(r"a \sim b")
+    assert "<mo>&#x02217;</mo>" in html.mathml("V^{*}")
+    assert html.mathml("w_{0}''").count("<msubsup>") == 1
 
 
 def test_html_escapes_text_and_links_references():

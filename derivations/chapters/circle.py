@@ -14,7 +14,7 @@ from ..engine.step import Proof
 from .model import R, delta, x
 from .steady import a, l, q
 from .theorems import (
-    FRICTION_COEFFICIENT, NUMBER, UNIT, A, B, f, f_s, m, phi, s, w, xi,
+    UNIT, A, B, f, f_s, m, phi, s, w, xi,
 )  # fmt: skip
 
 (
@@ -135,13 +135,13 @@ def _dead_weight(proof: Proof) -> None:
     $\varepsilon$.
     """
     change = sp.Symbol("m_l", real=True)
-    slipping = l * sp.Derivative(FRICTION_COEFFICIENT, q) / sp.Derivative(NUMBER, q) / m
+    slipping = l * sp.Derivative(m, q) / sp.Derivative(l, q) / m
     proof.recall("scaling", l, "F1", m, "balance", s * f_s / f, "circle-fixed", c_w, c_f,
                  "circle-fixed")  # fmt: skip
     kept = c_w + s * f_s / f / 2 * deeper
     reason = r"with the depth $1 + c_\delta \varepsilon$ the load is kept, to first order"
     proof.root(kept, deeper, -c_w * A / 3, reason, name=c_delta_load)
-    proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
+    proof.define(change, slipping, r"$\mathrm{d} \ln m/\mathrm{d} \ln l$, by $q$")
     proof.equal(change, q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B), "logarithmic slope of $m$")
     reason = r"chain rule: $\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"
     proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, reason)
@@ -189,14 +189,11 @@ def _peak(proof: Proof) -> None:
     rise = circle_number - y * (1 - y**2)
     proof.equal(sp.Derivative(circle_number * slope - height, y), rise / (1 - y**2) ** sp.Rational(3, 2),
                 r"slope of $p/(K R)$ ahead of the lowest point, at $x = -R y$")  # fmt: skip
-    proof.define(circle_number, 2 * sp.sin(3 * turning_angle) / (3 * root), _NUMBER)
+    proof.where(turning_angle < sp.pi / 6, r"for $\hat l < 2/(3 \sqrt{3})$")
+    proof.define(
+        circle_number, 2 * sp.sin(3 * turning_angle) / (3 * root), r"$\hat l = l_{\mathrm{r}}/R$"
+    )
     proof.define(turning, 2 * sp.sin(turning_angle) / root, "where the slope changes its sign")
     others = y**2 + turning * y + turning**2 - 1
     proof.equal(rise, (y - turning) * others, r"$\hat s$ is the smallest positive root")
     proof.done(turning, 2 * sp.sin(turning_angle) / root)
-
-
-_NUMBER = (
-    r"$\hat l = l_{\mathrm{r}}/R$, if $\hat l \le 2/(3 \sqrt{3})$, with $0 < \hat \theta \le "
-    r"\frac{\pi}{6}$"
-)

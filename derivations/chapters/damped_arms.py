@@ -128,7 +128,7 @@ for _label, _name, _at_load in (
 ):  # fmt: skip
     result(_label, title=f"Arms beside a damper: critical velocity, {_name}", at_load=_at_load,
            text=r"""With more arms $C_{\Sigma} = C + \sum K_i \tau_i$. Without arms this is the critical
-           velocity of Kelvin-Voigt (critical-fixed, critical-dead-weight).""")(_critical)  # fmt: skip
+           velocity of Kelvin–Voigt (critical-fixed, critical-dead-weight).""")(_critical)  # fmt: skip
 
 
 @result("F33-free")

@@ -36,7 +36,7 @@ radius_across = symbol("R_y", latex=r"R_{\mathrm{y}}")
     v_d     -                1    scaled velocity of a drop, $\dot\delta/v_{\mathrm{in}}$  real
     a_d     -                1    scaled acceleration of a drop, $D_{\mathrm{in}}
             \ddot\delta/v_{\mathrm{in}}^2$  real
-    zeta_d  -                1    place of a strip of a ball over the half width of the contact  real
+    zeta_d  -                1    place of a strip of a ball over the half width  real
     F_d     -                N    vertical force on a ball  real
     d_m     d_{\max}         1    greatest scaled depth of a drop without dampers
     u_d     -                1    scaled speed of a drop without dampers

@@ -114,7 +114,7 @@ def _bell(proof: Proof) -> None:
     r"""Stiffness and retardation time from the friction maximum.
 
     The maximum of $\mu(V)$ of a dead weight, of the height $\mu_{\max}$ at the velocity $V_{\max}$, gives
-    both constants of a Kelvin-Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, on every
+    both constants of a Kelvin–Voigt foundation. Far below it $\mu = C V/(R K)$ tells $C/K$ only, on every
     linear foundation (F18-low).
     """
     proof.recall("F3-values", mu_peak, Lambda_peak)
@@ -168,8 +168,9 @@ def _intersections(proof: Proof) -> None:
         Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed
     )
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
-    proof.equal((mu_low / mu_high_weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
-    proof.root(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$",
+    ratio = Lambda ** sp.Rational(3, 2) / alpha
+    proof.equal(mu_low / mu_high_weight, ratio, "dead weight: 1 at")
+    proof.root(ratio - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$",
                name=Lambda_weight)  # fmt: skip
     proof.recall("F3-values", Lambda_peak)
     beyond = (Lambda_peak / Lambda_weight) ** 3

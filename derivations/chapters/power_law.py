@@ -174,6 +174,7 @@ def _peak_pressure(proof: Proof) -> None:
     The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the leading edge,
     and at the leading edge from there on.
     """
+    proof.define(n, 1 + excess, r"$n > 1$")
     slope = n * y ** (n - 2) * ((n - 1) * l - y)
     proof.equal(sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$")
     inside = 1 + l * ((n - 1) * l) ** (n - 1)

@@ -270,7 +270,7 @@ def _stored(proof: Proof) -> None:
 
 @result("F17-stored-springpot", uses=("F17-stored",))
 def _stored_springpot(proof: Proof) -> None:
-    r"""Fractional Kelvin-Voigt: energy behind the contact.
+    r"""Fractional Kelvin–Voigt: energy behind the contact.
 
     With $u' \sim \breve h + \breve w$, $\breve h = a/\breve c - 1$, and $G \sim \breve w^{\breve \nu - 1}$:
     twice the energy of the springpot at the trailing edge, in the units of F17-springpot.
@@ -305,7 +305,7 @@ def _surface(proof: Proof) -> None:
     A spring $K$ in parallel with one arm of $K_1 = \breve \beta K$ leaves the contact with the compression
     $\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve y/((1 + \breve \beta)
     l_i)}$: the free surface relaxes with the time $(1 + \breve \beta) \tau_i$, which is $\tau = C/K$ for
-    $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin-Voigt,
+    $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is zero for Kelvin–Voigt,
     and does not touch again.
     """
     u, stretch, beta = left_behind, (1 + arm_ratio) * l, arm_ratio
@@ -356,7 +356,7 @@ def _interval(proof: Proof) -> None:
     1. Along the foundation $\breve g$ is one parabola, displaced from instant to instant, so that the
     height of the indenter over the free surface is a lower bound of concave functions, and concave. An
     element is in contact where it is not negative, which is one interval, for any drive and any motion:
-    two edges describe the contact on every Prony series, as F9 says for Kelvin-Voigt.
+    two edges describe the contact on every Prony series, as F9 says for Kelvin–Voigt.
     """
     u, stiff = left_behind, K + spring_1 + spring_2
     pressure = K * u + spring_1 * (u - damper_1) + spring_2 * (u - damper_2)

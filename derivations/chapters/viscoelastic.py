@@ -50,8 +50,8 @@ dashpots = symbols(r"""
     F_vc  \breve F_c  1  friction force of a dashpot, likewise
 """)
 voigt_load, voigt_work = symbols(r"""
-    W_v0  \breve W_0  1  load on Kelvin-Voigt, in units of $K \breve c^3/R$
-    F_v0  \breve F_0  1  friction force on Kelvin-Voigt, in units of $K \breve c^4/R^2$
+    W_v0  \breve W_0  1  load on Kelvin–Voigt, in units of $K \breve c^3/R$
+    F_v0  \breve F_0  1  friction force on Kelvin–Voigt, in units of $K \breve c^4/R^2$
 """)
 ratio_first, ratio_second, spring_share, springpot = symbols(r"""
     t_v0    \breve t_0    1  ratio of two modified spherical Bessel functions
@@ -223,7 +223,7 @@ def _forms(proof: Proof) -> None:
 
 @result("F17-springpot")
 def _springpot(proof: Proof) -> None:
-    r"""Fractional Kelvin-Voigt: moments.
+    r"""Fractional Kelvin–Voigt: moments.
 
     For $G = K (1 + \breve \zeta \breve w^{\breve \nu - 1}/\Gamma(\breve \nu))$, $\breve \zeta = (V
     \tau/\breve c)^{1 - \breve \nu}$, of the order $1 - \breve \nu$ between 0 and 1. The moments are divided
@@ -276,7 +276,7 @@ def _spring(proof: Proof) -> tuple[sp.Symbol, ...]:
 
 @result("F17-kelvin-voigt")
 def _kelvin_voigt(proof: Proof) -> None:
-    r"""Any relaxation function: Kelvin-Voigt.
+    r"""Any relaxation function: Kelvin–Voigt.
 
     A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the steady state
     of F1.
@@ -321,7 +321,7 @@ def _slow(proof: Proof) -> None:
     Of a spring and one arm, with $\breve \zeta = K_i/K$: $\mu \to V (K_i/K) \tau_i/R$.
 
     Argued: To this order arms add up: $\mu \to C V/(K R)$ with $C = \int (G - K) \, dt = \sum K_i
-    \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin-Voigt.
+    \tau_i$, which is Eq. (42). At low velocity every foundation with a finite $C$ is Kelvin–Voigt.
     """
     _spring_and_arm(proof)
     proof.leading_order(OF_ARM, springpot / z, z, sp.oo, r"$\mu R/\breve c$")

@@ -36,11 +36,11 @@ spare_3, spare_4, reach, delay = symbols(r"""
 ) = symbols(r"""
     r_1       -                1/s  rate of an arm  from scene
     r_2       -                1/s  rate of another arm  from scene
-    a_v0      \breve a_0       m    half length on the Kelvin-Voigt foundation
+    a_v0      \breve a_0       m    half length on the Kelvin–Voigt foundation
     -         \bar t           s  mean relaxation time, $\int t (G - K)\,dt/C$
-    -         \mu_0            1  friction coefficient on the Kelvin-Voigt foundation with the same $C$
+    -         \mu_0            1  friction coefficient on the Kelvin–Voigt foundation with the same $C$
     kappa_v   \breve \kappa    1  $K \breve c/(C V)$
-    e_v       \breve e         1  bound of the relative error of Kelvin-Voigt
+    e_v       \breve e         1  bound of the relative error of Kelvin–Voigt
     alpha_vA  \breve \alpha_A  1  difference of a dashpot's $\breve A$ and this one  nonnegative
     alpha_vP  \breve \alpha_P  1  difference of a dashpot's $\breve P$ and this one  nonnegative
     alpha_vD  \breve \alpha_D  1  difference of $\breve D$ and that of a dashpot  nonnegative
@@ -65,7 +65,7 @@ LACKS = (
 SMALL = sp.Rational(1, 20)
 """Largest ratio of the mean relaxation length to the contact length."""
 VOIGT = 7
-"""Relative error of Kelvin-Voigt, over that number."""
+"""Relative error of Kelvin–Voigt, over that number."""
 HASTE = sp.Rational(1, 5)
 MOST, SLOWED = {E: sp.Rational(1, 120), B: twelfth}, sp.Rational(1, 288)
 """Of a fall that does not slow; and how much less, for each part by which it slows over the contact."""
@@ -112,20 +112,20 @@ def _lacks(proof: Proof) -> None:
 
 @result("F18-voigt")
 def _voigt(proof: Proof) -> None:
-    r"""Low velocity: distance from Kelvin-Voigt.
+    r"""Low velocity: distance from Kelvin–Voigt.
 
-    Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, on
+    Let $\mu_0$ be the friction coefficient of the Kelvin–Voigt foundation with the same $K$ and $C$, on
     the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for $\breve
     \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ are. The
     steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both foundations at
-    one $\breve c$. There $a$ is between $1 - \breve \varepsilon$ and 1 times $\breve a_0$ of Kelvin-Voigt,
+    one $\breve c$. There $a$ is between $1 - \breve \varepsilon$ and 1 times $\breve a_0$ of Kelvin–Voigt,
     the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 + 9 \breve \varepsilon/8$
     times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)$ and $1/((1 - \breve
     \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times.
 
-    Argued: Then the contact on Kelvin-Voigt changes to the one on its own support. At a given velocity $W
+    Argued: Then the contact on Kelvin–Voigt changes to the one on its own support. At a given velocity $W
     + k_s \delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion, so that the factor
-    of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on Kelvin-Voigt
+    of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on Kelvin–Voigt
     (error-L1) this bounds that of Eq. (42) on every foundation.
     """
     other = {a: voigt_half}  # at the same length of the contact, half lengths at rest differ
@@ -138,11 +138,11 @@ def _voigt(proof: Proof) -> None:
     ):
         proof.sign(sp.Derivative(slope, q), relation, 0, RATIOS, what)
     plain_mean, plain_ahead = kap + 1, kap / 2 + 1
-    product = plain_ahead / (2 * plain_mean)  # of the excess and the moment P on Kelvin-Voigt
+    product = plain_ahead / (2 * plain_mean)  # of the excess and the moment P on Kelvin–Voigt
     load, work = kap / 12 + product, twelfth + product / (2 * plain_mean)
-    proof.define(q, kap / (kap + 2), r"$x_{\mathrm{TE}}/a$ on Kelvin-Voigt")
+    proof.define(q, kap / (kap + 2), r"$x_{\mathrm{TE}}/a$ on Kelvin–Voigt")
     proof.equal(l / (1 + q), 1 / kap, r"$\breve \zeta$, with $\breve c = a (1 + q)$")
-    proof.equal(kap * w_steady / (2 * (1 + q) ** 3), load, "load of Kelvin-Voigt, in these units")
+    proof.equal(kap * w_steady / (2 * (1 + q) ** 3), load, "load of Kelvin–Voigt, in these units")
     proof.equal(kap * w_steady * m / (2 * (1 + q) ** 4), work, "and its friction force")
     proof.recall("F18-lacks", *(small for small, *_ in LACKS))
     mean, ahead = kap + 1 - lack_mean, kap / 2 + 1 - lack_ahead
@@ -153,17 +153,17 @@ def _voigt(proof: Proof) -> None:
         ((half - eps), slant, half, r"$\breve B$"),
         ((1 - 3 * eps) * twelfth, twist, twelfth, r"$\breve E$"),
     ):  # fmt: skip
-        proof.holds(value, ">=", low, f"{what}, with that of Kelvin-Voigt on the right")
+        proof.holds(value, ">=", low, f"{what}, with that of Kelvin–Voigt on the right")
         proof.holds(high, ">=", value, "and above")
     proof.holds(
-        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most as on Kelvin-Voigt"
+        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most as on Kelvin–Voigt"
     )
-    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo), "load of Kelvin-Voigt")
+    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo), "load of Kelvin–Voigt")
     most, less = kap / 12 + eps / 2, (1 - eps) * (1 - 2 * eps)
     proof.holds(most, ">=", kap / 12 + lack_bulge, r"$\breve D$, with the most on the left")
     proof.recall("F17-parts", excess_share, F_z, F_x)
     for name, form in {A: plain_mean, P: plain_ahead, B: half, D: most, E: twelfth}.items():
-        proof.define(name, form, "as on Kelvin-Voigt" if name != D else "the most")
+        proof.define(name, form, "as on Kelvin–Voigt" if name != D else "the most")
     proof.equal(F_z * R / contact_length**3, most + product, "load with these, which is no less")
     proof.holds((1 + 9 * eps / 8) * load, ">=", most + product, "the load, at most")
     proof.equal(F_x * R**2 / contact_length**4, work, "and the friction force")
@@ -182,7 +182,7 @@ def _voigt(proof: Proof) -> None:
         ">",
         1 - 5 * eps,
         unit,
-        r"on the left, over Kelvin-Voigt, the least $\breve \eta^2 \breve P$; $\breve E$ is closer",
+        r"on the left, over Kelvin–Voigt, the least $\breve \eta^2 \breve P$; $\breve E$ is closer",
     )
     proof.sign((1 - 5 * eps) ** 2 - (1 - voigt_error) ** 2 * (1 + 9 * eps / 8) ** 3, ">", 0, unit,
                r"$\mu/\mu_0 \ge (1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)^{3/2}$")  # fmt: skip
@@ -209,7 +209,7 @@ def _window(proof: Proof) -> None:
     both, least = 2 / (3 * l) + voigt_error, VOIGT / steepness * ((l - best) ** 2 / l + 2 * best)
     proof.equal(both, least, "both errors together, to first order")
     proof.recall("scaling", l, "error-L2-fixed", e_l2_fixed)
-    proof.sign(e_l2_fixed, ">", 0, RATIOS, "Eq. (45) over Kelvin-Voigt, less 1")
+    proof.sign(e_l2_fixed, ">", 0, RATIOS, "Eq. (45) over Kelvin–Voigt, less 1")
     proof.sign(2 / (3 * l) - e_l2_fixed, ">", 0, RATIOS, r"it is below $2/(3 l)$ at every velocity")
     proof.done(both, least)
 
@@ -218,13 +218,13 @@ def _window(proof: Proof) -> None:
 def _window_weight(proof: Proof) -> None:
     """The window under a dead weight.
 
-    As Eq. (45) in F18-window, Eq. (46) has the error $1/l$ on Kelvin-Voigt; $a$ is that of the indenter
+    As Eq. (45) in F18-window, Eq. (46) has the error $1/l$ on Kelvin–Voigt; $a$ is that of the indenter
     that is lifted, and $l$ grows faster for it.
     """
     proof.recall("scaling", l, "F1", w_steady, m)
     square = (1 + e_l2_weight) ** 2
     proof.recall("error-L2-dead-weight", square)
-    proof.sign(square, ">", 1, RATIOS, "Eq. (46) over Kelvin-Voigt, squared")
+    proof.sign(square, ">", 1, RATIOS, "Eq. (46) over Kelvin–Voigt, squared")
     proof.sign((1 + 1 / l) ** 2 - square, ">", 0, (q, 0, sp.Rational(2, 5)),
                r"$l > \frac{21}{20}$: its error is below $1/l$")  # fmt: skip
 
@@ -338,7 +338,7 @@ def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
 
 @result("F18-springpot", uses=("F17-springpot", "F17-load", "F17", "F17-growth"))
 def _springpot(proof: Proof) -> None:
-    r"""Fractional Kelvin-Voigt: both limits.
+    r"""Fractional Kelvin–Voigt: both limits.
 
     With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for
     the order, in units of $K$. At low velocity $\mu \to \frac{6 \alpha a}{(4 - \alpha) \Gamma(3 - \alpha) R}

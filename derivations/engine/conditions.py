@@ -8,6 +8,9 @@ prove anything it returns False.
 True
 >>> proves_positive(1 - x**2)
 False
+>>> y = sp.Symbol("y", positive=True)
+>>> [proves_positive(sp.sin(3 * y), Conditions(positive=(end - y,))) for end in (sp.pi / 3, sp.pi / 2)]
+[True, False]
 """
 
 from collections.abc import Callable, Iterator
@@ -149,6 +152,8 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
         sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
     elif expr.is_Pow and expr.exp.is_Integer:
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
+    elif isinstance(expr, sp.sin):  # of an angle between 0 and pi
+        sign = int(all(_sign(gap, known) == 1 for gap in (expr.args[0], sp.pi - expr.args[0])))
     if sign:
         return sign
     sign = _sign_of_forms(expr, known) or _sign_by_roots(expr, known)

@@ -1,8 +1,8 @@
 r"""Mathematics as one writes it by hand: the only place that decides how an expression is printed.
 
-A sum begins with a positive term, a common factor stands before its bracket; a product is a number, then
-constants, letters (capital, Greek, small), roots, brackets, functions; roots of one order are one root;
-dots and primes are derivatives.
+A sum begins with a positive term, a damper follows its spring, a common factor stands before its bracket;
+a product is a number, then constants, letters (capital, Greek, small), roots, brackets, functions; roots of
+one order are one root; dots and primes are derivatives.
 
 >>> C, V, W, delta, R = sp.symbols("C V W delta R", positive=True)
 >>> doprint(W - C * V * delta)
@@ -11,6 +11,9 @@ dots and primes are derivatives.
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
 >>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
 ('\\frac{\\partial}{\\partial R} \\left(- \\frac{C}{R}\\right)', '\\left. \\frac{C}{R} \\right|_{R \\to R V}')
+>>> t, u = sp.Symbol("t", real=True), sp.Function("u")
+>>> doprint(W * u(t) + C * u(t).diff(t)), doprint(sp.Derivative(delta, t))
+('W u + C \\dot{u}', '\\dot{\\delta}')
 >>> doprint(C * V * (1 - C / W) / R)
 '\\frac{C V}{R} \\left(1 - \\frac{C}{W}\\right)'
 """
@@ -170,6 +173,8 @@ class Printer(LatexPrinter):
             leads = leads or len(terms) == 2 or _is_negative(terms[0])
             falls = len(letters) > 1 and _is_negative(numbers[0])
             terms = [*numbers, *others] if leads else [*others, *numbers] if falls else terms
+        if len(terms) == 2 and _is_rate(terms[0]) and not _is_rate(terms[1]):
+            terms.reverse()
         first = next((term for term in terms if not _is_negative(term)), terms[0])
         return [first, *(term for term in terms if term is not first)]
 
@@ -453,8 +458,7 @@ class Printer(LatexPrinter):
             inner = f"({', '.join(map(self._print, call.args))})"
             inner = self._bracket(inner[1:-1]) if r"\frac" in inner or r"\left" in inner else inner
         if order and str(call.args[-1]) == "t" and order <= 2:
-            letter, script, rest = name.partition("_")
-            return rf"\{'d' * order}ot{{{letter}}}{script}{rest}{inner}"
+            return _dotted(name, order) + inner
         return name + "'" * order + inner
 
     def _print_Derivative(self, expr: sp.Derivative) -> str:  # noqa: N802
@@ -464,6 +468,8 @@ class Printer(LatexPrinter):
             return self._called(call, len(expr.variables))
         if call.is_Symbol and len(expr.variable_count) == 1:
             ((variable, order),) = expr.variable_count
+            if str(variable) == "t" and order in (1, 2):
+                return _dotted(self._print(call), order)
             power = "" if order == 1 else f"^{{{order}}}"
             sign = r"\partial" if call in SEVERAL else r"\mathrm{d}"
             below = rf"{sign} {self._print(variable)}{power}"
@@ -498,6 +504,17 @@ class Printer(LatexPrinter):
             for sign in ["=" if not at.has(letter) else r"\to"]
         )
         return rf"\left. {self._bracket(inner) if loose else inner} \right|_{{{places}}}"
+
+
+def _dotted(name: str, order: int) -> str:
+    letter, script, rest = name.partition("_")
+    return rf"\{'d' * order}ot{{{letter}}}{script}{rest}"
+
+
+def _is_rate(term: sp.Expr) -> bool:
+    """Tell whether a term is a velocity times something: a damper, which stands after its spring."""
+    rates = (each for each in term.atoms(sp.Derivative) if str(each.variables[0]) == "t")
+    return not term.is_Derivative and any(len(each.variables) == 1 for each in rates)
 
 
 def _has_primes(call: sp.Expr) -> bool:

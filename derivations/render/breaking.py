@@ -19,6 +19,9 @@ SCRIPT = 0.72
 SHORT, INDENT = 0.3, 2.0
 """A left side that takes no more than this share of the line stays in it; indentation in em."""
 
+_LEAST = 4.0
+"""Width in em of factors before a bracket that make a line of their own."""
+
 _TOKEN = re.compile(
     r"(?P<frac>\\frac)(?![A-Za-z])|(?P<begin>\\begin\{[a-z*]+\})|(?P<end>\\end\{[a-z*]+\})"
     r"|(?P<relation>[=<>]|\\(?:le|ge|lt|gt|to|sim|approx|equiv|iff)(?![a-z]))|(?P<sign>[+-]|\\cdot)"
@@ -111,6 +114,20 @@ def cut_at_signs(link: str, most: float) -> list[str]:
         if len(re.findall(r"[(\[]", link[:cut])) == len(re.findall(r"[)\]]", link[:cut]))
     ]  # fmt: skip
     return [link[start:end].strip() for start, end in pairwise([0, *cuts, len(link)])]
+
+
+def cut_at_brackets(term: str, most: float) -> list[str]:
+    r"""Cut a product before its factors in brackets, if it is wider than `most`.
+
+    >>> cut_at_brackets(r"= \exp\left(b + c\right) \left(d - e\right)", 9)
+    ['= \\exp\\left(b + c\\right)', '\\left(d - e\\right)']
+    """
+    cuts = [0]
+    for cut in _cuts(term, "fence") if width(term) > most else ():
+        # What a function takes follows its name at once; a sign of integration does not stand alone.
+        if term[cut - 1] == " " and width(term[cuts[-1] : cut]) > _LEAST:
+            cuts.append(cut)
+    return [term[start:end].strip() for start, end in pairwise([*cuts, len(term)])]
 
 
 def _balanced(row: str) -> bool:

@@ -8,7 +8,7 @@ from latex2mathml.converter import convert
 
 from ..engine.record import Calculation, Derivation, Table
 from . import frame
-from .breaking import cut_at_signs
+from .breaking import cut_at_brackets, cut_at_signs
 from .edition import Edition
 from .pdf import RenderError
 from .style import STYLE
@@ -34,6 +34,9 @@ _CORRECTIONS = (
     (re.compile(r"<mi>(&#x00(?:0[4-7]|39|3A)[0-9A-F];)</mi>"), r'<mi mathvariant="normal">\1</mi>'),
     (re.compile("<mi>(&#x027F[8-A];)</mi>"), r"<mo>\1</mo>"),  # \iff and its halves
     (re.compile("<mo>(&#x0221E;)</mo>"), r"<mi>\1</mi>"),  # \infty
+    (re.compile('<mo [^>]*fence="true"[^>]*/>'), ""),  # \left. takes no room
+    # TeX sets a star as low as an operator.
+    (re.compile("<mo>&#x0002A;</mo>"), "<mo>&#x02217;</mo>"),
     (re.compile("<mo>(/|&#x0002F;)</mo>"), r'<mo lspace="0" rspace="0">\1</mo>'),
     # TeX sets a sign after a relation, a fence or a comma tight, and a function name apart.
     (
@@ -41,11 +44,11 @@ _CORRECTIONS = (
         r'\1<mo form="prefix">&#x02212;',
     ),
     (
-        re.compile("<m[io]>([a-z]{3,})</m[io]>(?=<mo|<mrow><mrow><mo)"),
+        re.compile("<m[io]>(ln|[a-z]{3,})</m[io]>(?=<mo|<mrow><mrow><mo)"),
         r'<mo lspace="0.167em" rspace="0">\1</mo>',
     ),
     (
-        re.compile("<m[io]>([a-z]{3,})</m[io]>"),
+        re.compile("<m[io]>(ln|[a-z]{3,})</m[io]>"),
         r'<mo lspace="0.167em" rspace="0.167em">\1</mo>',
     ),
     (re.compile("</mfrac><mfrac>"), '</mfrac><mspace width="0.167em" /><mfrac>'),
@@ -55,8 +58,10 @@ _CORRECTIONS = (
 
 _NARROW = 18
 """Width in em of a formula that fits on a telephone."""
-_PUNCTUATED = re.compile(r"(<math(?:(?!</math>).)*</math>[.,;:)]+)")
+_PUNCTUATED = re.compile(r"(\((?=<math))?(<math(?:(?!</math>).)*</math>)([.,;:)]+)?")
 """A formula and the punctuation that must stay on its line."""
+_TWO_PRIMES = re.compile(r"(_(?:\w|\{[^{}]*\}))''")
+"""After an index, where the converter would raise the second prime above the first."""
 
 _LOW_FENCES = re.compile(
     r"\\left([(\[])((?:(?!\\left|\\right|\\frac|\\int|\\sqrt|\\sum).)*)\\right([)\]])"
@@ -105,7 +110,8 @@ def mathml(latex: str, display: str = "inline") -> str:
     RenderError
         For a macro that the converter does not know; it would print its name.
     """
-    found = str(convert(_with_low_fences(latex), display=display))
+    plain = _TWO_PRIMES.sub(r"\1^{\\prime\\prime}", _with_low_fences(latex))
+    found = str(convert(plain, display=display))
     unknown = re.search(r"<m[ion]>(\\[^<]*)", found)
     if unknown:
         raise RenderError(f"no MathML for the macro {unknown[1]} in {latex}")
@@ -187,24 +193,34 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
     if isinstance(block, Given):
         return f'<li class="given">{_printed(sentence(block, labels))}</li>'
     shown = f'<span class="number">({block.tag})</span>' if block.tag else ""
-    chain = _chain(block.step.latex)
+    badge, reason = _badge(block.step.status), _printed(remark(block.step, labels))
+    chain = _chain(block.step.latex, "" if reason else badge)
     return (
         f'<li class="{"result" if block.tag else "step"}">'
         f'<div class="line"><div class="scroll">{chain}</div>'
-        f'<p class="reason">{_printed(remark(block.step, labels))} {_badge(block.step.status)}</p></div>'
-        f"{shown}</li>"
+        + (f'<p class="reason">{reason}&#160;{badge}</p>' if reason else "")
+        + f"</div>{shown}</li>"
     )
 
 
-def _chain(latex: str) -> str:
-    """Return a relation in pieces, between which a browser may break the line."""
+def _chain(latex: str, end: str = "") -> str:
+    """Return a displayed relation; the last of its pieces has the end."""
+    shown = _broken(latex, "block")
+    if end:
+        shown[-1] = f'<span class="end">{shown[-1]} {end}</span>'
+    return "".join(shown)
+
+
+def _broken(latex: str, display: str) -> list[str]:
+    """Return mathematics in terms, between which a browser may break the line; else before a bracket."""
     shown = []
     for link in relations(latex):
-        first, *rest = cut_at_signs(link, _NARROW)
-        shown.append(mathml(first, "block"))
-        # Else a sign at the beginning would be that of a number, without space about it.
-        shown += [mathml(each, "block").replace("<mo>", '<mo form="infix">', 1) for each in rest]
-    return "".join(shown)
+        for place, each in enumerate(cut_at_signs(link, _NARROW)):
+            first, *rest = (mathml(part, display) for part in cut_at_brackets(each, _NARROW))
+            # Else a sign at the beginning would be that of a number, without space about it.
+            first = first.replace("<mo>", '<mo form="infix">', 1) if place else first
+            shown.append(f'<span class="term">{first}{"".join(rest)}</span>' if rest else first)
+    return shown
 
 
 def _numbers(numbers: Sequence[Calculation], labels: Collection[str]) -> str:
@@ -250,9 +266,13 @@ def _text(text: str, labels: Collection[str]) -> str:
 def _printed(content: Iterable[Piece]) -> str:
     printed = {
         "words": lambda piece: escape(piece.content),
-        # A browser breaks a line between formulas, never within one.
-        "math": lambda piece: "".join(map(mathml, relations(piece.content))),
+        "math": lambda piece: "".join(_broken(piece.content, "inline")),
         "link": lambda piece: f'<a href="#{piece.target}">{escape(piece.content)}</a>',
     }
     shown = "".join(printed[piece.kind](piece) for piece in content)
-    return _PUNCTUATED.sub(r'<span class="unbroken">\1</span>', shown)
+    return _PUNCTUATED.sub(_unbroken, shown)
+
+
+def _unbroken(formula: re.Match[str]) -> str:
+    marked = formula[1] or formula[3]
+    return f'<span class="unbroken">{formula[0]}</span>' if marked else formula[0]

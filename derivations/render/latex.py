@@ -51,8 +51,9 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 % Headings run into the text; entries of the contents are ragged, for their columns are narrow.
 \renewcommand{\subsection}{\@startsection{subsection}{2}{0pt}{2ex plus 1ex}{-0.7em}{\bfseries}}
 \renewcommand{\@tocrmarg}{2.5em plus 1fil}
-% A section begins on a page with room for its table: a head of a longtable would stand above its title.
-\newcommand{\spare}{\par\penalty-100\relax\ifdim\dimexpr\pagegoal-\pagetotal\relax<12\baselineskip\newpage\fi}
+% Room for #1 lines, else a new page: a section has its table on its page, and a record too.
+\newcommand{\spare}[1]{\if@nobreak\else
+  \par\penalty-100\relax\ifdim\dimexpr\pagegoal-\pagetotal\relax<#1\baselineskip\newpage\fi\fi}
 \newcommand{\numbered}[2]{\phantomsection\def\@currentlabel{#2}\label{#1}(#2)}
 % What introduces a line (a heading without text, a sentence) stays on its page.
 \newcommand{\startline}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
@@ -75,7 +76,10 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
   \startline
   \sbox{\number@}{#1}%
   \room=\dimexpr\linewidth-\indented-\wd\number@-1em\relax
-  \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{\small\quad #3~#2}%
+  \def\reason{#3}%
+  \ifx\reason\@empty
+    \sbox{\formula}{\fit{\room}{#4\quad\mbox{\small#2}}}\sbox{\remark}{}%
+  \else \sbox{\formula}{\fit{\room}{#4}}\sbox{\remark}{\small\quad #3~#2}\fi
   \ifdim\dimexpr\wd\formula+\wd\remark\relax>\room
     \hspace*{\indented}\usebox{\formula}\hfill\usebox{\number@}\par\nopagebreak
     {\small\leftskip=2\indented\raggedright\hangindent=1em #3~#2\par}%
@@ -116,7 +120,7 @@ def article(edition: Edition) -> str:
         tabular(table, labels, _WIDTHS[len(table.heads)], environment="longtable"),
     ]
     for section, members in by_section(edition.derivations).items():
-        body.append(rf"\spare\section{{{_heading(section)}}}")
+        body.append(rf"\spare{{12}}\section{{{_heading(section)}}}")
         if (own := edition.chapter_table(section)).rows:
             body.append(tabular(own, labels, _WIDTHS[3], environment="longtable"))
         body.extend(_derivation(member, edition) for member in members)
@@ -134,6 +138,7 @@ def _derivation(derivation: Derivation, edition: Edition) -> str:
     labels = edition.labels
     shown = f"({number(derivation.label)}) {_heading(derivation.title)}"
     parts = [
+        rf"\spare{{{2 * len(derivation.table.rows) + 12}}}" if derivation.table else "",
         rf"\subsection[{{{shown}}}]{{{shown}}}",
         words(derivation.text, labels),
         *(_block(block, derivation.label, labels) for block in edition.blocks(derivation)),
@@ -196,10 +201,12 @@ def tabular(
     rows = [" & ".join(words(cell, labels) for cell in row) + r" \\" for row in table.rows]
     heads = " & ".join(rf"\textbf{{{words(head, labels)}}}" for head in table.heads)
     long = environment == "longtable"
-    repeat, style = (r"\endhead", "") if long else ("", r"\everymath{\displaystyle}")
+    repeat, apart, style = (
+        (r"\endhead", "", "") if long else ("", r"\nopagebreak", r"\everymath{\displaystyle}")
+    )
     return "\n".join(
         [
-            rf"\par{{\small\renewcommand{{\arraystretch}}{{{stretch}}}{style}",
+            rf"\par{apart}{{\small\renewcommand{{\arraystretch}}{{{stretch}}}{style}",
             rf"\begin{{{environment}}}{{@{{}}{columns}@{{}}}}",
             rf"\hline {heads} \\ \hline{repeat}",
             *rows,

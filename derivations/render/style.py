@@ -22,6 +22,8 @@ body {
   overflow-wrap: break-word;
 }
 math { font-family: "STIX Two Math", "Latin Modern Math", "Cambria Math", math; }
+/* Primes and stars of a font for mathematics are drawn for their place by this feature. */
+:is(msup, msub, msubsup) > :not(:first-child) { font-feature-settings: "ssty" 1; }
 h1, h2, h3 { line-height: 1.25; font-weight: 600; }
 h1 { font-size: 1.9rem; margin: 0.5rem 0 1rem; }
 h2 { font-size: 1.4rem; margin: 3rem 0 1rem; padding-bottom: 0.3rem;
@@ -65,12 +67,15 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .scroll { overflow-x: auto; padding: 0.45rem 0; background:
   linear-gradient(to right, var(--paper) 40%, transparent) left / 2rem 100% no-repeat local,
   linear-gradient(to left, var(--paper) 40%, transparent) right / 2rem 100% no-repeat local,
-  linear-gradient(to right, var(--shade), transparent) left / 0.6rem 100% no-repeat scroll,
-  linear-gradient(to left, var(--shade), transparent) right / 0.6rem 100% no-repeat scroll; }
+  linear-gradient(to right, var(--shade), transparent) left / 0.6rem calc(100% - 2px) no-repeat scroll,
+  linear-gradient(to left, var(--shade), transparent) right / 0.6rem calc(100% - 2px) no-repeat scroll; }
 .line .scroll { flex: 0 0 auto; max-width: 100%; display: flex; flex-wrap: wrap;
   align-items: baseline; row-gap: 0.4rem; padding-left: 1.5rem; }
 .line .scroll math { flex: none; width: max-content; margin: 0; }
-.line .scroll math:first-child { margin-left: -1.5rem; }
+.line .scroll > :first-child { margin-left: -1.5rem; }
+.line .scroll .term { display: flex; flex-wrap: wrap; align-items: baseline; row-gap: 0.4rem;
+  max-width: 100%; }
+.line .scroll .end { flex: none; display: flex; column-gap: 1.5rem; align-items: baseline; }
 .unbroken { white-space: nowrap; }
 td math { math-style: normal; }
 .domain { margin: 0.2rem 0; font-size: 0.9rem; }
@@ -85,6 +90,7 @@ footer { font-size: 0.95rem; }
 @media (max-width: 30rem) {
   .vocabulary { grid-template-columns: 1fr; gap: 0.1rem; }
   .vocabulary dd { margin-bottom: 0.5rem; }
+  .line .scroll { font-size: 0.92em; }
   .reason { max-width: 100%; }
   .reason, .domain { min-width: 0; overflow-x: auto; padding: 0.2rem 0; }
   .steps { padding-left: 0.5rem; }

@@ -16,7 +16,10 @@ from itertools import groupby
 from ..engine.record import Calculation, Derivation, Step
 from .inline import inline
 
-_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)")
+_REFERENCE = re.compile(
+    r"\((?P<eq>\d+)\)|\((?P<name>[a-z][a-z0-9]*(?:-[a-z0-9]+)*)\)"
+    r"|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)"
+)
 """How text names a derivation; the name of the group and the digits make its label."""
 
 _ONE_EQUATION = re.compile(r"Eq\. \(\d+\)")
@@ -74,7 +77,8 @@ def pieces(text: str, labels: Collection[str]) -> Iterator[Piece]:
 def _words(text: str, labels: Collection[str]) -> Iterator[Piece]:
     start = 0
     for match in _REFERENCE.finditer(text):
-        label = f"{match.lastgroup}{match[match.lastgroup or 0]}"
+        kind = match.lastgroup or ""
+        label = f"{kind if kind != 'name' else ''}{match[kind]}"
         if label in labels:
             yield Piece("words", text[start : match.start()])
             yield Piece("link", match[0], label)
@@ -100,10 +104,11 @@ def reference(label: str) -> str:
     """Return the usual name of a derivation, in a form that `pieces` turns into a link.
 
     >>> [reference(label) for label in ("eq27", "F3", "table2", "scaling")]
-    ['Eq. (27)', 'F3', 'Table 2', 'scaling']
+    ['Eq. (27)', 'F3', 'Table 2', '(scaling)']
     """
     shown = number(label)
-    return f"Eq. ({shown})" if shown.isdigit() else shown
+    named = shown if shown[:1].isupper() else f"({shown})"
+    return f"Eq. {named}" if shown.isdigit() else named
 
 
 def calculation(numbers: Calculation) -> str:
