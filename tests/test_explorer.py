@@ -749,7 +749,7 @@ CLIMATES = (
     {"temperature": 300.15, **ARRHENIUS, "lowest_temperature": 253.15, "highest_temperature": 313.15},
     {"temperature": 272.15, "reference_temperature": 296.15, "wlf": [5.0, 51.6]},
     {"temperature": 250.15, "reference_temperature": 260.15, "wlf": [8.0, 95.0],
-     "lowest_frequency": 1e-2, "highest_frequency": 3e4},
+     "shift_factors": [[240.15, 2.4], [260.15, 0.0], [280.15, -1.5]], "lowest_frequency": 1e-2, "highest_frequency": 3e4},
     {**ARRHENIUS, "lowest_frequency": 1e-3, "highest_frequency": 2.0},
     {"temperature": 316.15, **ARRHENIUS, "lowest_temperature": 263.15, "highest_temperature": 313.15,
      "lowest_frequency": 1e-2, "highest_frequency": 1e-1},
@@ -795,7 +795,7 @@ def keys_of(table):
     return {
         f"{section}.{name}"
         for section, own in table.items()
-        for key in own.keys() - {"kind", "shape", "arms", "stiffness_from"}
+        for key in own.keys() - {"kind", "shape", "arms", "stiffness_from", "shift_factors"}
         for name in (["wlf.c_1", "wlf.c_2"] if key == "wlf" else [key])
     }
 

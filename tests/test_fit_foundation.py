@@ -632,6 +632,39 @@ def test_cards_of_other_programs_are_written_and_read_back(tmp_path, suffix):
     refused(["foundation", card], ['expected a comment such as "units: MPa, s"'])
 
 
+def test_cards_keep_the_law_of_temperature_or_say_that_they_do_not(tmp_path):
+    layer, omega = {"thickness": "2 mm", "poisson_ratio": 0.3}, np.geomspace(0.03, 3000.0, 16)
+    found = kv.fit_foundation(swept(WLF, omega, [0.0, 20.0, 40.0, 60.0])[0], **layer)
+    of = found.foundation
+    three = kv.fit_foundation(swept(WLF, omega, [0.0, 20.0, 60.0])[0], **layer)
+    assert three.shift_law.startswith("Arrhenius")
+    for suffix in (".inp", ".mac"):
+        card, text = tmp_path / f"card{suffix}", found.to_card(suffix)
+        card.write_text(text)
+        again = kv.fit_foundation(card, thickness="2 mm", temperature="50 degC")
+        assert again.foundation.wlf == of.wlf
+        assert again.foundation.reference_temperature == of.reference_temperature == 313.15
+        assert again.shift_law.endswith(" K at 40 degC")
+        card.write_text(text.replace("degC", "?"))
+        refused(["foundation", card], ['"units: MPa, s, degC"', "reference temperature"])
+        card.write_text(text.replace("WLF", "USER"))
+        assert "USER, is not used" in kv.fit_foundation(card, thickness="2 mm").notes[0]
+        assert "Without the law of temperature: the arms hold at 20 degC" in three.to_card(suffix)
+
+
+BAD_CARDS = {
+    "** units: Pa, s\n*ELASTIC\nx, 0.3\n": 'line 3, "x, 0.3": expected numbers',
+    "** units: Pa, s\n*ELASTIC\n1, 0.3, 20\n2, 0.3, 40\n*VISCOELASTIC, TIME=PRONY\n0.5, 0, 1\n": "a row of",
+    "** units: Pa, s\n*ELASTIC\n1, 0.3\n*VISCOELASTIC, TIME=PRONY\n0.5\n": "rows of g, k and tau",
+    "** units: Pa, s\n*ELASTIC\n1, 0.3\n*VISCOELASTIC, TIME=PRONY\n0.5, 0, 1\n*TRS\n20, 5\n": "C_1 and C_2",
+}
+
+
+@pytest.mark.parametrize("text", BAD_CARDS)
+def test_a_card_that_cannot_be_read_is_refused_with_the_line(tmp_path, text):
+    refused(["foundation", written(tmp_path, text, "card.inp")], ["card.inp", BAD_CARDS[text]])
+
+
 def test_a_card_may_give_the_relaxed_modulus_in_other_units(tmp_path):
     text = "** units: MPa, s\n*ELASTIC\n30, 0.45\n*VISCOELASTIC, TIME=PRONY\n0.5, 0., 1e-3\n0.3,0.,0.1\n"
     found = kv.fit_foundation(written(tmp_path, text, "card.INP"), thickness="2 mm")

@@ -1,8 +1,10 @@
 """Tables in the layouts of instruments, programs and spreadsheets: what is read, and what is refused."""
 
 import re
+import sys
 
 import numpy as np
+import openpyxl
 import pytest
 
 import kvtheory as kv
@@ -247,3 +249,31 @@ def test_a_tribometer_writes_grams_and_t_in_seconds(tmp_path):
     assert found.time == pytest.approx(np.arange(10) / 100)
     assert found.measured["normal_force"] == pytest.approx(np.full(10, 0.2 * 9.80665))
     assert "was read as pressing" in "".join(found.notes)
+
+
+def test_sheets_of_excel_are_read_as_text_is(tmp_path, monkeypatch):
+    path, book = tmp_path / "data.xlsx", openpyxl.Workbook()
+    book.active.title = "Details"
+    book.active.append(["operator", "A"])
+    for T in (25, 45):
+        sheet = book.create_sheet(f"Frequency sweep ({T} °C)")
+        for row in (["w", "G'", "G''"], ["rad/s", "MPa", "MPa"], *ROWS):
+            sheet.append(row)
+    book.save(path)
+    found = moduli.read(path)
+    assert [sweep.temperature for sweep in found.sweeps] == pytest.approx([298.15, 318.15])
+    expected = np.array(ROWS).T * [[1.0], [1e6], [1e6]]
+    assert found.sweeps[1].moduli.values == pytest.approx(expected[1:])
+    assert "Of the file, these sheets are not used: Details." in found.notes
+    sheet["B4"] = "two"
+    book.save(path)
+    with pytest.raises(
+        ValueError, match=r'one after the other.*: line 13, column "G\'": "two" is not a'
+    ):
+        moduli.read(path)
+    path.write_text("w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN)
+    with pytest.raises(ValueError, match="not an Excel file"):
+        moduli.read(path)
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(ValueError, match="Excel files need openpyxl"):
+        moduli.read(path)

@@ -169,8 +169,9 @@ def fit_foundation(
             for T, shift in zip(master.temperatures.tolist(), master.log_shift.tolist(), strict=True)
         ),
         shift_errors=None if master is None else tuple(map(_rounded, master.errors.tolist())),
-        shift_law=None if law is None or master is None else (
-            f"{law.text} at {master.reference - ZERO_CELSIUS:.4g} degC, log10 a_T to {law.misfit:.2g}"
+        shift_law=None if law is None else (
+            f"{law.text} at {found.reference - ZERO_CELSIUS:.4g} degC"
+            + (f", log10 a_T to {law.misfit:.2g}" if law.errors else "")
         ),
         reference_temperature=None if law is None else thermal["reference_temperature"],
         frequencies=frequencies,
@@ -202,7 +203,7 @@ def _to_young(kind: str, poisson_ratio: float | None) -> float:
 def _thermal(found: Any, temperature: float | None) -> dict[str, Any]:
     """Return what a foundation is given of temperature: the law, the measured factors and their range."""
     law, master = found.law, found.shifted
-    if law is None or master is None:
+    if law is None:
         if temperature is not None:
             message = "no law of the shift factor is known: it needs several temperatures, or `shift_factors`"
             raise ValueError(f"`temperature`: {message}")
@@ -211,12 +212,14 @@ def _thermal(found: Any, temperature: float | None) -> dict[str, Any]:
     thermal: dict[str, Any] = (
         {"wlf": constants} if law.name == "wlf" else {"activation_energy": constants[0]}
     )
-    thermal["reference_temperature"] = _rounded(master.reference)
+    thermal["reference_temperature"] = _rounded(found.reference)
+    thermal |= {} if temperature is None else {"temperature": temperature}
+    if master is None:  # of a card, which has no measured factors
+        return thermal
     thermal["shift_factors"] = tuple(
         (_rounded(T), _rounded(log))
         for T, log in zip(master.temperatures.tolist(), master.log_shift.tolist(), strict=True)
     )
-    thermal |= {} if temperature is None else {"temperature": temperature}
     ends = map(_rounded, master.temperatures[[0, -1]])
     return thermal | dict(zip(MEASURED_RANGES[1], ends, strict=True))
 

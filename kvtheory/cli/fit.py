@@ -71,12 +71,18 @@ def foundation(
     with console.progress_bar("foundation"):
         found = fit_foundation(data, load_scene(scene, foundation=False), **how)
     console.finish(
-        found, _shown(found), plot, {output: partial(_save_scene, found, None)}, as_json=as_json
+        found,
+        _shown(found, output),
+        plot,
+        {output: partial(_save_scene, found, None)},
+        as_json=as_json,
     )
 
 
-def _shown(found: Any) -> Iterator[None]:
+def _shown(found: Any, output: Path | None) -> Iterator[None]:
     click.echo(str(found))
+    if output is not None and output.suffix.lower() != ".toml" and found.left_out:
+        click.echo(f"{output.name}: {found.left_out}.")
     if found.scene is None:
         click.echo(
             "Give --thickness and --poisson-ratio, or --stiffness, for the foundation of a scene."

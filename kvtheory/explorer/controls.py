@@ -8,7 +8,7 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
-from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, Arm
+from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, SAME_TEMPERATURE, Arm
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.layer import SHAPES as REST_SHAPES
 from kvtheory.scene.layer import THIN, THIN_WAY
@@ -119,7 +119,7 @@ def controls(scene: Scene) -> dict[str, Any]:
         "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
-        "shift_factors": scene.foundation.shift_factors or [],
+        "shift_factors": scene.foundation.shift_factors or [], "same_temperature": SAME_TEMPERATURE,
     }  # fmt: skip
 
 

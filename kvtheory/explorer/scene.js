@@ -138,13 +138,19 @@ function wrong_in_measured(values) {
   return value("temperature") <= pole ? `foundation.temperature: expected above T_ref \u2212 C\u2082 = ${short(pole)} K, the pole of the WLF law` : "";
 }
 
+/** Measured shift factors, as long as the reference temperature is theirs. */
+function measured_factors(T_ref) {
+  const own = MODEL.shift_factors.some(([t, log]) => log === 0 && Math.abs(t - T_ref) < MODEL.same_temperature);
+  return own ? MODEL.shift_factors : [];
+}
+
 /** a_T, by which the temperature multiplies every time of the foundation; the law goes through measured factors. */
 function shift_factor(v) {
   const T = v["foundation.temperature"], T_ref = v["foundation.reference_temperature"], c_1 = v["foundation.wlf.c_1"];
   if (T === undefined || T_ref === undefined) return 1;
   const law = (t) => c_1 !== undefined ? -c_1 * (t - T_ref) / (v["foundation.wlf.c_2"] + t - T_ref)
     : v["foundation.activation_energy"] / MODEL.gas_constant * (T_ref - t) / t / T_ref / Math.LN10;
-  const missed = MODEL.shift_factors.map(([t, log]) => [t, log - law(t)]);
+  const missed = measured_factors(T_ref).map(([t, log]) => [t, log - law(t)]);
   let off = missed.length ? missed[T < missed[0][0] ? 0 : missed.length - 1][1] : 0;
   for (let k = 1; k < missed.length; k++) {
     const [[a, p], [b, q]] = [missed[k - 1], missed[k]];
@@ -217,6 +223,8 @@ function written(state) {
     if (inner) (own[outer] ||= []).push(text); else own[name] = text;
   }
   if (measure_of(state) === "modulus" && way_of(state) === "thin") tables.foundation.stiffness_from = '"thin"';
+  const factors = tables.foundation.reference_temperature ? measured_factors(Number(state.values["foundation.reference_temperature"])) : [];
+  if (factors.length) tables.foundation.shift_factors = factors.map(([t, log]) => listed([quoted(t, "K"), log]));
   const units = arm_sliders(state).map((slider) => slider.unit);
   if (has_arms(state)) tables.foundation.arms = state.arms.map((arm) => listed(arm.map((text, k) => quoted(text, units[k]))));
   return Object.entries(tables).map(([section, own]) => [

@@ -36,7 +36,10 @@ MISSED = 2.0
 
 
 class Fitted(NamedTuple):
-    """A series fitted to the master curve `data`, the dual bound on misfits, the shifts, remarks."""
+    """A series fitted to the master curve `data`, the dual bound on misfits, the shifts, remarks.
+
+    `reference` is the temperature (K) at which the series holds, if a law is known.
+    """
 
     measured: moduli.Measured
     data: Moduli
@@ -44,6 +47,7 @@ class Fitted(NamedTuple):
     least_misfit: float
     shifted: Shifted | None
     law: Law | None
+    reference: float | None
     notes: tuple[str, ...]
 
 
@@ -104,17 +108,20 @@ def fit(
         notes.append(
             f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
         )
-    return Fitted(measured, thin, series, least, master, law, tuple(notes))
+    reference = None if law is None or master is None else master.reference
+    return Fitted(measured, thin, series, least, master, law, reference, tuple(notes))
 
 
 def of_card(path: Path) -> tuple[Fitted, float]:
     """Return the series of a card of Abaqus or ANSYS, sampled over its times, and Poisson's ratio."""
-    series, poisson_ratio, notes = cards.read(path)
+    series, poisson_ratio, thermal, notes = cards.read(path)
     low, high = (1.0 / series.time[[-1, 0]]).tolist()
     omega = np.geomspace(low / BEYOND_CARD, high * BEYOND_CARD, CARD_POINTS)
     data = Moduli(omega, series.values(omega, dynamic=True))
     measured = moduli.Measured(str(path), (moduli.Sweep(math.nan, data),), "E", tuple(notes))
-    return Fitted(measured, data, series, 0.0, None, None, tuple(notes)), poisson_ratio
+    law = None if thermal is None else Law("wlf", thermal.constants)
+    reference = None if thermal is None else thermal.reference
+    return Fitted(measured, data, series, 0.0, None, law, reference, tuple(notes)), poisson_ratio
 
 
 def _target(data: Moduli, start: Series, least: float, rtol: float | None) -> float:

@@ -79,10 +79,11 @@ class Law(NamedTuple):
     @property
     def text(self) -> str:
         """The law with its constants in words."""
-        pairs = [
-            f"{c:.4g} ± {float(f'{e:.2g}'):g}"
-            for c, e in zip(self.constants, self.errors, strict=True)
-        ]
+        pairs = [f"{c:.4g}" for c in self.constants]
+        if self.errors:
+            pairs = [
+                f"{c} ± {float(f'{e:.2g}'):g}" for c, e in zip(pairs, self.errors, strict=True)
+            ]
         if self.name == "wlf":
             return f"WLF: C_1 = {pairs[0]}, C_2 = {pairs[1]} K"
         c, e = self.constants[0] / 1e3, self.errors[0] / 1e3

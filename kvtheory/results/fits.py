@@ -95,12 +95,28 @@ class FoundationFit(_Fit):
         return self._found.foundation  # type: ignore[return-value]
 
     def to_card(self, suffix: str) -> str:
-        """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa and s."""
-        nu = self.data["poisson_ratio"]
+        """Return the series as a card of Abaqus (``".inp"``) or ANSYS (``".mac"``), in Pa, s and degC.
+
+        WLF's law is in the card; of Arrhenius' law, a comment says that it is not, as `left_out` does.
+        """
+        nu, cards = self.data["poisson_ratio"], above("fitting.cards")
         if self.modulus is None or nu is None:
             raise ValueError("a card holds moduli and Poisson's ratio: give `poisson_ratio`")
-        text: str = above("fitting.cards").written(suffix, self.modulus, self.arms, nu, self.source)
+        law, thermal = self.data["law"], None
+        if law is not None and not self.left_out:
+            thermal = cards.Thermal(law.constants, self.reference_temperature)
+        text: str = cards.written(
+            suffix, self.modulus, self.arms, nu, self.source, thermal, self.left_out
+        )
         return text
+
+    @property
+    def left_out(self) -> str:
+        """What a card cannot say of the temperature, or nothing."""
+        law, T = self.data["law"], self.reference_temperature
+        if law is None or law.name == "wlf" or T is None:
+            return ""
+        return f"Without the law of temperature: the arms hold at {T - ZERO_CELSIUS:.4g} degC. {law.text}"
 
     @property
     def remarks(self) -> list[str]:

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Callable, Container, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cached_property
 from os import PathLike
@@ -32,7 +32,7 @@ from kvtheory.scene.layouts import (
     tables,
 )
 from kvtheory.scene.mistakes import mistake, shown
-from kvtheory.scene.tables import number, parts, plain, read_text, suffixed
+from kvtheory.scene.tables import EXCEL, number, parts, plain, read_text, sheets, suffixed
 from kvtheory.scene.units import bare, to_si
 
 Array = NDArray[np.float64]
@@ -228,6 +228,8 @@ class Reader:
         return Table("`data`", columns, rows, self._others(heads, found))
 
     def _of_file(self, path: Path) -> Table:
+        if path.suffix.lower() in EXCEL:
+            return self._of_sheets(path)
         try:
             text = read_text(path)
         except UnicodeDecodeError:
@@ -235,7 +237,24 @@ class Reader:
         if "\0" in text:
             message = "not a text file; export a table as text or CSV"
             raise ValueError(f"{path}: {message}; expected {self.example}")
-        lines = text.splitlines()
+        return self._of_lines(text.splitlines(), str(path))
+
+    def _of_sheets(self, path: Path) -> Table:
+        """Return the table of the sheets of an Excel file that hold one; their names are above it."""
+        every = sheets(path)
+        used = {name: rows for name, rows in every.items() if tables(rows, self._named)[0]} or every
+        lines = [line for name, rows in used.items() for line in (*[name] * (len(used) > 1), *rows)]
+        source = str(path)
+        if len(used) > 1:
+            source += (
+                f" (lines of the sheets {', '.join(used)} one after the other, with their names)"
+            )
+        table = self._of_lines(lines, source)
+        others = ", ".join(name for name in every if name not in used)
+        notes = (f"Of the file, these sheets are not used: {others}.",) if others else ()
+        return replace(table, notes=(*table.notes, *notes))
+
+    def _of_lines(self, lines: Sequence[str], path: str) -> Table:
         layouts, nameless = tables(lines, self._named)
         if nameless is not None:
             message = f"line {nameless + 1} holds numbers, and no row above it names the columns"
@@ -244,7 +263,7 @@ class Reader:
             raise ValueError(f"{path}: {self._headless(lines, path)}")
         read, notes = [], self._unread(lines, layouts[0])
         for each in layouts:
-            found = self._known(each.heads, str(path), each.units)
+            found = self._known(each.heads, path, each.units)
             values, own = _numbers(path, lines, each, found, self.partial)
             notes += own
             read.append((found, values))
@@ -274,7 +293,7 @@ class Reader:
             [""] * layouts[0].shift + layouts[0].heads[max(layouts[0].shift, 0) :], read[0][0]
         )
         return Table(
-            str(path), columns, numbers, others, tuple(dict.fromkeys(notes)),
+            path, columns, numbers, others, tuple(dict.fromkeys(notes)),
             np.repeat(np.arange(len(sizes)), sizes),
         )  # fmt: skip
 
@@ -358,7 +377,7 @@ class Reader:
     def _others(self, cells: Sequence[str], found: Known) -> tuple[str, ...]:
         return tuple(shown(cell) for i, cell in enumerate(cells) if cell and i not in found)
 
-    def _headless(self, lines: Sequence[str], path: Path) -> str:
+    def _headless(self, lines: Sequence[str], path: str) -> str:
         """Return why a file holds no table: of the row that names most, or of the one above numbers."""
         numbers = next(
             (k for k, line in enumerate(lines) if STARTS.match(line) and not blank(line)), None
@@ -377,7 +396,7 @@ class Reader:
                 message = f"line {numbers + 1} holds numbers, and no row above it names the columns"
             return f"{message}; expected {self.example}"
         if self._named(cells, ()):
-            self._known(cells, str(path))
+            self._known(cells, path)
             return f'holds a header and no rows: no numbers stand below line {at + 1}, "{shown(lines[at])}"'
         words = [cell for cell in cells if number(cell, ",") is None]
         message = self._lacking(cells)
@@ -404,7 +423,7 @@ def _fits(unit: str, si: str) -> bool:
 
 
 def _numbers(
-    path: Path, lines: Sequence[str], own: Layout, found: Known, partial: Container[str]
+    path: str, lines: Sequence[str], own: Layout, found: Known, partial: Container[str]
 ) -> tuple[dict[str, Array], list[str]]:
     """Return the known columns, and notes; if the fast reader fails, find the cell that is no number."""
     names, decimal = [name for name, _, _ in found.values()], own.decimal

@@ -1,10 +1,12 @@
-"""Text files as programs and spreadsheets write them, and the numbers, names and units in their cells."""
+"""Files as programs and spreadsheets write them, and the numbers, names and units in their cells."""
 
 import codecs
 import errno
 import os
 import re
 import stat
+import warnings
+from importlib import import_module
 from pathlib import Path
 
 MARKS = {
@@ -15,6 +17,7 @@ MARKS = {
 """Byte order marks, and the encodings that they indicate."""
 MOST = 2**28
 """Largest size of a file in bytes; a million rows of ten columns are smaller."""
+EXCEL = ".xlsx", ".xlsm"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
 _HEADS = (
@@ -110,3 +113,30 @@ def read_text(path: Path) -> str:
             raise
         text = data.decode("cp1252")
     return text.replace("\r\n", "\n")
+
+
+def sheets(path: Path) -> dict[str, list[str]]:
+    """Return the rows of the sheets of an Excel file as lines of cells with tabs between, by their names."""
+    try:
+        load = import_module("openpyxl").load_workbook
+    except ImportError:
+        message = (
+            'Excel files need openpyxl: pip install ".[data]" in the checkout, or save it as CSV'
+        )
+        raise ValueError(f"{path}: {message}") from None
+    with warnings.catch_warnings(), path.open("rb") as file:
+        warnings.simplefilter("ignore")  # about styles and charts
+        try:
+            book = load(file, read_only=True, data_only=True)
+        except Exception:  # the library has no error of its own
+            raise ValueError(f"{path}: not an Excel file, or one with a password") from None
+        found = {}
+        for sheet in book.worksheets:
+            sheet.reset_dimensions()  # which some programs write wrongly
+            rows = ([_cell(each) for each in row] for row in sheet.iter_rows(values_only=True))
+            found[sheet.title] = ["\t".join(row).rstrip("\t") for row in rows]
+    return found
+
+
+def _cell(value: object) -> str:
+    return "" if value is None else " ".join(str(value).split())
