@@ -292,6 +292,15 @@ def test_low_velocity_friction_follows_from_the_contact_at_rest():
         assert 2 * slower - faster == pytest.approx(1.0, abs=8e-3)
 
 
+@pytest.mark.parametrize(("shape", "H"), [(Parabola(radius=R), 1e-3), (Sphere(radius=R), math.inf)])
+def test_friction_keeps_its_digits_at_any_low_velocity(shape, H):
+    """The memory may be shorter than any cell: here by factors of 10^4 and 10^10."""
+    for V in (1e-8, 1e-14):
+        coarse = next(levels(shape, rubber(H, 0.49), V, Support(depth=1e-4)))
+        friction = coarse.values(shape, rubber(H, 0.49), V)["friction_coefficient"]
+        assert friction == pytest.approx(0.08 * V / R, rel=0.08)
+
+
 def test_dimensionality_reduction_is_not_for_sliding():
     """Elements that are exact in normal contact of a ball have twice its friction, and then a wrong load."""
     E = 1e6 / (1 - 0.5**2)
