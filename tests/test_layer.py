@@ -426,6 +426,15 @@ def test_what_is_refused():
         Body.of_foundation(kv.Foundation("10 GN/m^3", "100 ms"))
 
 
+def test_a_blunt_indenter_carries_its_load():
+    """Its contact is much shorter than a large depth, which a search for the depth passes."""
+    for exponent in (3.0, 8.0):
+        blunt = PowerLaw(length=R, exponent=exponent)
+        found = slide(blunt, rubber(1e-3, 0.3), 0.05, Support(load=1000.0))
+        held = slide(blunt, rubber(1e-3, 0.3), 0.05, Support(found.depth))
+        assert held.load == pytest.approx(1000.0, rel=1e-3)
+
+
 def test_an_edge_presses_without_bound_and_grids_are_shared():
     found = slide(Wedge(inclination=0.1), rubber(1e-3, 0.3), 0.5, Support(depth=1e-4), rtol=2e-2)
     assert found.peak_pressure == math.inf

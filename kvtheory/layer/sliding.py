@@ -186,6 +186,8 @@ def half_length(shape: Any, depth: float) -> float:
     for side in (-1.0, 1.0):
         far = min(depth, 0.5 * shape.reach)
         inner = shape.reach * (1.0 - 1e-12)
+        while shape.height(side * 0.5 * far) > depth:
+            far *= 0.5
         while far < inner and shape.height(side * far) < depth:
             far = min(2.0 * far, inner)
         above = shape.height(side * far) - depth
