@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import kvtheory as kv
 from kvtheory.layer import Body, Support, compliance, load_at_rest, memory, slide, slide_at
-from kvtheory.layer.sliding import first_grid, levels
+from kvtheory.layer.sliding import errors_of, first_grid, levels
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Sphere, Wedge
@@ -403,6 +403,13 @@ def test_errors_cover_those_against_a_finer_grid():
     assert sum(covered) >= len(covered) - 1
 
 
+def test_an_edge_is_known_to_its_jumps_and_other_values_to_what_their_changes_add_up_to():
+    known = [dict.fromkeys(("depth", "leading_edge"), value) for value in (1.0, 1.1, 1.0, 1.1)]
+    assert errors_of(known, 0.01)["leading_edge"] == pytest.approx(0.2)
+    assert errors_of(known, 0.01)["depth"] > 1.0
+    assert errors_of(known, 0.3)["leading_edge"] == 0.3
+
+
 def test_what_is_refused():
     with pytest.raises(ValueError, match="half-space has no depth"):
         slide(Parabola(radius=R), rubber(math.inf, 0.3), 0.1, Support(depth=1e-4))
@@ -415,7 +422,9 @@ def test_what_is_refused():
         slide(waves, rubber(1e-3, 0.3), 0.1, Support(depth=1e-4))
     with pytest.raises(ValueError, match="too thin for this contact"):
         slide(Sphere(radius=R), rubber(1e-8, 0.3), 0.1, Support(depth=1e-4))
-    with pytest.raises(ToleranceError, match=r"finest grid .* relative error .* above 1e-11"):
+    with pytest.raises(
+        ToleranceError, match=r"0.01 m/s, .*finest grid.* relative error .* above 1e-11"
+    ):
         slide(Parabola(radius=R), rubber(1e-3, 0.3), 0.01, Support(depth=1e-4), rtol=1e-11)
     springpot = kv.FractionalKelvinVoigt(
         modulus=1e6, thickness=1e-3, poisson_ratio=0.3, retardation_time=0.1, order=0.5
