@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import kvtheory as kv
 from kvtheory.layer import Body, Support, compliance, load_at_rest, memory, slide, slide_at
-from kvtheory.layer.sliding import first_grid, levels
+from kvtheory.layer.sliding import errors_of, first_grid, levels
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Sphere, Wedge
@@ -292,6 +292,15 @@ def test_low_velocity_friction_follows_from_the_contact_at_rest():
         assert 2 * slower - faster == pytest.approx(1.0, abs=8e-3)
 
 
+@pytest.mark.parametrize(("shape", "H"), [(Parabola(radius=R), 1e-3), (Sphere(radius=R), math.inf)])
+def test_friction_keeps_its_digits_at_any_low_velocity(shape, H):
+    """The memory may be shorter than any cell: here by factors of 10^4 and 10^10."""
+    for V in (1e-8, 1e-14):
+        coarse = next(levels(shape, rubber(H, 0.49), V, Support(depth=1e-4)))
+        friction = coarse.values(shape, rubber(H, 0.49), V)["friction_coefficient"]
+        assert friction == pytest.approx(0.08 * V / R, rel=0.08)
+
+
 def test_dimensionality_reduction_is_not_for_sliding():
     """Elements that are exact in normal contact of a ball have twice its friction, and then a wrong load."""
     E = 1e6 / (1 - 0.5**2)
@@ -394,6 +403,13 @@ def test_errors_cover_those_against_a_finer_grid():
     assert sum(covered) >= len(covered) - 1
 
 
+def test_an_edge_is_known_to_its_jumps_and_other_values_to_what_their_changes_add_up_to():
+    known = [dict.fromkeys(("depth", "leading_edge"), value) for value in (1.0, 1.1, 1.0, 1.1)]
+    assert errors_of(known, 0.01)["leading_edge"] == pytest.approx(0.2)
+    assert errors_of(known, 0.01)["depth"] > 1.0
+    assert errors_of(known, 0.3)["leading_edge"] == 0.3
+
+
 def test_what_is_refused():
     with pytest.raises(ValueError, match="half-space has no depth"):
         slide(Parabola(radius=R), rubber(math.inf, 0.3), 0.1, Support(depth=1e-4))
@@ -406,7 +422,9 @@ def test_what_is_refused():
         slide(waves, rubber(1e-3, 0.3), 0.1, Support(depth=1e-4))
     with pytest.raises(ValueError, match="too thin for this contact"):
         slide(Sphere(radius=R), rubber(1e-8, 0.3), 0.1, Support(depth=1e-4))
-    with pytest.raises(ToleranceError, match=r"finest grid .* relative error .* above 1e-11"):
+    with pytest.raises(
+        ToleranceError, match=r"0.01 m/s, .*finest grid.* relative error .* above 1e-11"
+    ):
         slide(Parabola(radius=R), rubber(1e-3, 0.3), 0.01, Support(depth=1e-4), rtol=1e-11)
     springpot = kv.FractionalKelvinVoigt(
         modulus=1e6, thickness=1e-3, poisson_ratio=0.3, retardation_time=0.1, order=0.5
@@ -415,6 +433,15 @@ def test_what_is_refused():
         Body.of_foundation(springpot)
     with pytest.raises(ValueError, match="expected modulus, thickness"):
         Body.of_foundation(kv.Foundation("10 GN/m^3", "100 ms"))
+
+
+def test_a_blunt_indenter_carries_its_load():
+    """Its contact is much shorter than a large depth, which a search for the depth passes."""
+    for exponent in (3.0, 8.0):
+        blunt = PowerLaw(length=R, exponent=exponent)
+        found = slide(blunt, rubber(1e-3, 0.3), 0.05, Support(load=1000.0))
+        held = slide(blunt, rubber(1e-3, 0.3), 0.05, Support(found.depth))
+        assert held.load == pytest.approx(1000.0, rel=1e-3)
 
 
 def test_an_edge_presses_without_bound_and_grids_are_shared():

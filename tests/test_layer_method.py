@@ -85,6 +85,36 @@ def test_commands_print_a_table_and_json():
     assert "method `layer` of `steady`" in run("steady", *SET, *thin).stdout
 
 
+@pytest.mark.parametrize(
+    "indenter",
+    [
+        kv.Wedge(0.05),
+        kv.PowerLaw(length="10 mm", exponent=4),
+        kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01),
+        kv.Sphere("10 mm", radius_across="5 mm"),
+    ],
+)
+def test_every_convex_shape_slides_on_a_layer(indenter):
+    """The K of a thin layer, which the scene needs for a shape without a contact at rest, is not used."""
+    drive, held = kv.Drive("50 mm/s"), kv.Fixed("0.1 mm")
+    with pytest.raises(kv.SceneError, match=r'parabola, a circle and a ball.*expected "thin"'):
+        kv.steady(kv.Scene(indenter, RUBBER, held, drive), method="layer")
+    thin = kv.GeneralizedMaxwell(**LAYER, arms=[("4 MPa", "20 ms")], stiffness_from="thin")
+    state = kv.steady(kv.Scene(indenter, thin, held, drive), method="layer")
+    tolerance = RTOL[indenter.per_width]
+    body, support = Body.of_foundation(RUBBER), Support(1e-4)
+    right = slide(indenter, body, 0.05, support, tolerance)
+    assert state.friction_force == right.friction_force > 0.0
+    back = slide(indenter, body, -0.05, support, tolerance)
+    assert back.friction_force == pytest.approx(-right.friction_force, rel=2 * tolerance)
+
+
+def test_an_array_in_a_message_is_a_list():
+    over = {"foundation.thickness": ["1 mm", "inf"]}
+    with pytest.raises(kv.SceneError, match=r"foundation.thickness = \[0.001, inf\]: a line"):
+        kv.steady(LINE, over=over)
+
+
 def test_stability_on_a_spring_is_not_claimed():
     state = kv.steady(
         kv.Scene(LINE.indenter, RUBBER, LINE.support, kv.Drive(0.05, stiffness=1e6, mass=1.0)),

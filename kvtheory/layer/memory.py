@@ -16,7 +16,9 @@ without a root that could be missed. Kelvin-Voigt has theta = tau, c = 1.
 
 Each retardation time averages what the material has met, e(x) = int_0^oo e^(-s/l) C(x - s) ds/l, l = V
 theta. From cell to cell the average decays by e^(-1/l) and takes up the integral over one cell, in which C
-is a cubic through four cells; where the cells begin, it is a quadrature over all that lies ahead.
+is a cubic with the slopes of central differences at its ends; where the cells begin, it is a quadrature over
+all that lies ahead. Slopes without jumps keep friction at low velocity: it is the part of e - C that is even
+in x, -l^2 C'', beside which each jump of the slope is -l/2 times the jump. So e - C is filtered, not e.
 """
 
 import math
@@ -35,8 +37,9 @@ GAUSS = (
     0.5 * np.polynomial.legendre.leggauss(20)[1],
 )
 STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
-"""Cells behind the one reached between which the influence is a cubic."""
-INTERPOLATION = np.linalg.inv(np.vander(STENCIL, increasing=True).T)
+"""Cells behind the one reached from which the cubic over the first of them follows."""
+INTERPOLATION = 0.5 * np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]])
+"""Powers 0 to 3 in the cubic of the influence in each of these cells."""
 LARGE = 2.0
 """Decay in a cell from which the moments follow by recurrence, which would lose digits below."""
 FORGOTTEN = 40.0
@@ -94,17 +97,17 @@ def moments(z: float) -> Array:
 
 
 def filtered(influence: Array, ahead: Array, z: float) -> Array:
-    """Return the average e of an influence over cells along x, without the first two and the last.
+    """Return e - C of an influence over cells along x, without the first two and the last.
 
     `ahead` is e at the second cell, and z = 1/l the decay in a cell.
     """
-    weights = INTERPOLATION @ moments(z)
-    n = len(influence)
+    decay, n = math.exp(-z), len(influence)
+    weights = INTERPOLATION @ (moments(z) - [1.0, 0.0, 0.0, 0.0]) + [0.0, 0.0, decay, 0.0]
     taken = sum(
         w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True)
     )
-    decay = math.exp(-z)
-    return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=decay * ahead[None])[0]
+    begin = decay * (ahead - influence[1])
+    return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=begin[None])[0]
 
 
 def average_ahead(n: float, y: Array, z: float, H: float, nu: float, width: float | None) -> Array:
@@ -135,13 +138,13 @@ def influence(
     """
     rows, m = elastic.shape
     whole = elastic[2 * per_cell : -2 * per_cell : per_cell]
-    found, loss = creep.glassy * whole, np.zeros_like(whole)
+    found, loss = whole.copy(), np.zeros_like(whole)
     y = (width or 1.0) * np.arange(float(m))
     n = (rows - 1) // 2 / per_cell
     for length, share in zip(travelled, creep.shares, strict=True):
         ahead = average_ahead(n - 1.0 / per_cell - shift, y, 1.0 / length, H, nu, width)
-        average = filtered(elastic, ahead, 1.0 / (length * per_cell))
-        average = average[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
-        found += share * average
-        loss += share / length * (whole - average)
+        behind = filtered(elastic, ahead, 1.0 / (length * per_cell))
+        behind = behind[2 * (per_cell - 1) : rows - 2 * per_cell - 2 : per_cell]
+        found += share * behind
+        loss -= share / length * behind
     return found, loss

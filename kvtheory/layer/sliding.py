@@ -90,7 +90,8 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
             errors = errors_of(known, found.grid.length)
         wrong = _unconverged(known, errors, velocity, rtol)
     if wrong:
-        raise ToleranceError(f"on the finest grid {wrong}, above {rtol:g}")
+        message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
+        raise ToleranceError(f"{message}; slower and faster, the limits of `asymptotes` hold")
     grid = finest.grid
     return Sliding(
         **known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=finest.pressure(body)
@@ -139,11 +140,12 @@ def _next(grids: Iterator[Found], known: list[dict[str, float]]) -> Found | None
 
 
 def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
-    """Return the errors of the last of values on three grids or more; that of an edge is at least a cell.
+    """Return the errors of the last of values on three grids or more.
 
     The larger of the last two changes counts, as one may be small by chance: the ends of the contact
     jump from cell to cell. Changes that fall by a factor r from grid to grid add up to r/(1 - r) of
-    the last one; r is the smaller of the last two ratios, where there are two.
+    the last one; r is the smaller of the last two ratios, where there are two. An edge is known to a cell at
+    best, and the ratios of its jumps say nothing.
     """
     found = {}
     for name, last in known[-1].items():
@@ -151,10 +153,13 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
         if math.isinf(last):
             found[name] = 0.0
             continue
+        error = SAFETY * max(changes[-2:])
+        if name.endswith("edge"):
+            found[name] = max(error, cell)
+            continue
         ratios = [late / early if early else 0.0 for early, late in pairwise(changes)]
         ratio = min(*ratios, SLOWEST)
-        error = SAFETY * max(changes[-2:]) * max(1.0, ratio / (1.0 - ratio))
-        found[name] = max(error, cell if name.endswith("edge") else 0.0)
+        found[name] = error * max(1.0, ratio / (1.0 - ratio))
     return found
 
 
@@ -186,6 +191,8 @@ def half_length(shape: Any, depth: float) -> float:
     for side in (-1.0, 1.0):
         far = min(depth, 0.5 * shape.reach)
         inner = shape.reach * (1.0 - 1e-12)
+        while shape.height(side * 0.5 * far) > depth:
+            far *= 0.5
         while far < inner and shape.height(side * far) < depth:
             far = min(2.0 * far, inner)
         above = shape.height(side * far) - depth

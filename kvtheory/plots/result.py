@@ -189,8 +189,8 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
         off = abs(abs(state.friction_coefficient) / (2.0 * state.depth / a * m) - 1.0)
     if off > MISMATCH:
         raise ValueError(
-            "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt elements only; give several "
-            'velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
+            "the pressure is drawn for a parabola and for a ball on independent Kelvin-Voigt elements only; "
+            'give several velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
         )
     ax.plot(x * 1e3, p * 1e-6, **style)
     place = "pressure in the middle plane" if sphere else "pressure"

@@ -39,6 +39,7 @@ def problem(key: str, given: Any, what: str) -> str:
     >>> problem("run.\n" + 60 * "a", [[[[[[[[5]]]]]]]], "unknown key")
     'run.\\naaaaaaaaaaaaaaaaaaaaaaaaa...aaaaaaaaaaaaaaaaaaaaaaaaaaa = [[[[[[[...]]]]]]]: unknown key'
     """
+    given = given.tolist() if hasattr(given, "tolist") else given  # an array or number of NumPy
     text = isinstance(given, str) and not isinstance(given, Bare)
     value = f'"{given}"' if text else SHORT.repr(given)
     return f"{shown(key)} = {shown(value)}: {what}"
