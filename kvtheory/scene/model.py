@@ -6,7 +6,7 @@ holds an SI float or an array of them afterwards. The arrays of a scene broadcas
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -93,6 +93,17 @@ class Fixed(_Support):
         if not deepest > 0.0:
             raise mistake(key, deepest, "is the largest depth, in m; expected one above 0")
         derive(self, "support", "depth", deepest, key)
+
+    def changed(self, **values: Any) -> "Fixed":
+        """Return a copy with another depth; a history is multiplied so that this is its largest one.
+
+        >>> Fixed(history=[(0.0, 1e-4), (1.0, 2e-4)]).changed(depth=1e-3).history
+        ((0.0, 0.0005), (1.0, 0.001))
+        """
+        if self.history is None or "depth" not in values:
+            return replace(self, **values)
+        points = [(time, depth / self.depth * values["depth"]) for time, depth in self.history]
+        return replace(self, depth=None, history=points)
 
 
 class _Loaded(_Support):

@@ -130,6 +130,9 @@ def _next_piece(run: Run) -> None:
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
     jumps = paused or abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if len(run.depths) > 0:
+        jumps = jumps or run.depths[now.piece, 1] != now.v
+        now.d, now.v = run.depths[now.piece, 0], run.depths[now.piece, 1]
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = _first(run) if paused else min(now.span, _first(run))
         if not h_.flies(run):
@@ -146,6 +149,8 @@ def _jump(run: Run) -> None:
     if now.piece == 0 and run.clock.paused[0]:
         faster = run.given.start_rate / run.pieces[0, b_.END]
         slope -= run.given.start_along / run.pieces[0, b_.END]
+    if len(run.depths) > 0:
+        faster = run.depths[now.piece, 2]
     for k in range(2):
         side = now.sides[k]
         peels = side.state == PEELING
