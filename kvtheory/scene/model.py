@@ -290,6 +290,11 @@ class Scene(Part):
         return found.holding(self.depths) if self.depths else found
 
     @property
+    def changes(self) -> tuple[float, ...]:
+        """The times in s at which the drive or a given depth changes abruptly, in order, with t = 0."""
+        return tuple(sorted({*self.drive.changes, *(time for time, _ in self.depths)}))
+
+    @property
     def drive_mass(self) -> Value:
         """M_x, in kg/m: the mass that moves along x, that of the support unless the drive gives another."""
         return self.support.mass if self.drive.mass is None else self.drive.mass

@@ -244,7 +244,10 @@ def as_objects(run: Run) -> Run:
     """Return a run, new or in progress, with objects for interpreted kernels."""
     records = {name: filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
     return Run(
-        **records, pieces=run.pieces.tolist(), depths=run.depths.tolist(), matrix=run.matrix.tolist()
+        **records,
+        pieces=run.pieces.tolist(),
+        depths=run.depths.tolist(),
+        matrix=run.matrix.tolist(),
     )
 
 

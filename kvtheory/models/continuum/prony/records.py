@@ -120,7 +120,7 @@ class Run(NamedTuple):
     for arms, stages, coefficients or unknowns is read by its name before the indices: `stages.edges[j, k]`.
     Compiled, it is a structured array; interpreted, an object with an array for each name, see `named`.
 
-    `depths` are those of `with_pauses`, of a fixed indenter whose depth changes. `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
+    `depths` are those of the drive, see `BaseMotion`. `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
     the arms, `state` (arms) is the present one. `from_modes` gives the stresses of free ground from the rates
     of the dampers, s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the
     step: `stages` and `arm_stages` (arms, stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and
@@ -185,7 +185,9 @@ def begin(
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
     starts = start.rate != 0.0 or start.along_rate != 0.0
-    pieces, depths, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
+    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
+    if drive.depths and damper > 0.0:
+        raise ValueError("a depth that changes is not followed on a damper beside arms", 0.0)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
@@ -207,7 +209,7 @@ def begin(
         "state": count, "element": count, "unknowns": unknowns,
     }  # fmt: skip
     run = Run(
-        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, depths=depths, clock=clock,
+        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, depths=np.array(drive.depths).reshape(-1, 2), clock=clock,
         steps=blanks(1 if arrays else ROOM, STEP), segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64), method=method, arms=own_arms, modes=modes, stages=stages,
         to_modes=np.ascontiguousarray(element.to_modes),
@@ -225,46 +227,38 @@ def begin(
 
 def with_pauses(
     drive: BaseMotion, end: float, *, needed: bool, starts: bool = False
-) -> tuple[Any, Any, Any, float]:
-    """Return the pieces of a drive on the clock of a run, the depths, the time in them, and the clock at the end.
+) -> tuple[Any, Any, float]:
+    """Return the pieces of a drive on the clock of a run, what time it is in them, and the clock at the end.
 
-    Depths are those of the drive, if given: depth and rate at the start of each piece, and how the rate changes.
-
-    Where a velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
-    runs on for a while in which time stands still and it changes uniformly: also at first, if the
+    Where the velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
+    runs on for a while in which time stands still and the velocity changes uniformly: also at first, if the
     indenter `starts` with a velocity. Without a damper there is no such pause, and the clock shows the time.
     """
     if not needed:
         clock = np.zeros(len(drive.rows), PIECE)
         clock["since"] = drive.rows[:, b_.START]
-        return drive.rows, np.pad(np.array(drive.depths).reshape(-1, 2), ((0, 0), (0, 1))), clock, end
+        return drive.rows, clock, end
     found: list[Any] = []
     pauses: list[Any] = []
-    depths: list[Any] = []
-    lost, before, last, rate_before = 0.0, 0.0, end, 0.0
+    lost, before, last = 0.0, 0.0, end
     rows = np.pad(drive.rows, ((0, 0), (0, max(b_.POWERS + 2 - drive.rows.shape[1], 0))))
     pause = end / (1.0 + len(rows))
-    for row, (depth, rate) in zip(rows, drive.depths or [(0.0, 0.0)] * len(rows), strict=True):
+    for row in rows:
         start, after = row[b_.START], row[b_.POWERS]
         jumps = abs(after - before) > SMOOTH * (1.0 + abs(after)) or (starts and start <= 0.0)
-        jumps = jumps or rate != rate_before
         if start <= end and jumps:
             new = np.zeros_like(row)
             new[: b_.POWERS] = start + lost, start + lost + pause, row[b_.DISPLACEMENT]
             new[b_.POWERS : b_.POWERS + 2] = before, (after - before) / pause
             found, lost = [*found, new], lost + pause
             pauses.append((True, start))
-            depths.append((depth, rate_before, (rate - rate_before) / pause))
             last = end + lost
         moved = row.copy()
         moved[[b_.START, b_.END]] += lost
         found.append(moved)
         pauses.append((False, start))
-        depths.append((depth, rate, 0.0))
-        rate_before = rate
         before = b_.evaluate(row, row[b_.END])[1]
-    held = np.array(depths if drive.depths else []).reshape(-1, 3)
-    return np.array(found), held, np.array(pauses, PIECE), last
+    return np.array(found), np.array(pauses, PIECE), last
 
 
 def _longer(rows: Any, count: int) -> Any:

@@ -149,8 +149,6 @@ def _jump(run: Run) -> None:
     if now.piece == 0 and run.clock.paused[0]:
         faster = run.given.start_rate / run.pieces[0, b_.END]
         slope -= run.given.start_along / run.pieces[0, b_.END]
-    if len(run.depths) > 0:
-        faster = run.depths[now.piece, 2]
     for k in range(2):
         side = now.sides[k]
         peels = side.state == PEELING
