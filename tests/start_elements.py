@@ -66,12 +66,28 @@ class Ground:
         return 0.75 * self.dx * p.sum(), -1.5 * self.dx * (x @ p)
 
 
+def followed(start):
+    """Return the depth and its rate at a time, before or after it, if points are given, and the start."""
+    if isinstance(start, tuple):
+        return None, start
+    t, depth = np.array(start).T
+
+    def held(time, side):
+        beside = time + side * 1e-9
+        d, other = np.interp([time, beside], t, depth)
+        return d, (other - d) / (beside - time)
+
+    return held, (*held(0.0, 1.0), 0.0)
+
+
 def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
     """Return rows of the `MEASURED` at the times; `spring` is eps_x, c_x, k_x or None."""
-    d, v, w = start
+    held, (d, v, w) = followed(start)
     end, dx, h = times[-1], 1.0 / (COUNT * finer), STEP / finer
     low, high = drive.extremes(0.0, end)
-    deepest = max(1.0, d, (eps * v * v + abs(d - 1.0) * (2.0 + kappa * abs(d - 1.0))) ** 0.4)
+    deepest = max(
+        1.0, d, 1.5 * bool(held), (eps * v * v + abs(d - 1.0) * (2.0 + kappa * abs(d - 1.0))) ** 0.4
+    )
     pad = 1.3 * math.sqrt(deepest) + (abs(w) * end + 1.0 if spring else 0.0) + 4.0
     X = dx * np.arange(math.floor((-pad - high) / dx), math.ceil((pad - low) / dx) + 1)
     ground, x, rows, t = Ground(arms, damper, X, d, h), 0.0, [], 0.0
@@ -94,6 +110,8 @@ def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
         for n in range(round((stop - t) / h)):
             now, then = t + n * h, t + (n + 1) * h
             a, b, *_ = pulls(state, over, d, v, x, w, now)
+            if held:
+                d, v, a = *held(now, 1.0), 0.0
             d_1, x_1, v_1, w_1 = (
                 d + h * (v + 0.5 * h * a),
                 x + h * (w + 0.5 * h * b),
@@ -101,11 +119,15 @@ def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
                 w + h * b,
             )
             for _ in range(2):
+                if held:
+                    d_1, v_1 = held(then, -1.0)
                 _, s_1, over_1 = ground.moved(overlap(d_1, x_1, then))
                 a_1, b_1, *_ = pulls(s_1, over_1, d_1, v_1, x_1, w_1, then)
                 v_1, w_1 = v + 0.5 * h * (a + a_1), w + 0.5 * h * (b + b_1)
                 d_1, x_1 = d + 0.5 * h * (v + v_1), x + 0.5 * h * (w + w_1)
             d, v, x, w = d_1, v_1, x_1, w_1
+            if held:
+                d, v = held(then, 1.0)
             ground.u, ground.s, over = ground.moved(overlap(d, x, then))
             state = ground.s
         t = stop
@@ -123,6 +145,9 @@ def extrapolated(*given):
 
 def solved(drive, arms, damper, eps, kappa, start, spring, times, rtol=1e-7):
     """Return the same rows by the solver of the law."""
+    if isinstance(start, list):
+        drive, kappa = drive.holding(start), math.inf
+        start = *drive.depths[0], 0.0
     how = {"start": Beginning(*start), "spring": Spring(*spring) if spring else None}
     if arms:
         given = drive, arms, (eps, kappa), times[-1], rtol
@@ -156,12 +181,25 @@ KINDS = {
 }  # fmt: skip
 """The start and the spring of a random scene; x' is that of the drive where it is None."""
 
+HELD = "held"
+"""Random indentations, holds and withdrawals of a fixed indenter, with or without sliding."""
+
 
 def drawn(kind, seed):
     """Return a random scene."""
     rng = np.random.default_rng(seed)
     number, end = rng.uniform(-3.0, 3.0), 2.4
     drive = BaseMotion.constant(number, end=end)
+    if kind == HELD:
+        arms, damper = LAWS[seed % 3](rng)
+        count = rng.integers(2, 7)
+        points = 0.12 * np.sort(rng.choice(np.arange(1, 20), count, replace=False))
+        depths = np.where(rng.random(count + 1) < 0.75, rng.uniform(0.0, 1.5, count + 1), -0.3)
+        depths[1:] = np.where(rng.random(count) < 0.25, depths[:-1], depths[1:])
+        held = list(zip([0.0, *points.tolist()], depths.tolist(), strict=True))
+        number = 0.0 if rng.random() < 0.4 else number
+        drive, times = BaseMotion.constant(number, end=end), [0.12 * n - 0.06 for n in range(1, 21)]
+        return drive, arms, damper, 1.0, 0.0, held, None, times
     (d, v, w), spring = KINDS[kind](rng)
     arms, damper = LAWS[seed % 3](rng)
     kappa = 0.0 if rng.random() < 0.6 else rng.uniform(0.1, 3.0)

@@ -12,6 +12,7 @@ from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import Beginning, Spring
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.files import to_toml
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.drop import drop, number_of
 from tests import start_elements
@@ -287,3 +288,144 @@ def test_a_fit_of_a_drop_returns_the_foundation_and_the_gap():
     found = kv.fit(first, data=data, free=free)
     values = [found.parameters[key].value for key in free]
     assert values == pytest.approx([1e10, 1e-3, 1e-3], rel=1e-4)
+
+
+CYCLE = [(0.0, 0.0), (0.1, 3e-4), (0.2, 3e-4), (0.3, -1e-4), (0.4, 3e-4)]
+"""Indentation, hold, withdrawal into the air, and a second indentation, of ground that has not relaxed."""
+
+
+@pytest.mark.parametrize("seed", [3, 4, 9, 12, 13])
+def test_depths_over_time_agree_with_an_independent_program(seed):
+    """On a damper or an arm; run the module itself for more of them."""
+    ratio, _ = start_elements.compared(start_elements.HELD, seed)
+    assert ratio.max() < 1.0
+
+
+@pytest.mark.parametrize("seed", [2, 5, 50])
+def test_elements_follow_a_depth_over_time_on_a_damper_beside_arms(seed):
+    drive, arms, damper, _, _, points, _, times = drawn = start_elements.drawn("held", seed)
+    known, error = start_elements.extrapolated(*drawn)
+    scene = kv.Scene(
+        kv.Parabola(0.5), kv.GeneralizedMaxwell(1.0, arms, damping=damper), kv.Fixed(history=points),
+        kv.Drive(drive.velocity(0.0)), kv.Run(2.4),
+    )  # fmt: skip
+    found = kv.elements(scene, at=times, per_length=100.0 / max(d for _, d in points) ** 0.5)
+    rows = np.array(
+        [found.depth, found.depth_rate, 0.75 * found.normal_force, 0.75 * found.friction_force]
+    )
+    assert np.abs(rows.T - known[:, :4]).max() < error.max() + 2e-3
+    with pytest.raises(ValueError, match="support.history with arms beside foundation.damping"):
+        kv.transient(scene)
+
+
+@pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.1), ARMS], ids=["damper", "arms"])
+@pytest.mark.parametrize("velocity", [0.0, 0.05])
+def test_a_contact_that_is_opened_and_closed_agrees_with_elements_and_keeps_energy(law, velocity):
+    scene = kv.Scene(
+        foundation=law, support=kv.Fixed(history=CYCLE), drive=kv.Drive(velocity), run=kv.Run(0.5)
+    )
+    at = np.array([0.05, 0.15, 0.19, 0.29, 0.36, 0.45])
+    exact, simulated = kv.transient(scene, at=at), kv.elements(scene, at=at, certify=False)
+    assert exact.depth == pytest.approx(np.interp(at, *np.array(CYCLE).T), abs=1e-15)
+    assert np.isnan(exact.leading_edge[3])
+    for name in ("normal_force", "friction_force", "peak_pressure"):
+        one, other = getattr(exact, name), getattr(simulated, name)
+        assert other == pytest.approx(one, abs=2e-4 * max(np.abs(one).max(), 1.0))
+    books = exact.solution.energy(at)
+    assert np.abs(books.balance).max() < 1e-4 * np.abs(books.work).max()
+
+
+def test_indentation_is_the_closed_form_on_a_damper():
+    """On the static contact, p = K (d - h) + C d' (F17), and so is the force."""
+    K, tau, R, speed = 1e10, 0.1, 0.01, 3e-3
+    points = [(0.0, 0.0), (0.1, 0.1 * speed)]
+    scene = kv.Scene(support=kv.Fixed(history=points), drive=kv.Drive(0.0), run=kv.Run(0.1))
+    found = kv.transient(scene, at=[0.02, 0.05, 0.09])
+    a = np.sqrt(2.0 * R * speed * found.time)
+    assert found.leading_edge == pytest.approx(-a, rel=1e-7)
+    force = K * 4.0 / 3.0 * a * speed * found.time + K * tau * speed * 2.0 * a
+    assert found.normal_force == pytest.approx(force, rel=1e-7)
+
+
+@pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.01), ARMS], ids=["damper", "arms"])
+def test_a_small_oscillation_returns_the_dynamic_modulus(law):
+    """Of the line through the points, whose harmonic and its rate are known; edges are of second order."""
+    K, d, share, w, count = 1e10, 3e-4, 1e-5, 2.0 * math.pi / 0.05, 40
+    t = np.linspace(0.0, 0.1, 2 * count + 1)
+    points = list(zip(t.tolist(), (d * (1.0 + share * np.sin(w * t))).tolist(), strict=True))
+    scene = kv.Scene(
+        foundation=law, support=kv.Fixed(history=points), drive=kv.Drive(0.0), run=kv.Run(0.1)
+    )
+    at = t[count:-1] + 0.5 * t[1]
+    found = kv.transient(scene, at=at, rtol=1e-8, certify=False)
+    turning = np.exp(-1j * w * at)
+    half = 0.5 * w * t[1]
+    force = np.mean(found.normal_force * turning) / np.mean(share * d * np.sin(w * at) * turning)
+    damper = 1j * w * law.damping * math.sin(half) / half + K * math.cos(half)
+    if not law.arms:
+        assert force / 2.0 / math.sqrt(0.02 * d) == pytest.approx(damper, rel=1e-4)
+        return
+    modulus = K + 3e10 * 1j * w * 0.01 / (1.0 + 1j * w * 0.01)
+    assert force / 2.0 / math.sqrt(0.02 * d) == pytest.approx(modulus, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    "shape", [kv.Sphere(0.01), kv.Circle(0.01), kv.Wedge(0.1)], ids=lambda s: s.shape
+)
+def test_every_shape_is_pressed_by_elements_as_the_closed_form_says(shape):
+    scene = kv.Scene(
+        shape, support=kv.Fixed(history=CYCLE[:3]), drive=kv.Drive(0.0), run=kv.Run(0.25)
+    )
+    held = kv.elements(scene, at=[0.15], certify=False).normal_force[0]
+    static = kv.elements(
+        replace(scene, support=kv.Fixed(3e-4)), at=[0.15], certify=False
+    ).normal_force[0]
+    assert held == pytest.approx(static, rel=1e-6)
+
+
+def test_a_history_of_the_depth_is_read_from_scenes_and_tables(tmp_path):
+    scene = kv.Scene(support=kv.Fixed(history=CYCLE), run=kv.Run(0.5))
+    path = tmp_path / "scene.toml"
+    path.write_text(to_toml(scene))
+    assert kv.load_scene(path) == scene
+    rows = "\n".join(f"{t} {1e3 * d}" for t, d in CYCLE)
+    (tmp_path / "depth.csv").write_text(
+        "t [s] depth [mm]\n".replace(" d", ",d") + rows.replace(" ", ",")
+    )
+    down = "\n".join(f"{t},{-1e3 * d}" for t, d in CYCLE)
+    (tmp_path / "height.csv").write_text("t [s],z [mm]\n" + down)
+    for name in ("depth.csv", "height.csv"):
+        text = to_toml(scene).split("\n")
+        lines = [f'file = "{name}"' if "history" in line else line for line in text]
+        path.write_text("\n".join(lines))
+        read = kv.load_scene(path).support
+        assert np.array(read.history) == pytest.approx(np.array(CYCLE), abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("support", "message"),
+    [
+        ({"history": [(0.0, 0.0), (0.0, 1e-4)]}, "the depth would jump, with an infinite rate"),
+        ({"history": [(0.0, -1e-4)]}, "expected one above 0"),
+        ({"history": [(0.0, 1e-4)], "depth": 1e-4}, "cannot be given beside support.history"),
+        ({"history": []}, "expected points such as"),
+        ({}, "support.depth: missing"),
+    ],
+)
+def test_a_wrong_history_of_the_depth_is_refused(support, message):
+    with pytest.raises(ValueError, match=message):
+        kv.Fixed(**support)
+
+
+def test_what_holds_at_one_depth_refuses_a_history_and_a_sweep_takes_it():
+    scene = kv.Scene(support=kv.Fixed(history=CYCLE), run=kv.Run(0.1))
+    for question in (kv.steady, kv.asymptotes, kv.stability, kv.compare):
+        with pytest.raises(ValueError, match="holds at one depth only, not for support.history"):
+            question(scene)
+    over = {"support.depth": [1e-4, 3e-4], "foundation.retardation_time": [0.05, 0.1]}
+    table = kv.sweep(scene, over=over, quantities=["normal_force.end"])
+    half = scene.replace({"support.depth": 1e-4})
+    assert table["normal_force.end"][0, 1] == pytest.approx(
+        kv.transient(half, at=[0.1]).normal_force[0], rel=1e-6
+    )
+    assert kv.solve(scene, at=[0.05]).model == "continuum"

@@ -142,7 +142,7 @@ def plan_of(
     from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of, spread
 
     scene, over = spread(scene_of(scene), over)
-    method = method_for(scene, method)
+    asked, method = method, "exact" if scene.depths else method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
     axes = axes_of(scene, over)
     for axis in axes:  # one law for all points: with a damper if any of them has one
@@ -154,6 +154,8 @@ def plan_of(
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
+    if scene.depths and plan.needed(steady=True):
+        method_for(scene, asked)  # it refuses
     if on_body and (plan.transient or any(column.base == STABLE for column in columns)):
         raise ValueError('`method` = "layer" gives steady quantities only, without `stable`')
     if plan.transient and lacks_continuum(scene):

@@ -123,7 +123,7 @@ class Problem:
     @property
     def _jumps(self) -> list[float]:
         """Times (s) at which the drive may have a kink or jump, 0 first."""
-        return [t for t in self.scene.drive.changes if t < self.scene.run.duration]
+        return [t for t in self.scene.changes if t < self.scene.run.duration]
 
     def reference(self) -> Reference:
         """Return the solution by the continuum at a tight tolerance, compared with an independent one."""

@@ -141,6 +141,8 @@ def never_steady(scene: Scene) -> str:
         return why
     if not scene.start.at_rest:
         return NOT_AT_REST
+    if scene.depths:
+        return "the depth changes"
     if not scene.held:
         resting = scene.drive.constant and scene.drive.final_velocity == 0.0
         return "" if resting else "the depth changes"

@@ -45,10 +45,14 @@ class BaseMotion:
     a piece the base moves one way: a model whose steps end with the pieces misses no reversal, however brief.
     A last piece of zero length gives V just after a jump at the end. `changes` are the times at which V may
     jump or have a kink. Before t = 0 the base is at rest.
+
+    `depths` are the depth at the start of each piece, and its constant rate within it, of an indenter that is
+    held at a depth that changes; else there are none.
     """
 
     pieces: tuple[tuple[float, ...], ...]
     changes: tuple[float, ...] = (0.0,)
+    depths: tuple[tuple[float, float], ...] = ()
 
     @classmethod
     def constant(cls, velocity: float, end: float) -> "BaseMotion":
@@ -148,6 +152,35 @@ class BaseMotion:
         ]
         return BaseMotion(_joined(found))
 
+    def holding(self, points: Sequence[tuple[float, float]]) -> "BaseMotion":
+        """Return the motion with depths that are linear between `points` (t, depth), then constant.
+
+        Its pieces also end at the points.
+
+        >>> motion = BaseMotion.constant(2.0, end=3.0).holding([(0.0, 0.0), (1.0, 0.5)])
+        >>> motion.pieces, motion.depths
+        (((0.0, 1.0, 0.0, 2.0, 0.0), (1.0, 3.0, 2.0, 2.0, 0.0)), ((0.0, 0.5), (0.5, 0.0)))
+        """
+        near = SAME_TIME * math.ulp(self.end)
+        times = np.array([t if abs(t - self.end) > near else self.end for t, _ in points])
+        depth = np.array([depth for _, depth in points])
+        rates = np.append(np.diff(depth) / np.diff(times), 0.0)
+        found: list[Span] = []
+        for a, b, _, *coefficients in self.pieces:
+            cuts = [t for t in times.tolist() if a + near < t < b - near]
+            for start, stop in itertools.pairwise([a, *cuts, b]):
+                moved = Polynomial(coefficients)(Polynomial([start - a, 1.0])).coef
+                powers = np.pad(moved, (0, len(coefficients) - moved.size))
+                found.append((start, stop, tuple(powers.tolist())))
+        if times[-1] == self.end > found[-1][0]:  # a last piece gives the rate after the end
+            found.append((self.end, self.end, (self.velocity(self.end), *found[-1][2][1:])))
+        starts = np.array([start for start, _, _ in found])
+        k = np.searchsorted(times, starts + near, side="right") - 1
+        here = depth[k] + rates[k] * np.maximum(starts - times[k], 0.0)
+        changes = tuple(sorted({*self.changes, *times[times <= self.end].tolist()}))
+        depths = tuple(zip(here.tolist(), rates[k].tolist(), strict=True))
+        return BaseMotion(_joined(found), changes, depths)
+
     def kept(self, end: float) -> "BaseMotion":
         """Return the motion, extended at its last velocity from its end to `end`."""
         if end <= self.end:
@@ -156,8 +189,8 @@ class BaseMotion:
         found = [(a, b, tuple(coefficients)) for a, b, _, *coefficients in self.pieces]
         return BaseMotion(_joined([*found, (self.end, end, last)]), self.changes)
 
-    def scaled(self, time: float, length: float) -> "BaseMotion":
-        """Return the motion in units of `time` and `length`."""
+    def scaled(self, time: float, length: float, depth: float = 1.0) -> "BaseMotion":
+        """Return the motion in units of `time`, `length` and `depth`."""
         pieces = [
             (
                 a / time,
@@ -167,7 +200,8 @@ class BaseMotion:
             )
             for a, b, Y, *V in self.pieces
         ]
-        return BaseMotion(tuple(pieces), tuple(t / time for t in self.changes))
+        depths = tuple((each / depth, rate * time / depth) for each, rate in self.depths)
+        return BaseMotion(tuple(pieces), tuple(t / time for t in self.changes), depths)
 
     @property
     def end(self) -> float:

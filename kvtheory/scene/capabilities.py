@@ -69,12 +69,16 @@ class Needs:
     ''
     """
 
-    def __init__(self, *sets: Scenes) -> None:
+    def __init__(self, *sets: Scenes, over_time: tuple[str, ...] = ()) -> None:
         self.sets = sets
+        self.over_time = over_time  # the laws on which the depth of a fixed indenter may change
         self.messages: dict[tuple[str, ...], str] = {}
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
+        if scene.depths and scene.foundation.law not in self.over_time:
+            with_it = " with arms beside foundation.damping" if self.over_time else ""
+            return f"holds at one depth only, not for support.history{with_it}"
         kind = *scene.kind, scene.foundation.kind
         if kind not in self.messages:
             shape = kind[0]
@@ -95,9 +99,9 @@ class Needs:
 
 
 lacks_parabola = Needs(Scenes(("parabola",)))
-lacks_quadratic = Needs(Scenes(QUADRATIC))
+lacks_quadratic = Needs(Scenes(QUADRATIC), over_time=LAWS)
 lacks_kelvin_voigt = Needs(Scenes(laws=KELVIN_VOIGT))
-lacks_arms = Needs(Scenes(laws=FINITE))
+lacks_arms = Needs(Scenes(laws=FINITE), over_time=FINITE)
 lacks_drop = Needs(Scenes(QUADRATIC, KELVIN_VOIGT, MOVING))
 lacks_dropped = Needs(Scenes(QUADRATIC, supports=MOVING))
 lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
@@ -105,7 +109,7 @@ lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
 lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, MOVING, ("rigid",)))
-lacks_continuum = Needs(Scenes(("parabola",), FINITE))
+lacks_continuum = Needs(Scenes(("parabola",), FINITE), over_time=ONE_OF_BOTH)
 lacks_rigid_continuum = Needs(Scenes(("parabola",), FINITE, drives=("rigid",)))
 lacks_stability = lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))

@@ -490,6 +490,28 @@ HISTORY = Reader(
 )
 
 
+DEPTH_KEY = "support.file"
+DEPTHS = Reader(
+    {name: SPELLINGS[name] for name in ("time", "depth", "-depth")},
+    lambda found: "time" in found and len(found) > 1,
+    'a first line such as "t [s],depth [mm]" or "t [s],z [mm]", and then numbers',
+)
+
+
+def depths_from(path: Path) -> tuple[tuple[float, float], ...]:
+    """Return the points (t, depth) in SI of a table of time and depth, or height, or raise SceneError."""
+    try:
+        table = DEPTHS.read(path)
+        name = "depth" if "depth" in table else "-depth"
+        depth = table.si(name, "m")[0] * (1.0 if name == "depth" else -1.0)
+        points = zip(table.si("time", "s")[0].tolist(), depth.tolist(), strict=True)
+    except OSError as error:
+        raise mistake(DEPTH_KEY, str(path), f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise mistake(DEPTH_KEY, str(path), str(error).removeprefix(f"{path}: ")) from None
+    return tuple(points)
+
+
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
     """Return the points (t, V) in SI of a table of time and velocity, or raise SceneError with the line.
 

@@ -293,20 +293,22 @@ class Drive(Part):
         return value
 
 
-def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float, float], ...]:
-    """Convert the points of a drive history, or report every one that is wrong."""
+def history_points(
+    points: Any, key: str = "drive.history", of: Quantity = VELOCITY, name: str = "velocity",
+    example: str = '[["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
+) -> tuple[tuple[float, float], ...]:  # fmt: skip
+    """Convert the points of a history, of a drive or a depth, or report every one that is wrong."""
     if isinstance(points, np.ndarray):
         points = points.tolist()
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:
-        message = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
-        raise mistake(key, points, message)
+        raise mistake(key, points, f"expected points such as {example}")
     problems = Problems()
     values: list[float] = []
     for index, point in enumerate(points):
         if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
-            problems.add(f"{key}[{index}]", point, 'expected a pair ["time", "velocity"]')
+            problems.add(f"{key}[{index}]", point, f'expected a pair ["time", "{name}"]')
             continue
-        for value, spec in zip(point, (TIME, VELOCITY), strict=True):
+        for value, spec in zip(point, (TIME, of), strict=True):
             with problems.catching(f"{key}[{index}]", value):
                 values.append(convert(value, spec))
     if not problems:

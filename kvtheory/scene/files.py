@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.arguments import a_scene, checked, file_name, flag, names
-from kvtheory.scene.columns import history_from
+from kvtheory.scene.columns import depths_from, history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import SHAPES
@@ -29,7 +29,7 @@ from kvtheory.scene.mistakes import (
     nearest,
     shown,
 )
-from kvtheory.scene.model import SECTIONS, SUPPORTS, Drive, Scene, inconsistencies
+from kvtheory.scene.model import SECTIONS, SUPPORTS, Drive, Fixed, Scene, inconsistencies
 from kvtheory.scene.quantities import (
     Quantity,
     as_given,
@@ -54,6 +54,7 @@ LISTS = {
     ("foundation", "wlf"),
     ("foundation", "shift_factors"),
     ("drive", "history"),
+    ("support", "history"),
 }
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
@@ -65,6 +66,8 @@ LARGEST = 10**400
 """Larger integers in a file are read as infinite."""
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
+DEPTHS = ("depth", "history", "file")
+"""Keys that define the depth of a fixed indenter; likewise."""
 
 
 @checked(path=file_name, overrides=names, foundation=flag)
@@ -156,7 +159,11 @@ def template(support: str = "dead-weight") -> str:
     usual = {"m": "0.3 mm", "kg/m": "1 kg/mm", "N/m^2": "30 MN/m^2", "m/s^2": "9.80665 m/s^2"}
     for name, spec in given(part).items():
         lines.append(f'{name} = "{usual[spec.unit]}"'.ljust(36) + f"# {spec.words}")
-    if support != "fixed":
+    if support == "fixed":
+        message = "or a history, linear between its points, or a table with t [s],depth [mm]"
+        lines += [f"# {message}:", '# history = [["0 s", "0 mm"], ["1 s", "0.3 mm"]]']
+        lines += ['# file = "depth.csv"']
+    else:
         message = (
             "instead of mass times gravity, a load; the mass is then inertia alone (load/gravity)"
         )
@@ -195,6 +202,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
     if foundation.shift_factors is not None:
         pairs = foundation.shift_factors
         tables["foundation"]["shift_factors"] = [[_text(T, "K"), log] for T, log in pairs]
+    if scene.depths:
+        tables["support"]["history"] = [[_text(t, "s"), _text(d, "m")] for t, d in scene.depths]
     if drive.history is not None:
         tables["drive"]["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in drive.history]
     elif (wave := drive.waveform) is not None:
@@ -234,9 +243,9 @@ def _read(path: Path) -> dict[str, Any]:
 def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], Problems]:
     """Return the tables of a scene file, or of Table 1, with overrides, and the mistakes in the overrides."""
     tables: dict[str, Any] = _tables(Scene.table1()) if path is None else _read(Path(path))
-    drive = tables.get("drive")
-    if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
-        drive["file"] = str(Path(path).parent / drive["file"])  # relative to the scene file
+    for table in (tables.get("drive"), tables.get("support")):
+        if path is not None and isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str(Path(path).parent / table["file"])  # relative to the scene file
     problems = Problems()
     new: dict[tuple[str, str], str] = {}
     for text in overrides:
@@ -281,6 +290,8 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
         return list(specs[name].excludes)
     if section == "start" and name in (starts := quantities(Start)):
         return list(starts[name].excludes)
+    if section == "support" and name in DEPTHS and name not in table:
+        return [key for key in DEPTHS if key in table]
     if section == "drive" and name in DRIVES and name not in table:
         wave = WAVEFORMS.get(str(table.get("waveform")))
         if wave is None or name not in quantities(wave):  # another motion, on the same spring
@@ -340,7 +351,7 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
     specs, valid, of = quantities(cls), _keys(cls), f" for {choice}" if choice else ""
     unknown = [key for key in table if key not in valid]
     misspelt = {closest(key, valid) for key in unknown}
-    needed = required(cls, tuple(table))
+    needed = required(cls, (*table, *["history"] * ("file" in table)))
     problems, found = Problems(), Problems()
     for name in needed:
         if name not in misspelt:
@@ -360,13 +371,13 @@ def _made(cls: Any, section: str, table: Mapping[str, Any], per_width: bool, cho
             if spec.per_width and values.get(name) is not None:
                 values[name] = _of_ball(problems, f"{section}.{name}", values[name], spec)
     made = None
-    if cls is Drive and "file" in values:
+    if "file" in values:
         path = Path(str(values.pop("file")))
         if "history" in values:
-            found.add("drive.file", str(path), "cannot be given beside drive.history")
-        values["history"] = [(0.0, 0.0)]
+            found.add(f"{section}.file", str(path), f"cannot be given beside {section}.history")
+        values["history"] = [(0.0, 1.0)]
         with found.catching(section, table):
-            values["history"] = history_from(path)
+            values["history"] = (history_from if cls is Drive else depths_from)(path)
     waveform = cls in WAVEFORMS.values()
     spring = {key: values.pop(key) for key in SPRING if waveform and key in values}
     with found.catching(section, table):
@@ -427,4 +438,6 @@ def _keys(cls: Any) -> list[str]:
         lists = ("wlf", "shift_factors", "stiffness_from", *["arms"] * (cls is GeneralizedMaxwell))
     elif cls in WAVEFORMS.values():
         lists = SPRING
+    elif cls is Fixed:
+        lists = DEPTHS
     return list(dict.fromkeys((*quantities(cls), *lists)))

@@ -5,18 +5,20 @@ holds an SI float or an array of them afterwards. The arrays of a scene broadcas
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.drives import SPRING, VELOCITY, Drive
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.drives import SPRING, VELOCITY, Drive, history_points
 from kvtheory.scene.foundations import FOUNDATIONS, AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import SHAPES, Indenter, Parabola, Profile, Revolved
 from kvtheory.scene.layer import unfit
-from kvtheory.scene.mistakes import Problems, SceneError, nearest
+from kvtheory.scene.mistakes import Problems, SceneError, mistake, nearest
 from kvtheory.scene.quantities import (
     Part,
     Quantity,
@@ -26,6 +28,7 @@ from kvtheory.scene.quantities import (
     derive,
     free,
     given,
+    is_derived,
     missing,
     quantities,
     quantity,
@@ -36,6 +39,7 @@ from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
 LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
+DEPTH = Quantity("m", "depth", -math.inf, False)
 MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
 
 
@@ -46,9 +50,16 @@ class _Support(Part):
 
 @dataclass(frozen=True, eq=False)
 class Fixed(_Support):
-    """The indenter cannot move (the paper's FI model): a constant depth is given.
+    """The indenter cannot move by itself (the paper's FI model): its depth is given.
+
+    It is constant, or a `history` of pairs (time, depth), linear between them and constant after the last:
+    an indentation, hold, withdrawal or oscillation. At a depth below 0 the indenter is above the flat
+    surface. Up to t = 0 it has been at the first depth since ever. The `depth` is then the largest one,
+    which sets the scales of the motion.
 
     >>> Fixed(depth="300 um").depth
+    0.0003
+    >>> Fixed(history=[("0 s", "0 mm"), ("1 s", "0.3 mm"), ("2 s", "-0.1 mm")]).depth
     0.0003
     """
 
@@ -57,7 +68,42 @@ class Fixed(_Support):
     mass: ClassVar[Value] = math.inf
     weight: ClassVar[Value] = 0.0
     spring: ClassVar[Value] = math.inf
-    depth: Value = quantity("m", "delta, indentation depth, held constant")
+    depth: Value = quantity(
+        "m", "delta, indentation depth, held constant", default=None, needed=True, instead="history"
+    )
+    history: Sequence[tuple[float, float]] | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.history is None:
+            super().__post_init__()
+            return
+        key, problems = "support.history", Problems()
+        if self.depth is not None and not is_derived(self.depth):
+            problems.add("support.depth", self.depth, f"cannot be given beside {key}")
+            problems.report()
+        example = '[["0 s", "0 mm"], ["1 s", "0.3 mm"]]'
+        points = history_points(self.history, key, DEPTH, "depth", example)
+        for i, ((before, _), point) in enumerate(pairwise(points), start=1):
+            if point[0] == before:
+                message = "the depth would jump, with an infinite rate; expected a later time"
+                problems.add(f"{key}[{i}]", point, message)
+        problems.report()
+        object.__setattr__(self, "history", points)
+        deepest = max(depth for _, depth in points)
+        if not deepest > 0.0:
+            raise mistake(key, deepest, "is the largest depth, in m; expected one above 0")
+        derive(self, "support", "depth", deepest, key)
+
+    def changed(self, **values: Any) -> "Fixed":
+        """Return a copy with another depth; a history is multiplied so that this is its largest one.
+
+        >>> Fixed(history=[(0.0, 1e-4), (1.0, 2e-4)]).changed(depth=1e-3).history
+        ((0.0, 0.0005), (1.0, 0.001))
+        """
+        if self.history is None or "depth" not in values:
+            return replace(self, **values)
+        points = [(time, depth / self.depth * values["depth"]) for time, depth in self.history]
+        return replace(self, depth=None, history=points)
 
 
 class _Loaded(_Support):
@@ -232,6 +278,21 @@ class Scene(Part):
     def held(self) -> bool:
         """Whether the support holds the indenter at a depth."""
         return self.support.depth is not None
+
+    @property
+    def depths(self) -> Sequence[tuple[float, float]]:
+        """The points (time, depth) of a fixed indenter whose depth changes; else none."""
+        return getattr(self.support, "history", None) or ()
+
+    def motion(self, end: float, least: float) -> BaseMotion:
+        """Return the motion of the base, see `Drive.motion`, and the depths of the indenter if given."""
+        found = self.drive.motion(end, least)
+        return found.holding(self.depths) if self.depths else found
+
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """The times in s at which the drive or a given depth changes abruptly, in order, with t = 0."""
+        return tuple(sorted({*self.drive.changes, *(time for time, _ in self.depths)}))
 
     @property
     def drive_mass(self) -> Value:

@@ -26,6 +26,7 @@ from kvtheory.models.continuum.solved_scene import (
     beginning,
     certified,
     method_of,
+    last_change,
     scaled_drive,
 )
 from kvtheory.models.continuum.solver import STEP_LIMIT
@@ -128,6 +129,7 @@ class _Motions:
         """Solve the scenes one by one, and in one call of compiled kernels from where on that pays."""
         kernel, begun = kernel_of(self.plan.scene), thread_time()
         alone = any(column.measure in LANDMARKS for column in self.plan.columns)
+        alone = alone or self.plan.scene.depths
         plain = not (self.plan.scene.foundation.arms or self.plan.texts or alone)
         together = plain and all(units.rigid_drive for _, units, _ in self.scenes.values())
         waiting = list(self.scenes)
@@ -245,7 +247,7 @@ class _Motions:
             if np.isnan(found.settled[np.isfinite(values)]).any():
                 self.measured.statements.add(UNSETTLED)
         elif measure == "settling_time":  # counted from the last change of the drive
-            changes = self.each(lambda scene, units: scene.drive.last_change / units.time)
+            changes = self.each(lambda scene, units: last_change(scene) / units.time)
             values, scale = np.maximum(found.settled - changes, 0.0), "time"
         else:
             values = found.take_offs.astype(float)

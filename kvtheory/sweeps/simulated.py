@@ -52,7 +52,7 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
             name = column.base or "friction_force"
             row, between = getattr(run, name), 0.0
             if column.measure in EXTREMES:
-                value, between = _extreme(column.measure, run.time, row, scene.drive.changes)
+                value, between = _extreme(column.measure, run.time, row, scene.changes)
                 steady = 1.0 if column.base else abs(friction[index]) or np.nan
                 value /= steady
                 if not column.base and abs(row[len(times)] - friction[index]) > SETTLED * steady:
@@ -88,7 +88,7 @@ def _samples(scene: Scene, spacing: float) -> list[float]:
     end = scene.run.duration
     apart = max(STEPS_APART * begun.time_step, end / MOST_SAMPLES)
     found: set[float] = set()
-    for start, stop in pairwise([*(t for t in scene.drive.changes if t < end), end]):
+    for start, stop in pairwise([*(t for t in scene.changes if t < end), end]):
         even = np.arange(np.ceil((stop - start) / apart))
         offsets = apart * np.concatenate([even, SOON])
         found.update((start + offsets[offsets < stop - start]).tolist())

@@ -86,6 +86,8 @@ def ledger(motion: Any, s: ArrayLike) -> Ledger:
             found["velocity"] * found["friction_force"],
             given.damping * found["offset_rate"] ** 2,
         )
+        if given.fixed:  # what holds the indenter moves it
+            work = work + v * found["normal_force"]
         rows = work, inside, behind, damped
         return np.stack(rows, axis=-1).reshape(*t.shape, len(rows))
 
@@ -122,10 +124,11 @@ def entries(given: Any, moving: Array, sums: Array, stored: Any, shape: tuple[in
     def full(value: float) -> Array:
         return np.full(d.shape, value)
 
-    of_start = 1.0 - d_0 + 0.5 * (eps * v_0**2 + given.kappa * (d_0 - 1.0) ** 2)
+    weight = 0.0 if given.fixed else 1.0
+    of_start = weight * (1.0 - d_0) + 0.5 * (eps * v_0**2 + given.kappa * (d_0 - 1.0) ** 2)
     found = (
         full(_stored(d_0, -half_length, half_length)), work, 0.5 * eps * v**2,
-        1.0 - d, 0.5 * given.kappa * (d - 1.0) ** 2, *stored, in_contact, in_surface,
+        weight * (1.0 - d), 0.5 * given.kappa * (d - 1.0) ** 2, *stored, in_contact, in_surface,
         0.5 * given.eps_x * w * w, 0.5 * given.spring * x * x, in_damper,
         full(of_start + 0.5 * given.eps_x * w_0**2),
     )  # fmt: skip

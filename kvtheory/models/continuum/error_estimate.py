@@ -55,8 +55,9 @@ def certificate(
     if other is None:
         return unknown(why, sprung=fine.given.sprung)
     given, whole = fine.given, fine.deviations(other)
+    held = given.fixed and not len(fine.run.depths)
     here = whole if times is None else fine.deviations(other, times)
-    found = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
+    found = errors(here, whole, given.rtol, held, sprung=given.sprung, tolerance=tolerance)
     numbers = {name: float(error) for name, error in found.items()}
     return Certificate("estimated", STATEMENT, numbers, AT_REST)
 
@@ -69,7 +70,7 @@ def unknown(why: str, *, sprung: bool = False) -> Certificate:
 
 
 def errors(
-    here: Any, whole: Any, rtol: float, fixed: bool, *, sprung: bool, tolerance: float
+    here: Any, whole: Any, rtol: float, held: bool, *, sprung: bool, tolerance: float
 ) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
@@ -78,7 +79,7 @@ def errors(
     sigma (fact F8): its error comes from the largest error of the depth so far, and from that of the sliding
     distance since then, which includes the position along x. Deviations may be arrays over many scenes.
     """
-    moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), _named(whole["size"])
+    moves, slides, sizes = 0.0 if held else 1.0, float(sprung), _named(whole["size"])
     apart, ever_apart = _named(here["apart"]), _named(whole["apart"])
     floors = {name: FLOOR * rtol * (1.0 + size) for name, size in sizes.items()}
     at_times, ever = (

@@ -125,7 +125,7 @@ class Run(NamedTuple):
     """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
     Outside the kernels `given`, `method` and `now` hold one record, inside they are the record itself.
-    With a spring, `along` holds the motion along x for each step, and the `pieces` after those of the
+    `depths` are those of the drive, see `BaseMotion`: of a fixed indenter whose depth changes. With a spring, `along` holds the motion along x for each step, and the `pieces` after those of the
     drive are those by which the base slides under the indenter.
     """
 
@@ -133,6 +133,7 @@ class Run(NamedTuple):
     method: Any
     now: Any
     pieces: Any
+    depths: Any
     steps: Any
     nodes: Any
     events: Any
@@ -161,6 +162,7 @@ def begin(
     )  # fmt: skip
     room, pieces = ROOM if arrays else ROOM // 2, drive.rows
     unknowns = 2 * stages if sprung else stages
+    depths = np.array(drive.depths).reshape(-1, 2)
     if sprung:  # as wide as the pieces by which the base slides, with room for those
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
@@ -168,6 +170,7 @@ def begin(
     return Run(
         given=np.array([given], GIVEN) if arrays else [new(GIVEN, *given)],
         method=_method(stages, arrays), now=make(1, NOW), pieces=pieces if arrays else pieces.tolist(),
+        depths=depths if arrays else depths.tolist(),
         steps=make(room, STEP), nodes=make(3 * room // 2, NODE), events=make(room, EVENT),
         matrix=matrix if arrays else matrix.tolist(), along=make(room if sprung else 1, STEP),
     )  # fmt: skip
@@ -231,13 +234,21 @@ def with_more_room(run: Run) -> Run:
 def as_arrays(run: Run) -> Run:
     """Return a run of objects, new or in progress, with arrays for compiled kernels."""
     records = {name: structured(getattr(run, name), kind) for name, kind in KINDS.items()}
-    return Run(**records, pieces=np.array(run.pieces), matrix=np.array(run.matrix))
+    return Run(
+        **records, pieces=np.array(run.pieces), depths=np.array(run.depths).reshape(-1, 2),
+        matrix=np.array(run.matrix),
+    )  # fmt: skip
 
 
 def as_objects(run: Run) -> Run:
     """Return a run, new or in progress, with objects for interpreted kernels."""
     records = {name: filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
-    return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
+    return Run(
+        **records,
+        pieces=run.pieces.tolist(),
+        depths=run.depths.tolist(),
+        matrix=run.matrix.tolist(),
+    )
 
 
 @cache

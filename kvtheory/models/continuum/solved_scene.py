@@ -48,16 +48,22 @@ STEPS_A_PIECE = 100
 
 def end_of(scene: Scene) -> float:
     """Return the time (s) at which the solution ends: the end of the run, or of a longer history."""
+    return max(scene.run.duration, last_change(scene))
+
+
+def last_change(scene: Scene) -> float:
+    """Return the time (s) of the last point of the histories of the drive and of the depth; 0 of others."""
     drive = scene.drive
-    return max(scene.run.duration, drive.last_change if drive.function is None else 0.0)
+    depth = scene.depths[-1][0] if scene.depths else 0.0
+    return max(depth, drive.last_change if drive.function is None else 0.0)
 
 
 def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
     """Return the drive number over scaled time to the end, or just beyond it if a history changes there."""
-    drive, end = scene.drive, end_of(scene)
-    if drive.function is None and end - drive.last_change <= SAME_TIME * math.ulp(end):
+    end, last = end_of(scene), last_change(scene)
+    if end - last <= SAME_TIME * math.ulp(end):
         end *= 1.0 + TO_A_CHANGE
-    return drive.motion(end, units.velocity).scaled(units.time, units.half_length)
+    return scene.motion(end, units.velocity).scaled(units.time, units.half_length, units.depth)
 
 
 @dataclass(frozen=True)
@@ -94,7 +100,8 @@ class SolvedScene:
     def events(self) -> tuple[Event, ...]:
         """The events of the contact, and the force maxima, in order of time (s)."""
         found: list[tuple[float, str]] = [*self.motion.events]
-        if self.drive.highest_speed > 0.0 or not self.start.at_rest:  # else nothing moves
+        moves = self.drive.highest_speed > 0.0 or self.drive.depths or not self.start.at_rest
+        if moves:
             times = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
             found += [(s, f"{force} force maximum") for s, force in times]
         found.sort(key=lambda event: event[0])
@@ -195,6 +202,8 @@ def spring_of(units: StaticState) -> Spring | None:
 def beginning(scene: Scene, units: StaticState, drive: BaseMotion) -> Beginning:
     """Return the scaled state just after t = 0."""
     depth, rate, along = scene.start.at(units.depth, drive.velocity(0.0) * units.velocity)
+    if drive.depths:
+        return Beginning(*drive.depths[0], along / units.velocity)
     return Beginning(depth / units.depth, rate / units.depth_rate, along / units.velocity)
 
 
@@ -261,11 +270,14 @@ def _on_arms(scene: Scene, rtol: float) -> Method:
 def own_units(scene: Scene) -> StaticState:
     """Return the static state with a unit of time of the motion: that of the foundation may be far from it.
 
-    It is that of the run, or that in which the base moves by a half length if this is shorter.
+    It is that of the run, or that in which the base moves by a half length, or an indenter that is held by
+    the static depth, if this is shorter.
     """
     units, end = StaticState.of(scene), end_of(scene)
-    speed = scene.drive.motion(end, units.velocity).highest_speed
+    motion = scene.motion(end, units.velocity)
+    speed, sinks = motion.highest_speed, max((abs(rate) for _, rate in motion.depths), default=0.0)
     time = min(end, units.half_length / speed) if speed > 0.0 else end
+    time = min(time, units.depth / sinks) if sinks > 0.0 else time
     ratio = units.time / time
     return replace(
         units, time=time, drive_number=units.drive_number / ratio,

@@ -82,7 +82,7 @@ def walk(run: Run, attempts: int) -> int:
 
 
 def _start_piece(run: Run) -> None:
-    """Start a piece of the drive: a jump of lambda detaches strips, or peeling edges touch.
+    """Start a piece of the drive: a jump of lambda, or of a given d', detaches strips, or peeling edges touch.
 
     The step after a kink is limited by the time in which lambda changes, and by the time since the last
     kink: a steep ramp from rest, and ground that was left in a short pulse, make the forces change in so
@@ -94,6 +94,9 @@ def _start_piece(run: Run) -> None:
     if index > 0:
         _, last, last_slope = b_.evaluate(run.pieces[index - 1], now.s)
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if len(run.depths) > 0:
+        jumps = jumps or run.depths[index][1] != now.v
+        now.d, now.v = run.depths[index][0], run.depths[index][1]
     now.slide = index
     if run.given.sprung:
         if now.smooth:

@@ -1065,6 +1065,7 @@ class Course(NamedTuple):
     times: Array  # before the first step and after each
     Y: Array  # at the start of each, halfway and at its end
     V: Array  # likewise, at the end just before it
+    held: Array  # depth and its rate just after each of the times, if they are given
     law: ElementStep  # over steps of no length, and over half and all of each length
     which: Integers  # number of the length of each step
     instants: Instants
@@ -1084,6 +1085,8 @@ def advance(
     """Run from a step on; return why it ended, the steps done and the instants reported."""
     none, now, instants = law_at(course.law, 0), row.now, course.instants
     while True:
+        if len(course.held) > 0:
+            now.depth, now.rate = course.held[step, 0], course.held[step, 1]
         while reported < instants.after.size and instants.after[reported] == step:
             status = report(row, none, instants, reported, course.unsure, found[reported])
             if status != DONE:

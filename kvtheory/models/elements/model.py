@@ -121,7 +121,7 @@ class Model:
 
     def path(self, scene: Scene) -> BaseMotion:
         """Return the motion of the base until the end of the run."""
-        return scene.drive.motion(scene.run.duration, self.at_rest.velocity)
+        return scene.motion(scene.run.duration, self.at_rest.velocity)
 
     def fastest(self, path: BaseMotion) -> float:
         """Return the speed of sliding to expect, in m/s: that of the drive, and of a spring let go.
@@ -137,6 +137,9 @@ class Model:
 
     def begun(self, path: BaseMotion) -> StartState:
         """Return the state just after t = 0."""
+        if path.depths:
+            *_, along = self.start.at(self.constants.depth, path.velocity(0.0))
+            return StartState(*path.depths[0], along)
         return self.start.at(self.constants.depth, path.velocity(0.0))
 
     def impact(self, path: BaseMotion) -> tuple[float, float]:

@@ -245,4 +245,11 @@ def course_of(
     lengths, which = np.unique(steps, return_inverse=True)
     over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
     times = np.ascontiguousarray(times)  # the kernels are compiled once, for this layout
-    return Course(times, motion(t)[0], motion(before)[1], over, which, instants, unsure, limits)
+    held = np.zeros((0, 2))
+    if path.depths:
+        k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
+        depth, rate = np.array(path.depths)[k].T
+        held = np.stack([depth + rate * (times - np.array(path.starts)[k]), rate], axis=1)
+    return Course(
+        times, motion(t)[0], motion(before)[1], held, over, which, instants, unsure, limits
+    )

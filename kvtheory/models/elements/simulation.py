@@ -186,6 +186,8 @@ def simulate(
 def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     """Return the time step of a scheme where none is given, in s."""
     c, law, fastest = model.constants, model.constants.law, model.fastest(path)
+    sinks = max((abs(rate) for _, rate in path.depths), default=0.0)
+    fastest += sinks * c.half_length / c.depth
     passing = ELEMENTS_PER_STEP * c.spacing / fastest if fastest else math.inf
     if scheme.row.papers_step:
         if math.isinf(passing):
@@ -239,7 +241,9 @@ def _jumps(model: Model, path: BaseMotion, end: float) -> list[float]:
     least, landing = JUMP * path.highest_speed, model.landing(path)
     jumps = [t for t in path.changes
              if abs(path.velocity(t) - path.velocity(t, before=True)) > least]  # fmt: skip
-    return sorted({0.0, *(t for t in (*jumps, landing) if 0.0 < t < end)})
+    rates = [rate for _, rate in path.depths]
+    turns = [t for t, a, b in zip(path.starts[1:], rates, rates[1:], strict=False) if a != b]
+    return sorted({0.0, *(t for t in (*jumps, *turns, landing) if 0.0 < t < end)})
 
 
 def _instants(scene: Scene, path: BaseMotion, h: float) -> list[float]:
@@ -384,7 +388,7 @@ def _unsure(model: Model, path: BaseMotion, h: float) -> Unsure:
     c = model.constants
     known = KNOWN if c.law.damping > 0.0 or (c.law.arm_time < h).any() else 0.0
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    jump = known if changes or not model.start.at_rest else 0.0
+    jump = known if changes or path.depths or not model.start.at_rest else 0.0
     return Unsure(jump, known if math.isfinite(c.mass_along) else jump)
 
 

@@ -68,7 +68,7 @@ class Ground:
         self.pieces, self.arms = np.asarray(run.pieces), r_.named(r_.together(run.arms, r_.ARM))
         self.modes = r_.named(r_.together(run.modes, r_.MODE))
         self.paused = r_.named(r_.together(run.clock, r_.PIECE)).paused
-        self.damper = readable(run.given[0]).damper
+        self.damper, self.fixed = readable(run.given[0]).damper, readable(run.given[0]).fixed
         self.starts, self.chain = self.steps["start"], np.asarray(run.chain)
         longest = float(motion.counts.s)
         self.ages = [
@@ -274,7 +274,7 @@ class Ground:
         integrals_of: Any = moments
         c, lasts, d = self.damper, step["lasts"] > 0.0, self._depth(index, theta)
         damped = c * rate, 2.0 * c * number
-        _, friction = of_arrays(l, r, d, damped, F.sum(axis=0), M.sum(axis=0))
+        normal, friction = of_arrays(l, r, d, damped, F.sum(axis=0), M.sum(axis=0))
         I_0, I_1, I_2, _ = integrals_of(l, r)
         pressed = rate * rate * I_0 - 4.0 * number * (rate * I_1 - number * I_2)
         power = 2.0 * self.arms.stiffness[:, None] * (rate * F - 2.0 * number * M)
@@ -284,7 +284,9 @@ class Ground:
             _, moves, _, _ = self.place(k, s)
             flies = step["sides"]["state"][:, k] == FREE
             power += side * np.where(flies, 0.0, moves) * self._stress(index, k, theta) ** 2
-        return lasts * (number + w) * friction, lasts * w * w, lasts * pressed, power
+        held = rate * normal if self.fixed else 0.0  # what holds the indenter moves it
+        drive = (number + w) * friction + held
+        return lasts * drive, lasts * w * w, lasts * pressed, power
 
     def spent(self, s: float, damping: float) -> tuple[float, float, float, float]:
         """Return the work until `s`, and what contact, ground that was met again and damper lost."""

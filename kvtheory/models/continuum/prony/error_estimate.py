@@ -94,7 +94,7 @@ def certificate(
     errors["jump_time"] = jump_time * (own["time"] / measures["time"])
     velocity = float(np.max(np.abs(here["velocity"]), initial=0.0)) * own["velocity"]
     errors["velocity"] = scene.drive.tolerance * (1.0 + velocity / measures["velocity"])
-    if fine.units.fixed:
+    if fine.units.fixed and not fine.drive.depths:
         errors |= {"depth": 0.0, "depth_rate": 0.0}
     return Certificate("estimated", STATEMENT, errors, AT_REST)
 

@@ -120,7 +120,7 @@ class Run(NamedTuple):
     for arms, stages, coefficients or unknowns is read by its name before the indices: `stages.edges[j, k]`.
     Compiled, it is a structured array; interpreted, an object with an array for each name, see `named`.
 
-    `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
+    `depths` are those of the drive, see `BaseMotion`. `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
     the arms, `state` (arms) is the present one. `from_modes` gives the stresses of free ground from the rates
     of the dampers, s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the
     step: `stages` and `arm_stages` (arms, stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and
@@ -130,6 +130,7 @@ class Run(NamedTuple):
     given: Any
     now: Any
     pieces: Any
+    depths: Any
     clock: Any
     steps: Any
     polynomials: Any
@@ -185,6 +186,8 @@ def begin(
     n = stages_for(rtol)
     starts = start.rate != 0.0 or start.along_rate != 0.0
     pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
+    if drive.depths and damper > 0.0:
+        raise ValueError("a depth that changes is not followed on a damper beside arms", 0.0)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
@@ -206,7 +209,7 @@ def begin(
         "state": count, "element": count, "unknowns": unknowns,
     }  # fmt: skip
     run = Run(
-        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, clock=clock,
+        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, depths=np.array(drive.depths).reshape(-1, 2), clock=clock,
         steps=blanks(1 if arrays else ROOM, STEP), segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64), method=method, arms=own_arms, modes=modes, stages=stages,
         to_modes=np.ascontiguousarray(element.to_modes),

@@ -130,6 +130,9 @@ def _next_piece(run: Run) -> None:
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
     jumps = paused or abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if len(run.depths) > 0:
+        jumps = jumps or run.depths[now.piece, 1] != now.v
+        now.d, now.v = run.depths[now.piece, 0], run.depths[now.piece, 1]
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now.span = _first(run) if paused else min(now.span, _first(run))
         if not h_.flies(run):
