@@ -57,6 +57,11 @@ ALIKE = {
     "header in a comment": "## program 7\n## w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN,
     "header in a comment of MATLAB": "% w [rad/s];G' [MPa];G'' [MPa]\n" + table("{w};{G};{L}"),
     "units in a comment": "# w,G',G''\n# rad/s,MPa,MPa\n" + PLAIN,
+    "components": (
+        "Action\tFrequency(Hz)\tShear modulus (elastic component)(MPa)\t"
+        "Shear modulus (viscous component)(MPa)\n"
+        + table("sweep\t{f}\t{G}\t{L}")
+    ),
     "date above": "12.03.2026 10:15\n3 points\nw [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN,
     "Fortran": "w [rad/s],G' [MPa],G'' [MPa]\n" + table("{w:.3e},{G:.3e},{L:.3e}").replace("e", "D"),
     "names of rows": '"w [rad/s]","G\' [MPa]","G\'\' [MPa]"\n' + table('"{i}",{w},{G},{L}'),
@@ -145,6 +150,8 @@ REFUSED = {
     "phase above 90": ("w [rad/s],|G*| [MPa],phase [deg]\n1,2,91\n", "is not from 0 to below 90 degrees"),
     "another |G*|": ("w [rad/s],G' [MPa],G'' [MPa],|G*| [MPa]\n" + table("{w},{G},{L},1"),
                      "leave out the column that is wrong"),
+    "logarithms": ("f [Hz],log G' [Pa],log G'' [Pa]\n1,6,5\n",
+                   "\"log G' [Pa]\" is a logarithm, expected the values themselves"),
     "nothing below": (UNKNOWN + "text\n", "no numbers stand below line 1"),
 }  # fmt: skip
 
@@ -277,3 +284,10 @@ def test_sheets_of_excel_are_read_as_text_is(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     with pytest.raises(ValueError, match="Excel files need openpyxl"):
         moduli.read(path)
+
+
+def test_units_behind_per_and_symbols_behind_words_are_read(tmp_path):
+    text = "V_mm_per_s,Friction force F_R [N/mm],Friction force F_y [N/mm]\n1,2,7\n3,4,7\n"
+    found = records.read(written(tmp_path, text), kv.Scene())
+    assert found.conditions["drive.velocity"] == pytest.approx([1e-3, 3e-3])
+    assert found.measured["friction_force"] == pytest.approx([2e3, 4e3])

@@ -8,7 +8,15 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
-from kvtheory.scene.foundations import BARELY, FOUNDATIONS, GAS_CONSTANT, GLASS, NEAR, SAME_TEMPERATURE, Arm
+from kvtheory.scene.foundations import (
+    BARELY,
+    FOUNDATIONS,
+    GAS_CONSTANT,
+    GLASS,
+    NEAR,
+    SAME_TEMPERATURE,
+    Arm,
+)
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.layer import SHAPES as REST_SHAPES
 from kvtheory.scene.layer import THIN, THIN_WAY

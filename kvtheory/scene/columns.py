@@ -66,6 +66,9 @@ SPELLINGS = {
 """Names of quantities in tables, case, spaces and underscores aside; a minus sign points the other way."""
 BY_UNIT = {"T": ("t", "s"), "t": ("T", "K")}
 """Letters that mean the other where their unit is of its dimension: T [s] is a time."""
+SYMBOL = re.compile(r"[^\W\d_]_(?![xyz]$)\w{1,3}", re.IGNORECASE)
+"""A symbol behind the words of a name, which tell the quantity; those of directions do not."""
+LOGARITHM = re.compile(r"(?:log|lg)(?:_?10)?[\s_(]+", re.IGNORECASE)
 IN_HEAD = re.compile(
     r"(?P<value>[-+]?\d+(?:[.,]\d+)?)[\s;\"]*(?P<unit>°\s?C|℃|deg\.? ?C|degC|K)(?![\w/])"
 )
@@ -351,10 +354,12 @@ class Reader:
         return name, unit
 
     def _name(self, head: str) -> str | None:
-        """Return the quantity of a name, or of a symbol behind words: Storage modulus G'."""
-        words = head.split()
-        symbol = words[-1] if len(words) > 1 and not words[-1].isalnum() else ""
-        return (self.known.get(_key(head)) or self.known.get(_key(symbol)) or (None, ""))[0]
+        """Return the quantity of a name, or of a symbol behind words, or of these: Friction force F_R."""
+        words, _, last = head.rpartition(" ")
+        tried = [head]
+        if words and not last.isalnum() and not LOGARITHM.match(head):
+            tried += [last, words] if SYMBOL.fullmatch(last) else [last]
+        return next((self.known[_key(each)][0] for each in tried if _key(each) in self.known), None)
 
     def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
         found: Known = {}
@@ -411,6 +416,11 @@ class Reader:
         unknown = [head for head in heads if head and not self._quantity(head)[0]]
         hints = [
             f'"{shown(head)}" may be "{near}"' for head in unknown if (near := self.meant(head))
+        ]
+        hints += [
+            f'"{shown(head)}" is a logarithm, expected the values themselves'
+            for head in unknown
+            if (log := LOGARITHM.match(head)) and self._quantity(head[log.end() :])[0]
         ]
         return "; ".join([message, *hints, f"expected {self.example}"])
 

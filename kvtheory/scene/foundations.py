@@ -495,7 +495,8 @@ class GeneralizedMaxwell(_Relaxed):
     )  # fmt: skip
 
     deviation: ClassVar[float] = 0.0
-    """eps of fact F27, of a foundation from a relaxation function or a spectrum."""
+    """eps of fact F27, of a foundation from a relaxation function or a spectrum; 0 of arms as given, such as
+    those of a foundation that `replace` has changed."""
 
     @classmethod
     def from_relaxation(

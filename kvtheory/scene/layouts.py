@@ -97,14 +97,19 @@ def best_row(lines: Sequence[str], names: Names) -> tuple[int, Cells]:
         if line.strip() and not STARTS.match(line)
         for _, cells in _splits(COMMENT.sub("", line), lines[0])
     )
-    count, at, cells = max(rows, key=lambda row: row[:2], default=(0, 1, []))
+    count, at, cells = max(rows, key=lambda row: (*row[:2], len(row[2])), default=(0, 1, []))
     return (-at, cells) if count else (-1, [])
 
 
 def _splits(line: str, first: str) -> Iterator[tuple[str, Cells]]:
+    """Split a line in every way; one with other marks only at several spaces, if there are any."""
     named = SEPARATED.match(first)
     ways = {named[1]: _by(named[1])} if named else {**MARKS, **SPACES}
-    return ((mark, split(line)) for mark, split in ways.items())
+    marked = re.search("[\t;,]", line)
+    for mark, split in ways.items():
+        cells = split(line)
+        if not (marked and mark in SPACES and (mark != "  " or len(cells) == 1)):
+            yield mark, cells
 
 
 def tables(lines: Sequence[str], names: Names) -> tuple[list[Layout], int | None]:

@@ -32,9 +32,9 @@ SUFFIXES = {
     **{each.casefold(): each for each in ("Hz", "kHz", "mHz", "Pa", "kPa", "MPa", "GPa", "s", "ms", "min",
                                           "m", "mm", "um", "N", "kN", "C", "degC", "K")},
     "rads": "rad/s", "rad_s": "rad/s", "mm_s": "mm/s", "m_s": "m/s", "um_s": "um/s", "n_mm": "N/mm",
-    "n_m": "N/m", "sec": "s", "rad_per_s": "rad/s", "mm_per_s": "mm/s", "m_per_s": "m/s",
+    "n_m": "N/m", "sec": "s",
 }  # fmt: skip
-"""Units behind an underscore, as names in programs have them."""
+"""Units behind an underscore, as names in programs have them; "per" may stand between."""
 
 
 EXPONENT = re.compile(r"(?<=[0-9.])[dD](?=[-+]?[0-9]+$)")
@@ -73,11 +73,11 @@ def parts(head: str) -> tuple[str, str]:
 def suffixed(head: str) -> tuple[str, str]:
     """Return the name and the unit of a column whose unit stands behind an underscore.
 
-    >>> suffixed("freq_hz"), suffixed("V_mm_s"), suffixed("mu")
-    (('freq', 'Hz'), ('V', 'mm/s'), ('mu', ''))
+    >>> suffixed("freq_hz"), suffixed("F_x_N_per_mm"), suffixed("mu")
+    (('freq', 'Hz'), ('F_x', 'N/mm'), ('mu', ''))
     """
-    words = head.split("_")
-    for count in (3, 2, 1):
+    words = re.sub("_per_", "_", head, flags=re.IGNORECASE).split("_")
+    for count in (2, 1):
         if len(words) > count and (unit := SUFFIXES.get("_".join(words[-count:]).casefold())):
             return "_".join(words[:-count]), unit
     return head, ""
