@@ -29,6 +29,8 @@ VISIBLE = 3.0
 """Standard errors from which the two halves of a bin differ visibly."""
 LARGEST = 1e30
 """Largest number, and one over the smallest, that is accepted as a measured one: squares do not overflow."""
+SAME_CLIMATE = 2.0
+"""Range of temperatures in K up to which a scene without a law of them is that of all rows."""
 SAME_DRIVE = 0.05
 """Median difference of velocities from those of the scene, over the largest, up to which they agree."""
 
@@ -195,6 +197,10 @@ def _columns(
                 message = "is not that of the first row; a time series has one value"
                 table.require(name, values == values[0], message)
             conditions[key] = float(values[0]) if over_time else values
+        elif name == "foundation.temperature" and np.ptp(table.si(name, "K")[0]) <= SAME_CLIMATE:
+            notes.append(
+                "The temperature does not vary and is not used: the scene has no law of it."
+            )
         elif name == "foundation.temperature":
             message = "needs a scene with foundation.wlf or foundation.activation_energy"
             raise table.error(name, f"{message}, and foundation.reference_temperature")
