@@ -545,7 +545,7 @@ BAD = {
     "rest": ("V [mm/s],mu\n0,1\n0,2\n0,3\n", 'column "V [mm/s]": is zero throughout'),
     "few": ("V [mm/s],mu\n1,1\n2,2\n", "2 unknowns need more than 2 values"),
     "negative load": ("V [mm/s],mu,F_z [N/mm]\n1,1,-3\n2,1,3\n3,1,3\n", "line 2"),
-    "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,3\n", "needs a scene with foundation.wlf"),
+    "temperature": ("V [mm/s],mu,T [degC]\n1,1,3\n2,1,3\n3,1,9\n", "needs a scene with foundation.wlf"),
     "huge": (MU + "5,1e300\n", "1e+300 is not plausible"),
     "tiny": (MU + "5,1e-300\n", 'line 6, column "mu": 1e-300 is not plausible'),
     "foundation.stifness": (MU, 'did you mean "foundation.stiffness"'),

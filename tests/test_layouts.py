@@ -291,3 +291,10 @@ def test_units_behind_per_and_symbols_behind_words_are_read(tmp_path):
     found = records.read(written(tmp_path, text), kv.Scene())
     assert found.conditions["drive.velocity"] == pytest.approx([1e-3, 3e-3])
     assert found.measured["friction_force"] == pytest.approx([2e3, 4e3])
+    warm = {"V [mm/s]": [1, 3], "T [degC]": [23, 24], "mu": [0.1, 0.2]}
+    assert "temperature does not vary" in records.read(warm, kv.Scene()).notes[0]
+    pulled = records.read(
+        {"V [mm/s]": [1, 3], "F_z [N/mm]": [-5, -4], "mu": [0.1, 0.2]}, kv.Scene()
+    )
+    assert pulled.conditions["support.load"] == pytest.approx([5e3, 4e3])
+    assert pulled.notes == ("The normal force is below 0 throughout, and was read as pressing.",)

@@ -98,3 +98,10 @@ def test_a_part_without_a_shape_says_what_a_line_and_what_a_ball_expects(made, u
     words = f"expected {per_width}, of a line contact, or {total}, of a ball"
     with pytest.raises(kv.SceneError, match=re.escape(words)):
         made()
+
+
+def test_several_values_in_one_text_are_told_to_be_a_list():
+    with pytest.raises(ValueError, match=r'a list: \["20 degC", "60 degC"\]'):
+        to_si("20 degC, 60 degC", "K")
+    with pytest.raises(ValueError, match="decimal mark as a point"):
+        to_si("0,5 mm", "m")

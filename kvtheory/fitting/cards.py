@@ -148,8 +148,8 @@ def _ansys(lines: list[str]) -> Card:
     shear, bulk = (np.array(tables.get(name, [])) for name in ("SHEAR", "BULK"))
     if shear.size % 2 or bulk.size % 2:
         raise ValueError("TB,PRONY: expected pairs of a relative modulus and a time")
-    pairs = (each.reshape(-1, 2).tolist() for each in (shear, bulk))
-    return Card(elastic["EX"][0], False, nu[0], *pairs, law, tables.get("SHIFT", []))
+    pairs = [each.reshape(-1, 2).tolist() for each in (shear, bulk)]
+    return Card(elastic["EX"][0], False, nu[0], pairs[0], pairs[1], law, tables.get("SHIFT", []))
 
 
 def written(

@@ -38,7 +38,7 @@ MISSED = 2.0
 class Fitted(NamedTuple):
     """A series fitted to the master curve `data`, the dual bound on misfits, the shifts, remarks.
 
-    `reference` is the temperature (K) at which the series holds, if a law is known.
+    `reference` is the temperature (K) at which the series holds, NaN without a law.
     """
 
     measured: moduli.Measured
@@ -47,7 +47,7 @@ class Fitted(NamedTuple):
     least_misfit: float
     shifted: Shifted | None
     law: Law | None
-    reference: float | None
+    reference: float
     notes: tuple[str, ...]
 
 
@@ -108,7 +108,7 @@ def fit(
         notes.append(
             f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
         )
-    reference = None if law is None or master is None else master.reference
+    reference = math.nan if law is None or master is None else master.reference
     return Fitted(measured, thin, series, least, master, law, reference, tuple(notes))
 
 
@@ -120,7 +120,7 @@ def of_card(path: Path) -> tuple[Fitted, float]:
     data = Moduli(omega, series.values(omega, dynamic=True))
     measured = moduli.Measured(str(path), (moduli.Sweep(math.nan, data),), "E", tuple(notes))
     law = None if thermal is None else Law("wlf", thermal.constants)
-    reference = None if thermal is None else thermal.reference
+    reference = math.nan if thermal is None else thermal.reference
     return Fitted(measured, data, series, 0.0, None, law, reference, tuple(notes)), poisson_ratio
 
 

@@ -29,6 +29,8 @@ VISIBLE = 3.0
 """Standard errors from which the two halves of a bin differ visibly."""
 LARGEST = 1e30
 """Largest number, and one over the smallest, that is accepted as a measured one: squares do not overflow."""
+SAME_CLIMATE = 2.0
+"""Range of temperatures in K up to which a scene without a law of them is that of all rows."""
 SAME_DRIVE = 0.05
 """Median difference of velocities from those of the scene, over the largest, up to which they agree."""
 
@@ -140,11 +142,8 @@ def read(data: Any, scene: Scene) -> Data:
         if "." in head and head.partition(".")[0] in SECTIONS:
             raise ValueError(f'{table.source}: column "{head}": {nearest(parts(head)[0], keys)}')
     notes = [*table.notes, *(f"Column {head} is not used." for head in table.ignored)]
-    conditions, measured = _columns(table, scene)
+    conditions, measured = _columns(table, scene, notes)
     for name, values in measured.items():
-        if name == "normal_force" and values.max() < 0.0:
-            measured[name] = -values
-            notes.append("The normal force is below 0 throughout, and was read as pressing.")
         if not np.any(values):
             raise ValueError(f"{table.source}: {name} is zero throughout; there is nothing to fit")
     if len(measured.keys() & {"friction_coefficient", "friction_force"}) > 1:
@@ -172,8 +171,10 @@ def _against(table: Table, measured: Mapping[str, Array], V: Array) -> int:
     return against
 
 
-def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Array]]:
-    """Return the conditions, with one value over time, and what is measured."""
+def _columns(
+    table: Table, scene: Scene, notes: list[str]
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Return the conditions, with one value over time, and what is measured; add notes."""
     keys, over_time = scene.replaceable, "time" in table
     conditions: dict[str, Any] = {}
     measured: dict[str, Array] = {}
@@ -189,21 +190,35 @@ def _columns(table: Table, scene: Scene) -> tuple[dict[str, Any], dict[str, Arra
         if key in keys:
             spec = keys[key]
             values = table.number(name) if spec.unit == "1" else table.si(name, spec.dimension)[0]
+            values = _pressing(values, notes) if name == "load" else values
             good = np.array([spec.admits(float(value)) for value in values])
             table.require(name, good, f"is out of range; expected {spec.range}")
             if over_time:
                 message = "is not that of the first row; a time series has one value"
                 table.require(name, values == values[0], message)
             conditions[key] = float(values[0]) if over_time else values
+        elif name == "foundation.temperature" and np.ptp(table.si(name, "K")[0]) <= SAME_CLIMATE:
+            notes.append(
+                "The temperature does not vary and is not used: the scene has no law of it."
+            )
         elif name == "foundation.temperature":
             message = "needs a scene with foundation.wlf or foundation.activation_energy"
             raise table.error(name, f"{message}, and foundation.reference_temperature")
         elif name in FRICTION or name.removeprefix("-") in STATIC:
             shown = "normal_force" if over_time and name == "load" else name.removeprefix("-")
-            measured[shown] = _measured(table, name, scene)
+            values = _measured(table, name, scene)
+            measured[shown] = _pressing(values, notes) if shown == "normal_force" else values
         else:
             raise table.error(name, f"is not of this scene; {nearest(name, keys)}")
     return conditions, measured
+
+
+def _pressing(values: Array, notes: list[str]) -> Array:
+    """Return normal forces, which some instruments count upwards."""
+    if values.max() >= 0.0:
+        return values
+    notes.append("The normal force is below 0 throughout, and was read as pressing.")
+    return -values
 
 
 def _measured(table: Table, name: str, scene: Scene) -> Array:

@@ -5,6 +5,7 @@ is imported only for a unit that is not among the usual ones.
 """
 
 import difflib
+import json
 import math
 import re
 from decimal import Decimal
@@ -107,6 +108,8 @@ def to_si(value: Any, unit: str) -> float:
     if isinstance(value, str):
         if "," in value:
             message = "write the decimal mark as a point, and no thousands separator"
+            if all(re.search(r"\d\s*[^\W\d]", each) for each in value.split(",")):
+                message = "is not one value; several are a list: " + json.dumps(value.split(", "))
             raise ValueError(f"{message}; expected {expected(unit)}")
         text = value.strip()
         digits = _NUMBER.match(text)
