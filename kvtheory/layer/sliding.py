@@ -91,7 +91,7 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
         wrong = _unconverged(known, errors, velocity, rtol)
     if wrong:
         message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
-        raise ToleranceError(f"{message}; slower and faster, the limits of `asymptotes` hold")
+        raise ToleranceError(f"{message}; the limits that `asymptotes` has need no grid")
     grid = finest.grid
     return Sliding(
         **known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=finest.pressure(body)
