@@ -118,7 +118,7 @@ def fit(
     if not given or any(each is None for each in given):
         message = "missing; expected a file or arrays with velocity and friction coefficient"
         raise ValueError(f"`data`: {message}, or time and forces")
-    solve = STEADY[method_for(scene, None)]
+    solve = _steady_of(scene)
     if models == bool(list(free)):
         message = "expected the keys of free quantities, or `models`"
         raise ValueError(f"`free`: {message}, which frees all of the foundation")
@@ -150,7 +150,7 @@ def fit(
             if models and lacks_arms(each):
                 continue
             require(lacks_arms, each, "a time series")
-        law = STEADY[method_for(each, None)] if models else solve
+        law = _steady_of(each) if models else solve
         problem = friction.Problem(
             each, keys, sets, law, _followed, precise=not lacks_continuum(each)
         )
@@ -251,7 +251,7 @@ def _misfit(problem: Any, point: Any) -> float:
 
 def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     """Return the transient at times (s) within a tolerance, with the friction coefficient."""
-    if lacks_quadratic_on_arms(scene):
+    if lacks_quadratic_on_arms(scene) and lacks_continuum(scene):
         series = cheapest(scene, at=time, rtol=SIMULATED)
         found = {name: getattr(series, name) for name in SERIES_UNITS if hasattr(series, name)}
     else:
@@ -259,6 +259,13 @@ def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         found["friction_coefficient"] = found["friction_force"] / found["normal_force"]
     return found
+
+
+def _steady_of(scene: Scene) -> Any:
+    """Return what solves steady sliding; at a depth that changes it refuses when it is asked."""
+    if scene.depths:
+        return lambda each: STEADY[method_for(each, None)](each)
+    return STEADY[method_for(scene, None)]
 
 
 def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:

@@ -25,8 +25,8 @@ from kvtheory.models.continuum.solved_scene import (
     SERIES,
     beginning,
     certified,
-    method_of,
     last_change,
+    method_of,
     scaled_drive,
 )
 from kvtheory.models.continuum.solver import STEP_LIMIT
