@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from kvtheory.scene.capabilities import (
 )
 from kvtheory.scene.foundations import MEASURED
 from kvtheory.scene.mistakes import Problems, nearest, shown
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import Fixed, Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
@@ -137,7 +138,7 @@ def fit(
         for one in sets:
             if both := [key for key in keys if key in one.conditions]:
                 raise ValueError(f"`free` {both[0]}: a column of {one.source} gives it")
-        if few := _too_few(sets, keys):
+        if few := _untimed(each, sets) or _too_few(sets, keys):
             if models and found:
                 continue
             raise ValueError(few)
@@ -261,10 +262,18 @@ def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     return found
 
 
+def _untimed(scene: Scene, sets: Any) -> str:
+    """Return a message if the depth changes, and data have no time."""
+    without = [one.source for one in sets if one.time is None] if scene.depths else []
+    return f"{without[0]}: support.history needs a column of time" if without else ""
+
+
 def _steady_of(scene: Scene) -> Any:
-    """Return what solves steady sliding; at a depth that changes it refuses when it is asked."""
+    """Return what solves steady sliding; of a depth that changes, at the largest one."""
     if scene.depths:
-        return lambda each: STEADY[method_for(each, None)](each)
+        one = replace(scene, support=Fixed(float(scene.support.depth)))
+        solve = STEADY[method_for(one, None)]
+        return lambda each: solve(replace(each, support=Fixed(float(each.support.depth))))
     return STEADY[method_for(scene, None)]
 
 
