@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from kvtheory.scene.capabilities import (
 )
 from kvtheory.scene.foundations import MEASURED
 from kvtheory.scene.mistakes import Problems, nearest, shown
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import Fixed, Scene
 
 DIGITS = 6
 """Significant digits of a fitted number."""
@@ -118,7 +119,7 @@ def fit(
     if not given or any(each is None for each in given):
         message = "missing; expected a file or arrays with velocity and friction coefficient"
         raise ValueError(f"`data`: {message}, or time and forces")
-    solve = STEADY[method_for(scene, None)]
+    solve = _steady_of(scene)
     if models == bool(list(free)):
         message = "expected the keys of free quantities, or `models`"
         raise ValueError(f"`free`: {message}, which frees all of the foundation")
@@ -137,7 +138,7 @@ def fit(
         for one in sets:
             if both := [key for key in keys if key in one.conditions]:
                 raise ValueError(f"`free` {both[0]}: a column of {one.source} gives it")
-        if few := _too_few(sets, keys):
+        if few := _untimed(each, sets) or _too_few(sets, keys):
             if models and found:
                 continue
             raise ValueError(few)
@@ -150,7 +151,7 @@ def fit(
             if models and lacks_arms(each):
                 continue
             require(lacks_arms, each, "a time series")
-        law = STEADY[method_for(each, None)] if models else solve
+        law = _steady_of(each) if models else solve
         problem = friction.Problem(
             each, keys, sets, law, _followed, precise=not lacks_continuum(each)
         )
@@ -251,7 +252,7 @@ def _misfit(problem: Any, point: Any) -> float:
 
 def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     """Return the transient at times (s) within a tolerance, with the friction coefficient."""
-    if lacks_quadratic_on_arms(scene):
+    if lacks_quadratic_on_arms(scene) and lacks_continuum(scene):
         series = cheapest(scene, at=time, rtol=SIMULATED)
         found = {name: getattr(series, name) for name in SERIES_UNITS if hasattr(series, name)}
     else:
@@ -259,6 +260,21 @@ def _followed(scene: Scene, time: Any, rtol: float) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         found["friction_coefficient"] = found["friction_force"] / found["normal_force"]
     return found
+
+
+def _untimed(scene: Scene, sets: Any) -> str:
+    """Return a message if the depth changes, and data have no time."""
+    without = [one.source for one in sets if one.time is None] if scene.depths else []
+    return f"{without[0]}: support.history needs a column of time" if without else ""
+
+
+def _steady_of(scene: Scene) -> Any:
+    """Return what solves steady sliding; of a depth that changes, at the largest one."""
+    if scene.depths:
+        one = replace(scene, support=Fixed(float(scene.support.depth)))
+        solve = STEADY[method_for(one, None)]
+        return lambda each: solve(replace(each, support=Fixed(float(each.support.depth))))
+    return STEADY[method_for(scene, None)]
 
 
 def _keys(scene: Scene, free: Iterable[str]) -> tuple[str, ...]:

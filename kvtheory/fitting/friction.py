@@ -255,6 +255,9 @@ class Problem:
             if off.size and np.nanmax(off) - np.nanmin(off) > 1.0:  # else it does not depend on it
                 first = float(tried[np.nanargmin(np.abs(off))])
                 break
+        if scene.depths:  # it need not slide
+            time = np.hstack([each.time for each in self.data if each.time is not None])
+            return first, np.array([time[time > 0.0].min(), time.max()])
         a = np.mean(self.solve(scene.replace({**still, key: first})).half_length)
         speeds = [
             each.conditions["drive.velocity"]

@@ -257,7 +257,7 @@ def largest_speed(scene: Scene, time: Array) -> float:
 def _over_time(table: Table, data: Data, scene: Scene) -> Data:
     """Return a time series from t = 0 on; the drive must be that of the scene."""
     time, drive = plausible(table, "time", table.si("time", "s")[0]), scene.drive
-    if not largest_speed(scene, time) > 0.0:
+    if not (largest_speed(scene, time) > 0.0 or scene.depths):
         message = "`drive` of the scene is at rest throughout; friction needs sliding"
         raise ValueError(f"{table.source}: {message}")
     table.require("time", np.append(True, np.diff(time) > 0.0), "does not follow the time before")

@@ -141,11 +141,9 @@ def never_steady(scene: Scene) -> str:
         return why
     if not scene.start.at_rest:
         return NOT_AT_REST
-    if scene.depths:
-        return "the depth changes"
-    if not scene.held:
+    if scene.depths or not scene.held:
         resting = scene.drive.constant and scene.drive.final_velocity == 0.0
-        return "" if resting else "the depth changes"
+        return "" if resting and not scene.held else "the depth changes"
     if scene.drive.function is not None:
         return "the drive is a function"
     a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time

@@ -225,7 +225,11 @@ def _read(path: Path) -> dict[str, Any]:
     text = ""
     try:
         text = read_text(path)
-        return tomllib.loads(text)
+        tables = tomllib.loads(text)
+        for table in tables.values():  # a file is named relative to the scene file
+            if isinstance(table, dict) and isinstance(table.get("file"), str):
+                table["file"] = str(path.parent / table["file"])
+        return tables
     except UnicodeDecodeError:
         message = "it is not text in UTF-8, UTF-16 or Windows-1252"
     except RecursionError:
@@ -243,9 +247,6 @@ def _read(path: Path) -> dict[str, Any]:
 def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], Problems]:
     """Return the tables of a scene file, or of Table 1, with overrides, and the mistakes in the overrides."""
     tables: dict[str, Any] = _tables(Scene.table1()) if path is None else _read(Path(path))
-    for table in (tables.get("drive"), tables.get("support")):
-        if path is not None and isinstance(table, dict) and isinstance(table.get("file"), str):
-            table["file"] = str(Path(path).parent / table["file"])  # relative to the scene file
     problems = Problems()
     new: dict[tuple[str, str], str] = {}
     for text in overrides:

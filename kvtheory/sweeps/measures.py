@@ -25,8 +25,8 @@ from kvtheory.models.continuum.solved_scene import (
     SERIES,
     beginning,
     certified,
-    method_of,
     last_change,
+    method_of,
     scaled_drive,
 )
 from kvtheory.models.continuum.solver import STEP_LIMIT
@@ -129,7 +129,7 @@ class _Motions:
         """Solve the scenes one by one, and in one call of compiled kernels from where on that pays."""
         kernel, begun = kernel_of(self.plan.scene), thread_time()
         alone = any(column.measure in LANDMARKS for column in self.plan.columns)
-        alone = alone or self.plan.scene.depths
+        alone = alone or bool(self.plan.scene.depths)
         plain = not (self.plan.scene.foundation.arms or self.plan.texts or alone)
         together = plain and all(units.rigid_drive for _, units, _ in self.scenes.values())
         waiting = list(self.scenes)

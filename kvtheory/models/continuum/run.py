@@ -125,8 +125,9 @@ class Run(NamedTuple):
     """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
     Outside the kernels `given`, `method` and `now` hold one record, inside they are the record itself.
-    `depths` are those of the drive, see `BaseMotion`: of a fixed indenter whose depth changes. With a spring, `along` holds the motion along x for each step, and the `pieces` after those of the
-    drive are those by which the base slides under the indenter.
+    `depths` are those of the drive, see `BaseMotion`: of a fixed indenter whose depth changes. With a spring,
+    `along` holds the motion along x for each step, and the `pieces` after those of the drive are those by
+    which the base slides under the indenter.
     """
 
     given: Any

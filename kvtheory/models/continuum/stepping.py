@@ -82,7 +82,7 @@ def walk(run: Run, attempts: int) -> int:
 
 
 def _start_piece(run: Run) -> None:
-    """Start a piece of the drive: a jump of lambda, or of a given d', detaches strips, or peeling edges touch.
+    """Start a piece of the drive: a jump of lambda or a given d' detaches strips, or peeling edges touch.
 
     The step after a kink is limited by the time in which lambda changes, and by the time since the last
     kink: a steep ramp from rest, and ground that was left in a short pulse, make the forces change in so

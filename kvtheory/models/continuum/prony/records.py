@@ -120,11 +120,12 @@ class Run(NamedTuple):
     for arms, stages, coefficients or unknowns is read by its name before the indices: `stages.edges[j, k]`.
     Compiled, it is a structured array; interpreted, an object with an array for each name, see `named`.
 
-    `depths` are those of the drive, see `BaseMotion`. `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms, coefficients) those of
-    the arms, `state` (arms) is the present one. `from_modes` gives the stresses of free ground from the rates
-    of the dampers, s_i/(k_i T_i): k_i times the difference to u cancels on a stiff arm. The others are of the
-    step: `stages` and `arm_stages` (arms, stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and
-    `unknowns` of Broyden's method, and one `element` (arms).
+    `depths` are those of the drive, see `BaseMotion`. `polynomials` (steps, coefficients) are those of the
+    steps, `memory` (steps, arms, coefficients) those of the arms, `state` (arms) is the present one.
+    `from_modes` gives the stresses of free ground from the rates of the dampers, s_i/(k_i T_i): k_i times
+    the difference to u cancels on a stiff arm. The others are of the step: `stages` and `arm_stages` (arms,
+    stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and `unknowns` of Broyden's method, and
+    one `element` (arms).
     """
 
     given: Any
@@ -209,7 +210,8 @@ def begin(
         "state": count, "element": count, "unknowns": unknowns,
     }  # fmt: skip
     run = Run(
-        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, depths=np.array(drive.depths).reshape(-1, 2), clock=clock,
+        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, clock=clock,
+        depths=np.array(drive.depths).reshape(-1, 2),
         steps=blanks(1 if arrays else ROOM, STEP), segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64), method=method, arms=own_arms, modes=modes, stages=stages,
         to_modes=np.ascontiguousarray(element.to_modes),
