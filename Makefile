@@ -7,6 +7,8 @@ OUT ?= paper
 WORKERS ?= auto
 # Hundreds of modules are compiled once, and not in each of the many processes of the tests.
 export PYTHONDONTWRITEBYTECODE :=
+# The workers of the tests share the processors already: more threads of BLAS would only wait for each other.
+export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
 
