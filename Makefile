@@ -7,8 +7,6 @@ OUT ?= paper
 WORKERS ?= auto
 # Hundreds of modules are compiled once, and not in each of the many processes of the tests.
 export PYTHONDONTWRITEBYTECODE :=
-# The workers of the tests share the processors already: more threads of BLAS would only wait for each other.
-export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
 
@@ -25,6 +23,9 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -j 2 -b html docs docs/_build/html
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
+
+# The workers of the tests share the processors already: more threads of BLAS would only wait for each other.
+test test-lowest test-processors: export OPENBLAS_NUM_THREADS := 1
 
 # The figures and pages that the tests make are those of the site, as long as the code is the same.
 test: $(VENV)/.installed-test
