@@ -208,7 +208,7 @@ def _sets(cls: Any) -> Iterator[list[str]]:
     specs, first = quantities(cls), _always(cls)
     yield first
     for name in first:
-        if other := specs[name].instead:
+        if (other := specs[name].instead) in specs:
             beside = other, *specs[other].beside
             yield [*beside, *(each for each in first if each != name)]
             if other not in specs[name].excludes:
