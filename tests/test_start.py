@@ -372,7 +372,7 @@ def test_a_small_oscillation_returns_the_dynamic_modulus(law):
 @pytest.mark.parametrize(
     "shape", [kv.Sphere(0.01), kv.Circle(0.01), kv.Wedge(0.1)], ids=lambda s: s.shape
 )
-def test_every_shape_is_pressed_by_elements_as_the_closed_form_says(shape):
+def test_every_shape_held_after_an_indentation_presses_as_at_a_constant_depth(shape):
     scene = kv.Scene(
         shape, support=kv.Fixed(history=CYCLE[:3]), drive=kv.Drive(0.0), run=kv.Run(0.25)
     )
