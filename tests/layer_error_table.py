@@ -13,9 +13,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 import kvtheory as kv
-from kvtheory.layer import Body, Support, load_at_rest
+from kvtheory.layer.body import Body, Support
 from kvtheory.layer.model_error import TABLE, half_width
 from kvtheory.layer.sliding import levels
+from kvtheory.theory.contact_at_rest import load_at_rest
 
 THICKNESS = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0]
 """Over the half length at rest; the last one of a ball is a half-space."""

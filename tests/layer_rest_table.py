@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 from scipy.optimize import brentq
 
-from kvtheory.layer import Body, Support
+from kvtheory.layer.body import Body, Support
 from kvtheory.layer.sliding import levels
 from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.theory.contact_at_rest import HOME, log_thin, poisson_ratio

@@ -8,12 +8,14 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.layer import Body, Support, compliance, load_at_rest, memory, slide, slide_at
-from kvtheory.layer.sliding import errors_of, first_grid, levels
+from kvtheory.layer import compliance, memory
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.sliding import errors_of, first_grid, levels, slide, slide_at
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Sphere, Wedge
 from kvtheory.theory import contact_at_rest
+from kvtheory.theory.contact_at_rest import load_at_rest
 
 R = 0.01
 ARM = [(4e6, 0.02)]

@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import kvtheory as kv
-from kvtheory.layer import load_at_rest
 from kvtheory.layer.model_error import half_width, relative_error, spectrum
+from kvtheory.theory.contact_at_rest import load_at_rest
 from tests.layer_error_table import (
     DEPTH,
     HALF_LENGTH,

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.layer import Body, Support, slide
 from kvtheory.layer.answer import RTOL
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.sliding import slide
 from tests.commands import printed, run
 
 LAYER = {"modulus": "1 MPa", "thickness": "1 mm", "poisson_ratio": 0.49}

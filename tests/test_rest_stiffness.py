@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.layer import Body, Support, slide
+from kvtheory.layer.body import Body, Support
+from kvtheory.layer.sliding import slide
 from kvtheory.scene.layer import layer_stiffness
 from kvtheory.theory.contact_at_rest import (
     RELATIVE_ERROR,

@@ -74,7 +74,6 @@ def asymptotes(
     """
     scene = scene_of(scene).replace(over or {})
     method = method_for(scene, None)
-    from kvtheory.layer.limits import limits
     from kvtheory.models.steady import maxima, regimes  # SciPy takes a while to import
 
     with double_precision(scene):
@@ -82,8 +81,11 @@ def asymptotes(
         report = regimes.report(scene, tolerance, found, method)
         notes = [*report.notes, *_extrapolated(scene, report, method), beyond(scene.foundation)]
         if scene.foundation.modulus is not None:  # else no state need be solved again
+            from kvtheory.layer.limits import limits
+
             notes.append(layer_note(scene, METHODS[method](scene).half_length))
-        return replace(report, layer=limits(scene), notes=tuple(filter(None, notes)))
+            report = replace(report, layer=limits(scene))
+        return replace(report, notes=tuple(filter(None, notes)))
 
 
 def _extrapolated(scene: Scene, report: AsymptoteReport, method: str) -> list[str]:
