@@ -8,8 +8,8 @@ the column and the line.
 import csv
 import math
 import re
-from collections.abc import Callable, Container, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cached_property
@@ -498,9 +498,6 @@ HISTORY = Reader(
     lambda found: "time" in found and len(found) > 1,
     'a first line such as "t [ms],V [mm/s]" or "t [ms],X [mm]", and then numbers',
 )
-
-
-DEPTH_KEY = "support.file"
 DEPTHS = Reader(
     {name: SPELLINGS[name] for name in ("time", "depth", "-depth")},
     lambda found: "time" in found and len(found) > 1,
@@ -508,18 +505,24 @@ DEPTHS = Reader(
 )
 
 
+@contextmanager
+def _of_key(key: str, path: Path) -> Iterator[None]:
+    """Report what is wrong with a file under the key of a scene that names it."""
+    try:
+        yield
+    except OSError as error:
+        raise mistake(key, str(path), f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise mistake(key, str(path), str(error).removeprefix(f"{path}: ")) from None
+
+
 def depths_from(path: Path) -> tuple[tuple[float, float], ...]:
     """Return the points (t, depth) in SI of a table of time and depth, or height, or raise SceneError."""
-    try:
+    with _of_key("support.file", path):
         table = DEPTHS.read(path)
         name = "depth" if "depth" in table else "-depth"
         depth = table.si(name, "m")[0] * (1.0 if name == "depth" else -1.0)
-        points = zip(table.si("time", "s")[0].tolist(), depth.tolist(), strict=True)
-    except OSError as error:
-        raise mistake(DEPTH_KEY, str(path), f"cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise mistake(DEPTH_KEY, str(path), str(error).removeprefix(f"{path}: ")) from None
-    return tuple(points)
+        return tuple(zip(table.si("time", "s")[0].tolist(), depth.tolist(), strict=True))
 
 
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
@@ -527,7 +530,7 @@ def history_from(path: Path) -> tuple[tuple[float, float], ...]:
 
     Of a table of time and position, V is the derivative of the parabola through three neighbouring rows.
     """
-    try:
+    with _of_key(KEY, path):
         table = HISTORY.read(path)
         t = table.si("time", "s")[0]
         if "velocity" in table:
@@ -538,9 +541,5 @@ def history_from(path: Path) -> tuple[tuple[float, float], ...]:
             if t.size < 3:
                 raise table.error("position", f"{t.size} rows; at least 3 tell a velocity")
             V = np.gradient(table.si("position", "m")[0], t, edge_order=2)
-    except OSError as error:
-        raise mistake(KEY, str(path), f"cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise mistake(KEY, str(path), str(error).removeprefix(f"{path}: ")) from None
     points = zip(t.tolist(), V.tolist(), strict=True)
     return history_points(list(points), f"{KEY} ({path.name})")

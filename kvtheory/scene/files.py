@@ -287,10 +287,9 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
     """Return the keys of a table that a new one replaces."""
     if section == "foundation" and name == "wlf":
         return ["activation_energy"]
-    if section == "foundation" and name in (specs := quantities(Foundation)):
-        return list(specs[name].excludes)
-    if section == "start" and name in (starts := quantities(Start)):
-        return list(starts[name].excludes)
+    if section in ("foundation", "start"):
+        specs = quantities(Foundation if section == "foundation" else Start)
+        return list(specs[name].excludes) if name in specs else []
     if section == "support" and name in DEPTHS and name not in table:
         return [key for key in DEPTHS if key in table]
     if section == "drive" and name in DRIVES and name not in table:
