@@ -171,9 +171,6 @@ def _contact(scene: Scene, stiffness: float) -> tuple[float, float]:
 
 def _landing_speed(scene: Scene) -> float:
     """Return the speed at which the indenter lands after its start."""
-    start, support = scene.start, scene.support
-    if start.gap is None:
+    if scene.start.gap is None:
         raise ValueError("a drop needs a `speed`, or a scene with start.gap")
-    static = StaticState.of(scene).depth
-    pull = support.weight + support.spring * (static + 0.5 * start.gap)
-    return math.sqrt((start.depth_rate or 0.0) ** 2 + 2.0 * start.gap * pull / support.mass)
+    return scene.start.landing_speed(scene.support, StaticState.of(scene).depth)

@@ -9,6 +9,9 @@ from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 from kvtheory.scene.arguments import checked, instant, instants, positions
 
+STOPPED = 0.01
+"""Share of the sliding velocity at the start below which a coasting indenter counts as stopped."""
+
 
 class Event(NamedTuple):
     """What happened to the contact, and when (in s)."""

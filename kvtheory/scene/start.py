@@ -68,6 +68,12 @@ class Start(Part):
             depth if self.gap is None else -self.gap, self.depth_rate or 0.0, velocity - sliding
         )
 
+    def landing_speed(self, support: Any, static_depth: float) -> float:
+        """Return the speed (m/s) at which an indenter of this mass, weight and spring lands from its gap."""
+        gap, rate = self.gap or 0.0, self.depth_rate or 0.0
+        pull = support.weight + support.spring * (static_depth + 0.5 * gap)
+        return math.sqrt(rate * rate + 2.0 * gap * pull / support.mass)
+
 
 REST = Start()
 """At rest at the static depth."""

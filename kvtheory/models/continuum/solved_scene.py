@@ -28,6 +28,7 @@ from kvtheory.records import structured
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
+from kvtheory.results.transient import STOPPED
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.start import REST, Start
@@ -40,8 +41,6 @@ AFTER_END = 1e-12
 TO_A_CHANGE = 0.5 * AFTER_END
 """Share of the run by which it is extended if the drive changes so close to its end that both count as one
 time: the solver then includes the change."""
-STOPPED = 0.01
-"""Share of the sliding velocity at the start below which a coasting indenter counts as stopped."""
 STEPS_A_PIECE = 100
 """Upper bound on the steps for one piece of a drive; a stop takes 25."""
 

@@ -174,13 +174,6 @@ class Model:
         return (-math.acos(max(-sags / swing, -1.0)) - phase) % (2.0 * math.pi) / turns
 
     @property
-    def landing_speed(self) -> float:
-        """The speed (m/s) at which it lands then."""
-        c, gap, rate = self.constants, self.start.gap or 0.0, self.start.depth_rate or 0.0
-        pull = c.weight + c.spring * (c.depth + 0.5 * gap)
-        return math.sqrt(rate * rate + 2.0 * gap * pull / c.mass)
-
-    @property
     def steepest(self) -> float:
         """The largest slope of the indenter at the edges of the contact at rest."""
         edges = np.array(span(self.constants.surface, self.at_rest.depth))

@@ -26,6 +26,7 @@ from kvtheory.results import (
 )
 from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import scales
+from kvtheory.results.transient import STOPPED
 from kvtheory.scene.base_motion import POWERS, BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.theory.laws import Array
@@ -83,8 +84,6 @@ masses, and a difference vanishes twice in a swing, at times for both coarse run
 instant alone, one in a thousand was off by more than claimed, on springs in two scenes of five."""
 RECENT = 0.5
 """Share of the time since the last jump of the drive over which these instants lie."""
-STOPPED = 0.01
-"""Share of the sliding velocity at the start below which a coasting indenter counts as stopped."""
 ROUNDING = 1e-12
 """Least error, due to rounding, where a method is exact."""
 SHIFTS = (0.0, 0.5)
@@ -330,7 +329,8 @@ def _landmarks(model: Model, path: BaseMotion, rows: Rows) -> dict[str, Any]:
     landing = model.landing(path)
     up = np.flatnonzero(flies & (time > landing) & (np.cumsum(~flies & (time > landing)) > 0))
     if model.start.gap is not None and up.size:
-        found["restitution"] = float(-rows["depth_rate"][up[0]] / model.landing_speed)
+        down = model.start.landing_speed(model.constants, model.constants.depth)
+        found["restitution"] = float(-rows["depth_rate"][up[0]] / down)
         found["contact_time"] = float(0.5 * (time[up[0] - 1] + time[up[0]]) - landing)
     slides = rows["sliding_velocity"]
     late = np.flatnonzero(np.abs(slides) > STOPPED * abs(slides[0]))
