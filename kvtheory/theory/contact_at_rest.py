@@ -96,12 +96,18 @@ def load_at_rest(
     >>> load_at_rest(1e-4, 0.01, 1e6, np.array([1e-3, np.inf]), 0.3, per_width=False).round(4)
     array([0.4278, 0.1465])
     """
+    _require_depth(depth, radius, thickness, per_width=per_width)
     a = np.sqrt(2.0 * radius * np.asarray(depth, dtype=float))
     h, nu = np.broadcast_arrays(thickness / a, poisson_ratio)
-    most = math.exp(splines()["log_thickness"][-1])
-    if per_width and np.any(h > most):
-        raise ValueError(f"expected at most {most:.3g} half lengths, {most * np.min(a):.3g} m")
     return _loads(depth, a, modulus, h, nu, per_width=per_width)
+
+
+def _require_depth(depth: Any, radius: Any, thickness: Any, *, per_width: bool) -> None:
+    """Raise ValueError for a line contact on so thick a layer that its depth is not known."""
+    a = np.sqrt(2.0 * radius * np.asarray(depth, dtype=float))
+    most = math.exp(splines()["log_thickness"][-1])
+    if per_width and np.any(thickness / a > most):
+        raise ValueError(f"expected at most {most:.3g} half lengths, {most * np.min(a):.3g} m")
 
 
 def _loads(
@@ -148,7 +154,7 @@ def depth_at_rest(
         off = excess(x)
         slope = np.where(active, (last - off) / np.where(active, step, 1.0), slope)
     depth = np.exp(x)
-    load_at_rest(depth, R, E, H, nu, per_width=per_width)  # or it raises
+    _require_depth(depth, R, H, per_width=per_width)
     return depth
 
 
@@ -159,10 +165,10 @@ def energy_at_rest(depth: Any, *layer: Any, per_width: bool) -> Array:
     >>> round(float(energy_at_rest(1e-4, 0.01, 1e6, np.inf, 0.3, per_width=False) / W / 1e-4), 6)
     0.4
     """
-    load_at_rest(depth, *layer, per_width=per_width)  # or it raises
     root = 0.5 * (1.0 + NODES)  # depth = root^2 of the whole
     rows = np.broadcast_arrays(depth, *layer)
     most, R, E, H, nu = (np.asarray(each, dtype=float)[..., None] for each in rows)
+    _require_depth(most, R, H, per_width=per_width)
     shallow = most * root * root
     a = np.sqrt(2.0 * R * shallow)
     loads = _loads(shallow, a, E, H / a, nu, per_width=per_width)
