@@ -17,6 +17,11 @@ SERIES_SUFFIXES = (".csv", ".nc")
 PICTURES = (".png", ".svg", ".pdf")
 
 
+def above(module: str) -> Any:
+    """Return a module such as ``plots``, which imports that of a method, for the method that needs it."""
+    return import_module(f"kvtheory.{module}")
+
+
 def save_csv(path: Path, columns: Columns) -> None:
     """Write columns as CSV (RFC 4180) with units in the header; a value that does not exist is empty."""
 

@@ -10,7 +10,7 @@ import numpy as np
 from kvtheory.api._edge import double_precision, one_scene
 from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
-from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit
+from kvtheory.results.fits import FoundationFit
 from kvtheory.scene.arguments import a_scene, checked, choice, count, flag, measured, number
 from kvtheory.scene.foundations import (
     MEASURED_RANGES,
@@ -21,6 +21,7 @@ from kvtheory.scene.foundations import (
 )
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
+from kvtheory.scene.units import ZERO_CELSIUS
 
 LAYER = quantities(GeneralizedMaxwell)
 DIGITS = 6

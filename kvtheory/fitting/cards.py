@@ -17,7 +17,7 @@ import numpy as np
 from kvtheory.fitting.spectrum import Series
 from kvtheory.scene.mistakes import shown
 from kvtheory.scene.tables import read_text
-from kvtheory.scene.units import to_si
+from kvtheory.scene.units import ZERO_CELSIUS, to_si
 
 SUFFIXES = ".inp", ".mac"
 UNITS = re.compile(
@@ -27,7 +27,6 @@ UNITS = re.compile(
 EXPECTED = 'expected a comment such as "units: MPa, s'
 PER_LINE = 3
 """Pairs in a line of TBDATA."""
-ZERO_CELSIUS = 273.15
 
 
 class Card(NamedTuple):

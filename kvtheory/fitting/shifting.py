@@ -21,7 +21,8 @@ from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli, grid
 from kvtheory.scene.columns import Reader
-from kvtheory.scene.foundations import GAS_CONSTANT
+from kvtheory.scene.foundations import GAS_CONSTANT, log_shift
+from kvtheory.scene.units import ZERO_CELSIUS
 
 STEPS = 200
 """Shifts at which the interpolated sweeps are compared for the first guess."""
@@ -71,10 +72,7 @@ class Law(NamedTuple):
 
     def log_shift(self, T: Any, reference: float) -> Any:
         """Return log10 a_T."""
-        if self.name == "wlf":
-            return -self.constants[0] * (T - reference) / (self.constants[1] + T - reference)
-        slope = self.constants[0] / GAS_CONSTANT / math.log(10.0)
-        return slope * (1.0 / T - 1.0 / reference)
+        return log_shift(T, reference, *self.constants)
 
     @property
     def text(self) -> str:
@@ -118,7 +116,7 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
         raise table.error(
-            "temperature", f"{T[twice[0]] - 273.15:g} degC occurs twice", int(order[twice[0]])
+            "temperature", f"{T[twice[0]] - ZERO_CELSIUS:g} degC occurs twice", int(order[twice[0]])
         )
     if np.abs(log_shift).min() > 1e-6:
         message = "holds no temperature with a_T = 1, the reference"
@@ -154,7 +152,7 @@ def shifted(
         far = np.abs(factors[0][place] - T)
         if far.max() > SAME:
             worst = int(far.argmax())
-            message = f"the file of shift factors has none for {T[worst] - 273.15:.4g} degC"
+            message = f"the file of shift factors has none for {T[worst] - ZERO_CELSIUS:.4g} degC"
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         shifts = factors[1][place]

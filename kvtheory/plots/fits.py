@@ -10,8 +10,9 @@ from matplotlib import colormaps
 from kvtheory.plots import style
 from kvtheory.plots.style import BLACK, BLUE, LABELS, RED, Picture
 from kvtheory.results import SHOWN_UNITS
-from kvtheory.results.fits import ZERO_CELSIUS, FoundationFit, FrictionFit
+from kvtheory.results.fits import FoundationFit, FrictionFit
 from kvtheory.results.presented import with_unit
+from kvtheory.scene.units import ZERO_CELSIUS
 
 WIDTH, HEIGHT = 7.2, 2.6
 """Of a picture with two panels in a row, and of each row, in inches."""

@@ -7,13 +7,13 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from kvtheory.export import Columns
-from kvtheory.results.presented import Exported, Recorded, above, aligned
+from kvtheory.export import Columns, above
+from kvtheory.results.presented import Exported, Recorded, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene
+from kvtheory.scene.units import ZERO_CELSIUS
 
-ZERO_CELSIUS = 273.15
 WIDTH = 100
 
 

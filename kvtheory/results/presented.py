@@ -5,20 +5,22 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from html import escape
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from kvtheory.export import SERIES_SUFFIXES, Columns, check_path, dataset, replace_file, save_csv
+from kvtheory.export import (
+    SERIES_SUFFIXES,
+    Columns,
+    above,
+    check_path,
+    dataset,
+    replace_file,
+    save_csv,
+)
 from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS
-
-
-def above(module: str) -> Any:
-    """Return a module such as ``plots``, which imports the results, for a method that needs it."""
-    return import_module(f"kvtheory.{module}")
 
 
 class Recorded:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.export import xarray
+from kvtheory.export import above, xarray
 from kvtheory.results.errors import Certificate
-from kvtheory.results.presented import Recorded, above, record
+from kvtheory.results.presented import Recorded, record
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 

@@ -11,11 +11,11 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass, fields
-from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
 
+from kvtheory.export import above
 from kvtheory.scene.layer import REST, THIN_WAY, WAYS, layer_stiffness, rest_stiffness
 from kvtheory.scene.mistakes import Problems, SceneError, mistake, nearest
 from kvtheory.scene.quantities import (
@@ -347,10 +347,8 @@ class _Relaxed(Part):
 
     def _law(self, T: Any) -> Any:
         """Return log10 a_T of the law alone."""
-        T_ref = self.reference_temperature
-        if self.wlf is None:
-            return self.activation_energy / GAS_CONSTANT * (T_ref - T) / T / T_ref / math.log(10.0)
-        return -self.wlf.c_1 * (T - T_ref) / (self.wlf.c_2 + T - T_ref)
+        own = (self.activation_energy,) if self.wlf is None else (self.wlf.c_1, self.wlf.c_2)
+        return log_shift(T, self.reference_temperature, *own)
 
     def _shift(self, times: Iterable[tuple[Any, str]]) -> None:
         """Multiply every time by a_T, and keep the given value in `Derived.given`."""
@@ -393,6 +391,14 @@ class _Relaxed(Part):
 
 
 REFERENCE = quantities(_Relaxed)["reference_temperature"]
+
+
+def log_shift(T: Any, reference: Any, *constants: Any) -> Any:
+    """Return log10 a_T by Arrhenius' law, of E_a (J/mol), or by WLF's, of C_1 and C_2 (K); T in K."""
+    if len(constants) == 1:
+        return constants[0] / GAS_CONSTANT * (reference - T) / T / reference / math.log(10.0)
+    c_1, c_2 = constants
+    return -c_1 * (T - reference) / (c_2 + T - reference)
 
 
 def _is_pair(value: Any) -> bool:
@@ -524,8 +530,7 @@ class GeneralizedMaxwell(_Relaxed):
             if stiffness is None
             else convert(stiffness, quantities(cls)["stiffness"])
         )
-        fit = import_module("kvtheory.fitting.relaxation")  # a higher room
-        return cls._of(K, *fit.arms_of(G, K, _share(rtol), _range(over)))
+        return cls._of(K, *above("fitting.relaxation").arms_of(G, K, _share(rtol), _range(over)))
 
     @classmethod
     def from_spectrum(
@@ -542,8 +547,8 @@ class GeneralizedMaxwell(_Relaxed):
         True
         """
         K = convert(stiffness, quantities(cls)["stiffness"])
-        fit = import_module("kvtheory.fitting.relaxation")
-        return cls._of(K, *fit.arms_of_spectrum(H, _share(rtol), _range(over)))
+        found = above("fitting.relaxation").arms_of_spectrum(H, _share(rtol), _range(over))
+        return cls._of(K, *found)
 
     @classmethod
     def _of(cls, K: float, series: Any, deviation: float) -> "GeneralizedMaxwell":

@@ -80,6 +80,8 @@ USUAL = {
 """Usual ways to write each unit, and their powers of ten: importing pint takes longer than a computation."""
 
 _FAHRENHEIT = Fraction(5, 9), Fraction(45967, 180)
+ZERO_CELSIUS = 273.15
+"""In K."""
 _CELSIUS = Fraction(1), Fraction(27315, 100)
 TEMPERATURES = (
     dict.fromkeys(("K", "kelvin"), (Fraction(1), Fraction(0)))
