@@ -100,7 +100,7 @@ def _fixed(proof: Proof) -> None:
     proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
     proof.sign(sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "simple zero: the edge is analytic")
     proof.equal(sp.Subs(PARABOLA, xi, -1), 2 * l, "pressure at the leading edge")
-    proof.recall("F1", w, "F1", phi)
+    proof.recall("F1", w, phi)
     moved = (xi, -1 + recedes, q + _shift * eps)
     slope = sp.Derivative(xi**2 + steeper, xi) / 2
     for total, weight, scale, coefficient, value, name in (

@@ -58,7 +58,7 @@ def _relaxation(proof: Proof) -> None:
     u_te = delta - h(x_te)
     surface = u_i.subs(t, t_0 + (x - x_te) / V)
     proof.define(u_i.subs(t, t_0), u_te, "where it leaves the contact")
-    proof.recall("eq29", surface, "eq29", C)
+    proof.recall("eq29", surface, C)
     integrand = C / V * (V * sp.Derivative(surface, x)) ** 2
     behind = sp.Integral(integrand, (x, x_te, sp.oo))
     proof.integral(behind, integrand, (x, x_te, sp.oo),
@@ -94,7 +94,7 @@ def _parabola(proof: Proof) -> None:
     """
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.recall("eq28", delta, "scaling", "F1", phi, "F1", F)
+    proof.recall("eq28", delta, "scaling", "F1", phi, F)
     proof.integral(F_viscous, dissipation, (x, -a, q * a), "inside the contact",
                    value=K * l_r * a**3 * (1 + q**3) / (3 * R**2))  # fmt: skip
     proof.equal(F - F_viscous, K * (delta - (q * a) ** 2 / (2 * R)) ** 2 / 2,

@@ -63,7 +63,7 @@ def _master_curve(proof: Proof) -> None:
     )
     proof.recall("scaling", "F1", w, "F1")
     proof.define(V, l * a / tau, "Eq. (29)")
-    proof.recall("F1", W, "F1", mu, "eq28", delta)
+    proof.recall("F1", W, mu, "eq28", delta)
     proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
     proof.equal(X, DRIVE_CUBED, "scaled velocity")
     proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit")

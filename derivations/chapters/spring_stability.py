@@ -218,7 +218,7 @@ def _critical(proof: Proof) -> None:
     proof.define(hurwitz, HURWITZ)
     factors = T_z**2 * (S_x - high) * (S_x - low)
     proof.equal(hurwitz, factors, "it vanishes at the stiffnesses of both frequencies")
-    proof.recall("F22-onset", S_x, "F22-onset", (REAL_PART, -ONSET))
+    proof.recall("F22-onset", S_x, (REAL_PART, -ONSET))
     zeros = -(T_z**2) * (Omega - Omega_plus) * (Omega - Omega_minus)
     proof.equal(REAL_PART, zeros, "as does the real part of the quartic of F22-onset")
     proof.done(hurwitz, factors)

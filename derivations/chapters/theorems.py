@@ -102,7 +102,7 @@ def _cancellation(proof: Proof) -> None:
     proof.leading_order(q**-2, 4 * l**2, q, 0, "which grows without bound", eps=1 / l)
     proof.equal(q, 1 / (l + root), "the same number without a subtraction")
     proof.equal((1 - q) * (1 + q), 2 * q * l, "which replaces the difference $1 - q$")
-    proof.recall("F1", w, "F1", phi)
+    proof.recall("F1", w, phi)
     proof.equal(phi, STABLE_FRICTION_FORCE, "all terms positive")
     proof.recall("F1")
     proof.equal(m, STABLE_FRICTION_COEFFICIENT, "all terms positive")

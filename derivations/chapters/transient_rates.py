@@ -125,7 +125,7 @@ def _rates(proof: Proof) -> None:
 def steady_sliding(proof: Proof) -> None:
     """Let A, B and lambda be those of steady sliding, by the half length and q."""
     proof.define(l, NUMBER)
-    proof.recall("F12-steady", lam, "F12-steady", *_IN_Q)
+    proof.recall("F12-steady", lam, *_IN_Q)
 
 
 @result("F12-boundary", uses=("F1",))

@@ -297,7 +297,7 @@ def _kelvin_voigt(proof: Proof) -> None:
     proof.recall("scaling")
     proof.define(q, (c - a) / a, r"$x_{\mathrm{TE}}/a$")
     proof.equal(l, lam * c / a, r"$l_{\mathrm{r}}/a$")
-    proof.recall("F1", scaled_load, "F1", scaled_friction)
+    proof.recall("F1", scaled_load, scaled_friction)
     proof.equal(voigt_load * c**3 / (a**3 / 2), scaled_load, r"$W/(K \delta a)$ of F1")
     proof.equal(voigt_work * c**4 / (a**4 / 2), scaled_friction, r"$F R/(K \delta a^2)$ of F1")
 

@@ -117,7 +117,7 @@ def _fast(proof: Proof) -> None:
     under any load: vertical lift does not reduce the friction coefficient of a sharp tip, and Eq. (50)
     requires a rounded one.
     """
-    proof.recall("wedge-peeled", w_n, "wedge-peeled", phi_n)
+    proof.recall("wedge-peeled", w_n, phi_n)
     proof.define(m_n, phi_n / w_n, r"$\mu/c$")
     proof.equal(m_n, sp.S.One, r"$\mu = c$")
 
