@@ -161,7 +161,7 @@ def test_the_motion_the_simulator_and_stability_take_this_stiffness():
 @pytest.mark.parametrize("support", ["dead-weight", "fixed"])
 def test_a_layer_that_cannot_be_is_one_message(given, message, support):
     keys = {"modulus": "3 MPa", "thickness": "2 mm", "poisson_ratio": "0.4", **given}
-    words = [word for key, value in keys.items() for word in ("--set", f"foundation.{key}={value}")]
+    words = [f"--set=foundation.{key}={value}" for key, value in keys.items()]
     told = run("steady", "--set", f"support.kind={support}", *words, status=2).output
     assert message in told
     assert told.count("error") == 1
@@ -240,13 +240,8 @@ def test_the_limit_of_a_ball_on_a_half_space_is_in_closed_form():
 
 
 def test_limits_of_the_layer_that_do_not_exist():
-    keys = {
-        "modulus": "1 MPa",
-        "thickness": "1 mm",
-        "poisson_ratio": "0.4",
-        "retardation_time": "20 ms",
-    }
-    words = [word for key, value in keys.items() for word in ("--set", f"foundation.{key}={value}")]
+    keys = {**RUBBER, "thickness": "1 mm", "poisson_ratio": "0.4"}
+    words = [f"--set=foundation.{key}={value}" for key, value in keys.items()]
     found = printed("asymptotes", *words)["layer"]
     assert found == {"low": 2.0, "high": None, "critical_velocity": None}
     assert "on the layer itself, mu -> 2 s/m V at low velocity" in run("asymptotes", *words).stdout
