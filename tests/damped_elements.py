@@ -19,32 +19,42 @@ TURNS, SETTLED = 12, 1e-11
 class Elements:
     """Elements at X, their u and s_i, and the law over a step."""
 
-    def __init__(self, arms, damper, X):
+    def __init__(self, arms, damper, X, depth=1.0):
         self.k, self.T = np.array(arms, dtype=float).reshape(-1, 2).T
         self.c, self.X, self.dx = damper, X, X[1] - X[0]
-        self.u, self.s = np.maximum(1.0 - X * X, 0.0), np.zeros((self.k.size, X.size))
+        self.u, self.s = np.maximum(depth - X * X, 0.0), np.zeros((self.k.size, X.size))
 
     def law(self, h):
         """Prepare steps of length h."""
-        free = np.zeros((self.k.size + 1, self.k.size + 1))
-        free[0] = -1.0 / self.c
-        free[1:] = self.k[:, None] * free[0]
-        free[1:, 1:] -= np.diag(1.0 / self.T)
+        n, rates = self.k.size, np.diag(1.0 / self.T)
+        self.free = np.zeros((n + 1, n + 1))
+        if self.c:  # u' = -(u + sum s)/c
+            self.free[0] = -1.0 / self.c
+            self.free[1:] = self.k[:, None] * self.free[0]
+            self.free[1:, 1:] -= rates
+            self.free = expm(self.free * h)
+        else:  # u = -sum s
+            own = expm(-np.linalg.solve(np.eye(n) + self.k[:, None], rates) * h)
+            self.free[:, 1:] = np.vstack([-own.sum(axis=0), own])
         z = h / self.T
-        self.h, self.free, self.fall = h, expm(free * h), np.exp(-z)[:, None]
+        self.h, self.fall = h, np.exp(-z)[:, None]
         self.mean = -np.expm1(-z) / z
         self.stiffness = 0.5 + self.c / h + self.k @ ((1.0 - self.mean) / z)
         """Of the mean pressure over a step."""
 
+    def moved(self, g):
+        """Return u, s_i and how deep an element is pressed after a step that ends with overlaps g."""
+        free = self.free @ np.vstack([self.u, self.s])
+        pressed = g > free[0]
+        s = self.fall * self.s + (self.k * self.mean)[:, None] * (g - self.u)
+        return np.where(pressed, g, free[0]), np.where(pressed, s, free[1:]), g - free[0]
+
     def step(self, d, Y):
         """Return u, s_i and mean pressures after a step to d and Y, which are pressed, and how deep."""
         g = d - (self.X + Y) ** 2
-        free = self.free @ np.vstack([self.u, self.s])
-        pressed, strain = g > free[0], g - self.u
-        s = self.fall * self.s + (self.k * self.mean)[:, None] * strain
-        p = self.u + self.mean @ self.s + self.stiffness * strain
-        state = np.where(pressed, g, free[0]), np.where(pressed, s, free[1:])
-        return *state, np.where(pressed, p, 0.0), pressed, g - free[0]
+        u, s, depth = self.moved(g)
+        p = self.u + self.mean @ self.s + self.stiffness * (g - self.u)
+        return u, s, np.where(depth > 0.0, p, 0.0), depth > 0.0, depth
 
     def forces(self, p, x, pressed, depth):
         """Return f_z and f_x, to the edges between elements."""

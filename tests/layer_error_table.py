@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import kvtheory as kv
 from kvtheory.layer.body import Body, Support
-from kvtheory.layer.model_error import TABLE, half_width
+from kvtheory.layer.model_error import TABLE, half_width, spectrum
 from kvtheory.layer.sliding import levels
 from kvtheory.theory.contact_at_rest import load_at_rest
 
@@ -37,11 +37,6 @@ NAMES = {"dead-weight": "depth", "fixed": "load"}
 """Of the quantity that is wrong beside the friction coefficient."""
 
 
-def width_of(moduli, times):
-    """Return the width of a spectrum in decades."""
-    return math.log10(np.sum(moduli * times) * np.sum(moduli / times) / np.sum(moduli) ** 2)
-
-
 def spectra(width):
     """Return arms, of a total modulus of 1, of each form of a spectrum of a width."""
     if width == 0.0:
@@ -52,10 +47,10 @@ def spectra(width):
         def arms(decades, n=n, slope=slope):
             times = 0.02 * np.logspace(0.0, decades, n)
             moduli = times**slope
-            return moduli / np.sum(moduli), times
+            return list(zip(moduli / np.sum(moduli), times, strict=True))
 
-        decades = brentq(lambda d: width_of(*arms(d)) - width, 0.1, 40.0)
-        found.append(list(zip(*arms(decades), strict=True)))
+        decades = brentq(lambda d: spectrum(arms(d))[0] - width, 0.1, 40.0)
+        found.append(arms(decades))
     return found
 
 

@@ -1,69 +1,23 @@
-"""Motions that do not start at rest, by elements on a spring, a damper and arms, with steps of Heun's method.
+"""Motions that do not start at rest, by the elements of `tests.damped_elements`, with steps of Heun's method.
 
-Scaled: stiffness 1, f_z = 3/4 int p dx, f_x = -3/2 int x p dx. It shares no code with the package but the
-motion of the base. `python -m tests.start_elements KIND COUNT [SEED]` compares random scenes with the
-solvers.
+It shares no code with the package but the motion of the base. `python -m tests.start_elements KIND COUNT
+[SEED]` compares random scenes with the solvers.
 """
 
 import math
 import sys
 
 import numpy as np
-from scipy.linalg import expm
 
 from kvtheory.models.continuum import solver
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import Beginning, Spring
 from kvtheory.scene.base_motion import BaseMotion
+from tests.damped_elements import Elements
 
 COUNT, STEP = 48, 4e-3
 """Elements in half the static contact, and the step, of the coarsest of three runs."""
 MEASURED = "depth", "depth_rate", "normal_force", "friction_force", "sliding_velocity"
-
-
-class Ground:
-    """Elements at X: u, s_i, and their law over steps of length h."""
-
-    def __init__(self, arms, damper, X, depth, h):
-        self.k, T = np.array(arms, dtype=float).reshape(-1, 2).T
-        self.c, self.X, self.dx = damper, X, X[1] - X[0]
-        self.u, self.s = np.maximum(depth - X * X, 0.0), np.zeros((self.k.size, X.size))
-        n, rates = self.k.size, np.diag(1.0 / T)
-        if damper:  # u' = -(u + sum s)/c
-            free = np.zeros((n + 1, n + 1))
-            free[0], free[1:, 1:] = -1.0 / damper, -rates
-            free[1:] += np.outer(self.k, free[0])
-        else:  # u = -sum s
-            free = -np.linalg.solve(np.eye(n) + np.outer(self.k, np.ones(n)), rates)
-        self.free, z = expm(free * h), h / T
-        self.fall, self.gain = np.exp(-z)[:, None], (-self.k * np.expm1(-z) / z)[:, None]
-
-    def moved(self, g):
-        """Return u, s_i, and by how much the indenter presses, after a step that ends with overlaps g."""
-        if self.c:
-            u, *s = self.free @ np.vstack([self.u, self.s])
-        else:
-            s = self.free @ self.s
-            u = -np.sum(s, axis=0)
-        pressed = g > u
-        held = self.fall * self.s + self.gain * (g - self.u)
-        return (
-            np.where(pressed, g, u),
-            np.where(pressed, held, np.array(s).reshape(held.shape)),
-            g - u,
-        )
-
-    def forces(self, s, over, g, rise, x):
-        """Return f_z and f_x; elements at the edges count to where the overlap vanishes."""
-        inside = np.flatnonzero(over > 0.0)
-        if not inside.size:
-            return 0.0, 0.0
-        p = np.where(over > 0.0, g + self.c * rise + s.sum(axis=0), 0.0)
-        weight = np.where(over > 0.0, 1.0, 0.0)
-        for n, out in (inside[0], -1), (inside[-1], 1):
-            weight[n] += over[n] / (over[n] - over[n + out]) - 0.5
-        p = p * weight
-        return 0.75 * self.dx * p.sum(), -1.5 * self.dx * (x @ p)
 
 
 def followed(start):
@@ -90,34 +44,31 @@ def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
     )
     pad = 1.3 * math.sqrt(deepest) + (abs(w) * end + 1.0 if spring else 0.0) + 4.0
     X = dx * np.arange(math.floor((-pad - high) / dx), math.ceil((pad - low) / dx) + 1)
-    ground, x, rows, t = Ground(arms, damper, X, d, h), 0.0, [], 0.0
+    ground, x, rows, t = Elements(arms, damper, X, d), 0.0, [], 0.0
+    ground.law(h)
     eps_x, c_x, k_x = spring or (math.inf, 0.0, 0.0)
-    state, over = ground.s, np.where(ground.u > 0.0, ground.u, -1.0)
+    over = np.where(ground.u > 0.0, ground.u, -1.0)
 
     def pulls(s, over, d, v, x, w, t):
         place = X + drive.displacement(t) - x
-        number = drive.velocity(t) - w
-        g = d - place * place
-        f_z, f_x = ground.forces(s, over, g, v - 2.0 * number * place, place)
+        rise = v - 2.0 * (drive.velocity(t) - w) * place
+        pressed = over > 0.0
+        p = np.where(pressed, d - place * place + damper * rise + s.sum(axis=0), 0.0)
+        f_z, f_x = ground.forces(p, place, pressed, over)
         along = (f_x - c_x * w - k_x * x) / eps_x if spring else 0.0
         return (1.0 - f_z - kappa * (d - 1.0)) / eps, along, f_z, f_x
 
     def overlap(d, x, t):
-        place = X + drive.displacement(t) - x
-        return d - place * place
+        return d - (X + drive.displacement(t) - x) ** 2
 
     for stop in times:
         for n in range(round((stop - t) / h)):
             now, then = t + n * h, t + (n + 1) * h
-            a, b, *_ = pulls(state, over, d, v, x, w, now)
+            a, b, *_ = pulls(ground.s, over, d, v, x, w, now)
             if held:
                 d, v, a = *held(now, 1.0), 0.0
-            d_1, x_1, v_1, w_1 = (
-                d + h * (v + 0.5 * h * a),
-                x + h * (w + 0.5 * h * b),
-                v + h * a,
-                w + h * b,
-            )
+            d_1, v_1 = d + h * (v + 0.5 * h * a), v + h * a
+            x_1, w_1 = x + h * (w + 0.5 * h * b), w + h * b
             for _ in range(2):
                 if held:
                     d_1, v_1 = held(then, -1.0)
@@ -129,9 +80,8 @@ def run(drive, arms, damper, eps, kappa, start, spring, times, finer):
             if held:
                 d, v = held(then, 1.0)
             ground.u, ground.s, over = ground.moved(overlap(d, x, then))
-            state = ground.s
         t = stop
-        _, _, f_z, f_x = pulls(state, over, d, v, x, w, t)
+        _, _, f_z, f_x = pulls(ground.s, over, d, v, x, w, t)
         rows.append((d, v, f_z, f_x, drive.velocity(t) - w))
     return np.array(rows)
 

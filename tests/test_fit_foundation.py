@@ -20,9 +20,14 @@ TRUE = Series(1e6, np.array([5e6, 3e6, 1e6]), np.array([1e-4, 1e-2, 0.5]))
 OMEGA = np.geomspace(0.05, 1e5, 60)
 
 
+def measured(series, omega, noise, rng, lift=0.0):
+    """Return storage and loss moduli with noise, 10^lift times those of a series."""
+    values = series.values(omega, dynamic=True) * 10.0**lift
+    return values * (1.0 + noise * rng.standard_normal(values.shape))
+
+
 def dynamic(noise=0.0, seed=1, series=TRUE, omega=OMEGA):
-    values = series.values(omega, dynamic=True)
-    noisy = values * (1.0 + noise * np.random.default_rng(seed).standard_normal(values.shape))
+    noisy = measured(series, omega, noise, np.random.default_rng(seed))
     return {"omega [rad/s]": omega, "E' [Pa]": noisy[0], "E'' [Pa]": noisy[1]}
 
 
@@ -265,11 +270,8 @@ def wlf_sweeps(noise, vertical=0.0):
     parts, rng = [], np.random.default_rng(5)
     for T in np.arange(-10.0, 60.0, 10.0):
         f = np.geomspace(0.1, 100.0, 16)
-        a_T = 10.0 ** law.log_shift(T, 20.0)
-        values = TRUE.values(2.0 * np.pi * f * a_T * 30.0, dynamic=True) * 10.0 ** (
-            vertical * (T - 20.0)
-        )
-        values = values * (1.0 + noise * rng.standard_normal(values.shape))
+        omega = 2.0 * np.pi * f * 10.0 ** law.log_shift(T, 20.0) * 30.0
+        values = measured(TRUE, omega, noise, rng, vertical * (T - 20.0))
         parts.append(np.vstack([f, values, T + rng.uniform(-0.2, 0.2, f.size)]))
     whole = np.hstack(parts)[:, rng.permutation(7 * 16)]
     return dict(zip(("f [Hz]", "E' [Pa]", "E'' [Pa]", "T [C]"), whole, strict=True)), law
@@ -311,8 +313,7 @@ def swept(law, omega, T, noise=0.0, seed=0, lift=0.0, series=TRUE):
     shifts = law.log_shift(np.array(T) + 273.15, middle + 273.15)
     rows = []
     for each, shift in zip(T, shifts, strict=True):
-        values = series.values(omega * 10.0**shift, dynamic=True) * 10.0 ** (lift * (each - middle))
-        values = values * (1.0 + noise * rng.standard_normal(values.shape))
+        values = measured(series, omega * 10.0**shift, noise, rng, lift * (each - middle))
         rows.append(np.vstack([omega, values, np.full(omega.size, each)]))
     names = "w [rad/s]", "E' [Pa]", "E'' [Pa]", "T [degC]"
     return dict(zip(names, np.hstack(rows), strict=True)), shifts

@@ -22,27 +22,18 @@ def table(form, factor=1.0):
     lines = []
     for i, (w, storage, loss) in enumerate(ROWS):
         G, L = factor * storage, factor * loss
-        known = {
-            "w": w,
-            "f": repr(w / 2 / np.pi),
-            "G": G,
-            "L": L,
-            "size": repr(float(np.hypot(G, L))),
-        }
-        known |= {"tan": repr(L / G), "phase": repr(float(np.degrees(np.arctan(L / G)))), "i": i}
-        known |= {
-            "eta": repr(L / w),
-            "eta2": repr(G / w),
-            "size_eta": repr(float(np.hypot(G, L) / w)),
-        }
-        lines.append(form.format(**known) + "\n")
+        size, phase = np.hypot(G, L), np.degrees(np.arctan(L / G))
+        known = {"f": w / 2 / np.pi, "size": size, "tan": L / G, "phase": phase}
+        known |= {"eta": L / w, "eta2": G / w, "size_eta": size / w}
+        digits = {name: repr(float(value)) for name, value in known.items()}
+        lines.append(form.format(w=w, G=G, L=L, i=i, **digits) + "\n")
     return "".join(lines)
 
 
-PLAIN = table("{w:g},{G:g},{L:g}")
+HEAD, PLAIN = "w [rad/s],G' [MPa],G'' [MPa]\n", table("{w:g},{G:g},{L:g}")
 ALIKE = {
-    "label first": "sample,w [rad/s],G' [MPa],G'' [MPa]\n" + table("A-{i},{w},{G},{L}"),
-    "label of digits": "sample,w [rad/s],G' [MPa],G'' [MPa]\n" + table("7-{i}b,{w},{G},{L}"),
+    "label first": "sample," + HEAD + table("A-{i},{w},{G},{L}"),
+    "label of digits": "sample," + HEAD + table("7-{i}b,{w},{G},{L}"),
     "text in the middle": "w [rad/s],state,G' [MPa],G'' [MPa]\n" + table("{w},0xB5,{G},{L}"),
     "round brackets": "w (rad/s),G' (MPa),G'' (MPa)\n" + PLAIN,
     "brackets in brackets": "ω/(rad/s);G'/(MPa);G''/(MPa)\n" + table("{w};{G};{L}").replace(".", ","),
@@ -54,7 +45,7 @@ ALIKE = {
     "words and spaces": "Angular frequency [rad/s] G' [MPa] G'' [MPa]\n" + table("{w} {G} {L}"),
     "spaces, units below": "w     G'     G\"    Strain\nrad/s   MPa   MPa   %\n" + table("{w}  {G}  {L}  1"),
     "comma header, space rows": "# w [rad/s], G' [MPa], G'' [MPa]\n" + table("{w:e} {G:e} {L:e}"),
-    "header in a comment": "## program 7\n## w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN,
+    "header in a comment": "## program 7\n## " + HEAD + PLAIN,
     "header in a comment of MATLAB": "% w [rad/s];G' [MPa];G'' [MPa]\n" + table("{w};{G};{L}"),
     "units in a comment": "# w,G',G''\n# rad/s,MPa,MPa\n" + PLAIN,
     "components": (
@@ -62,10 +53,10 @@ ALIKE = {
         "Shear modulus (viscous component)(MPa)\n"
         + table("sweep\t{f}\t{G}\t{L}")
     ),
-    "date above": "12.03.2026 10:15\n3 points\nw [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN,
-    "Fortran": "w [rad/s],G' [MPa],G'' [MPa]\n" + table("{w:.3e},{G:.3e},{L:.3e}").replace("e", "D"),
+    "date above": "12.03.2026 10:15\n3 points\n" + HEAD + PLAIN,
+    "Fortran": HEAD + table("{w:.3e},{G:.3e},{L:.3e}").replace("e", "D"),
     "names of rows": '"w [rad/s]","G\' [MPa]","G\'\' [MPa]"\n' + table('"{i}",{w},{G},{L}'),
-    "index of a data frame": ",w [rad/s],G' [MPa],G'' [MPa]\n" + table("{i},{w},{G},{L}"),
+    "index of a data frame": "," + HEAD + table("{i},{w},{G},{L}"),
     "labels of a table": (
         "[Step]\nStep name\tsweep\nVariables\tRun time\tAngular frequency\tStatus\tG'\tG''\n"
         "Units\ts\trad/s\t\tMPa\tMPa\n" + table("Data point\t10\t{w}\tFRT\t{G}\t{L}")
@@ -74,14 +65,14 @@ ALIKE = {
         "Interval data:\tAngular Frequency\tG'\tG''\t|G*|\n\t[rad/s]\t[MPa]\t[MPa]\t[MPa]\n"
         + table("{w}\t{G}\t{L}\t{size}")
     ),
-    "mean in the last row": "w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN + "Mean,3.1,0.4\n",
+    "mean in the last row": HEAD + PLAIN + "Mean,3.1,0.4\n",
     "columns in a comment": (
         "% made by hand\n% columns: w [rad/s], G' [MPa], G'' [MPa]\n" + table("{w} {G} {L}")
     ),
     "words before symbols": (
         "Kreisfrequenz [rad/s];Speichermodul G' [MPa];Verlustmodul G'' [MPa]\n" + table("{w};{G};{L}")
     ),
-    "end in the last row": "w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN + "End of data\n",
+    "end in the last row": HEAD + PLAIN + "End of data\n",
     "|G*| and phase": "w [rad/s],|G*| [MPa],phase angle [deg]\n" + table("{w},{size},{phase}"),
     "|G*| and tan delta": "w [rad/s],G* [MPa],tan(delta)\n" + table("{w},{size},{tan}"),
     "tan delta in percent": "w [rad/s],G' [MPa],tan_delta [%]\n" + table("{w},{G},{tan}e2"),
@@ -135,13 +126,12 @@ def test_the_head_of_a_table_tells_its_temperature(tmp_path, head):
     assert "The temperature is that in the head of each table." in found.notes
 
 
-UNKNOWN = "w [rad/s],G' [MPa],G'' [MPa]\n"
 REFUSED = {
-    "no temperature": (UNKNOWN + PLAIN + UNKNOWN + table("{w},{G},{L}", 0.5),
+    "no temperature": (HEAD + PLAIN + HEAD + table("{w},{G},{L}", 0.5),
                        "its 2 tables hold other moduli at the same frequencies"),
-    "one head without": ("Temperature: 25 °C\n" + UNKNOWN + PLAIN + "next:\n" + UNKNOWN + PLAIN,
+    "one head without": ("Temperature: 25 °C\n" + HEAD + PLAIN + "next:\n" + HEAD + PLAIN,
                          "line 9: the head of this table names no temperature"),
-    "two headers of one": (UNKNOWN + PLAIN + "time [s],torque\n1,2\n", "line 8 holds numbers, and no row"),
+    "two headers of one": (HEAD + PLAIN + "time [s],torque\n1,2\n", "line 8 holds numbers, and no row"),
     "the row that names most": ("a,b\nw [rad/s],G' [MPa],X\nHz,Pa,m\n1,2,3\n",
                                 "line 2, \"w [rad/s],G' [MPa],X\": has only angular frequency, G'"),
     "no phase": ("w [rad/s],|G*| [MPa]\n1,2\n2,3\n", "has only angular frequency, |G*|"),
@@ -152,7 +142,7 @@ REFUSED = {
                      "leave out the column that is wrong"),
     "logarithms": ("f [Hz],log G' [Pa],log G'' [Pa]\n1,6,5\n",
                    "\"log G' [Pa]\" is a logarithm, expected the values themselves"),
-    "nothing below": (UNKNOWN + "text\n", "no numbers stand below line 1"),
+    "nothing below": (HEAD + "text\n", "no numbers stand below line 1"),
 }  # fmt: skip
 
 
@@ -164,7 +154,7 @@ def test_what_cannot_be_read_is_said_of_the_row_that_matters(tmp_path, name):
 
 
 def test_numbers_above_the_header_are_noted(tmp_path):
-    text = "p,q\n1,2\n3,4\n5,6\n\n" + UNKNOWN + PLAIN
+    text = "p,q\n1,2\n3,4\n5,6\n\n" + HEAD + PLAIN
     notes = moduli.read(written(tmp_path, text)).notes
     assert notes == ("Lines 2 to 4, above the header in line 6, are not used.",)
 
@@ -278,7 +268,7 @@ def test_sheets_of_excel_are_read_as_text_is(tmp_path, monkeypatch):
         ValueError, match=r'one after the other.*: line 13, column "G\'": "two" is not a'
     ):
         moduli.read(path)
-    path.write_text("w [rad/s],G' [MPa],G'' [MPa]\n" + PLAIN)
+    path.write_text(HEAD + PLAIN)
     with pytest.raises(ValueError, match="not an Excel file"):
         moduli.read(path)
     monkeypatch.setitem(sys.modules, "openpyxl", None)

@@ -34,6 +34,11 @@ def layer(thickness, nu, **own):
     return kv.Foundation(thickness=thickness, poisson_ratio=nu, **{**RUBBER, **own})
 
 
+def hertz(E):
+    """Depth of the ball at rest on an incompressible half-space: W = (4/3) E/(1 - nu^2) R^1/2 d^3/2."""
+    return (0.75 * 1.0 * 0.75 / E / math.sqrt(0.01)) ** (2 / 3)
+
+
 @pytest.mark.parametrize(
     ("name", "thickness", "nu"),
     [("line", 1e-3, 0.5), ("line", 2e-2, 0.3), ("ball", 1e-3, 0.49), ("ball", math.inf, 0.5)],
@@ -66,9 +71,7 @@ def test_on_a_thin_layer_the_stiffness_is_its_confined_modulus(name, nu):
 
 def test_a_ball_on_a_half_space_is_hertz_and_a_layer_goes_to_it():
     scene = kv.Scene(SHAPES["ball"], layer([1.0, 1e3, math.inf], 0.5), LOADED["ball"])
-    depth = (0.75 * 1.0 * 0.75 / 1e6 / math.sqrt(0.01)) ** (
-        2 / 3
-    )  # W = (4/3) E/(1 - nu^2) R^1/2 d^3/2
+    depth = hertz(1e6)
     assert scene.foundation.stiffness == pytest.approx(1.0 / (math.pi * 0.01 * depth**2), rel=3e-3)
     assert np.ptp(scene.foundation.stiffness[1:]) < 1e-5 * scene.foundation.stiffness[2]
 
@@ -162,7 +165,7 @@ def test_the_motion_the_simulator_and_stability_take_this_stiffness():
 @pytest.mark.parametrize("support", ["dead-weight", "fixed"])
 def test_a_layer_that_cannot_be_is_one_message(given, message, support):
     keys = {"modulus": "3 MPa", "thickness": "2 mm", "poisson_ratio": "0.4", **given}
-    words = [word for key, value in keys.items() for word in ("--set", f"foundation.{key}={value}")]
+    words = [f"--set=foundation.{key}={value}" for key, value in keys.items()]
     told = run("steady", "--set", f"support.kind={support}", *words, status=2).output
     assert message in told
     assert told.count("error") == 1
@@ -234,20 +237,15 @@ def test_the_limits_of_the_layer_are_those_of_boundary_elements(thickness, suppo
 def test_the_limit_of_a_ball_on_a_half_space_is_in_closed_form():
     rubber = kv.GeneralizedMaxwell(modulus=1e6, thickness="inf", poisson_ratio=0.5, arms=ARMS)
     found = kv.asymptotes(kv.Scene(SHAPES["ball"], rubber, LOADED["ball"])).layer
-    depth = (0.75 * 1.0 * 0.75 / 7e6 / math.sqrt(0.01)) ** (2 / 3)  # of the glassy modulus
+    depth = hertz(7e6)  # of the glassy modulus
     rate = (4e6 / 0.02 + 2e6 / 0.5) / 7e6
     assert found.high == pytest.approx(rate * 0.8 * depth, rel=1e-6)
     assert found.low == pytest.approx((4.0 * 0.02 + 2.0 * 0.5) / 0.01)
 
 
 def test_limits_of_the_layer_that_do_not_exist():
-    keys = {
-        "modulus": "1 MPa",
-        "thickness": "1 mm",
-        "poisson_ratio": "0.4",
-        "retardation_time": "20 ms",
-    }
-    words = [word for key, value in keys.items() for word in ("--set", f"foundation.{key}={value}")]
+    keys = {**RUBBER, "thickness": "1 mm", "poisson_ratio": "0.4"}
+    words = [f"--set=foundation.{key}={value}" for key, value in keys.items()]
     found = printed("asymptotes", *words)["layer"]
     assert found == {"low": 2.0, "high": None, "critical_velocity": None}
     assert "on the layer itself, mu -> 2 s/m V at low velocity" in run("asymptotes", *words).stdout

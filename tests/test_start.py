@@ -12,7 +12,6 @@ from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import Beginning, Spring
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import BaseMotion
-from kvtheory.scene.files import to_toml
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.drop import drop, number_of
 from tests import start_elements
@@ -386,16 +385,12 @@ def test_every_shape_held_after_an_indentation_presses_as_at_a_constant_depth(sh
 def test_a_history_of_the_depth_is_read_from_scenes_and_tables(tmp_path):
     scene = kv.Scene(support=kv.Fixed(history=CYCLE), run=kv.Run(0.5))
     path = tmp_path / "scene.toml"
-    path.write_text(to_toml(scene))
+    path.write_text(kv.to_toml(scene))
     assert kv.load_scene(path) == scene
-    rows = "\n".join(f"{t} {1e3 * d}" for t, d in CYCLE)
-    (tmp_path / "depth.csv").write_text(
-        "t [s] depth [mm]\n".replace(" d", ",d") + rows.replace(" ", ",")
-    )
-    down = "\n".join(f"{t},{-1e3 * d}" for t, d in CYCLE)
-    (tmp_path / "height.csv").write_text("t [s],z [mm]\n" + down)
-    for name in ("depth.csv", "height.csv"):
-        text = to_toml(scene).split("\n")
+    for name, column, unit in (("depth.csv", "depth", 1e3), ("height.csv", "z", -1e3)):
+        rows = "\n".join(f"{t},{unit * d}" for t, d in CYCLE)
+        (tmp_path / name).write_text(f"t [s],{column} [mm]\n{rows}")
+        text = kv.to_toml(scene).split("\n")
         lines = [f'file = "{name}"' if "history" in line else line for line in text]
         path.write_text("\n".join(lines))
         read = kv.load_scene(path).support
