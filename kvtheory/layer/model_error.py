@@ -73,8 +73,8 @@ def relative_error(
     interpolated in the map, and half of the errors at the entries nearby and 2 % are added. Of random
     scenes, of one to eight arms or a damper, friction is below its bound in 267 of 268 at dead weight and
     in 87 of 88 at a given depth, depth or load in 279 of 280 and 88 of 90. Where two to four arms lie over
-    3.5 to 7 decades, friction is below its bound in 182 of 192 and 71 of 78, and at most 3 times it. Below H = 0.1 a the
-    bound is that at 0.1 a, and so with velocity and stiffening.
+    3.5 to 7 decades, friction is below its bound in 182 of 192 and 71 of 78, and at most 3 times it. Below
+    H = 0.1 a the bound is that at 0.1 a, and so with velocity and stiffening.
 
     It is inf where no bound is known: a line on more than 100 a, a stiffening above that of the map but not
     infinite, Kelvin-Voigt above 150 V*. Raises ValueError for another kind, or a Poisson's ratio that is
