@@ -1,6 +1,7 @@
 """Steady sliding by the method "layer": scenes, arrays, commands and refusals."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -96,18 +97,44 @@ def test_commands_print_a_table_and_json():
     ],
 )
 def test_every_convex_shape_slides_on_a_layer(indenter):
-    """The K of a thin layer, which the scene needs for a shape without a contact at rest, is not used."""
-    drive, held = kv.Drive("50 mm/s"), kv.Fixed("0.1 mm")
-    with pytest.raises(kv.SceneError, match=r'parabola, a circle and a ball.*expected "thin"'):
-        kv.steady(kv.Scene(indenter, RUBBER, held, drive), method="layer")
-    thin = kv.GeneralizedMaxwell(**LAYER, arms=[("4 MPa", "20 ms")], stiffness_from="thin")
-    state = kv.steady(kv.Scene(indenter, thin, held, drive), method="layer")
+    """The K of independent elements, which follows from a contact at rest that is not known, is not used."""
+    scene = kv.Scene(indenter, RUBBER, kv.Fixed("0.1 mm"), kv.Drive("50 mm/s"))
+    assert scene.foundation.stiffness is scene.foundation.arms[0].stiffness is None
+    state = kv.steady(scene, method="layer")
+    assert state.retardation_length == pytest.approx(0.05 * 0.08)
     tolerance = RTOL[indenter.per_width]
     body, support = Body.of_foundation(RUBBER), Support(1e-4)
     right = slide(indenter, body, 0.05, support, tolerance)
     assert state.friction_force == right.friction_force > 0.0
     back = slide(indenter, body, -0.05, support, tolerance)
     assert back.friction_force == pytest.approx(-right.friction_force, rel=2 * tolerance)
+
+
+def test_shapes_without_a_contact_at_rest_slide_where_no_layer_is_thin(tmp_path):
+    """An incompressible layer, and a half-space, have no K of a thin layer."""
+    rubber = replace(RUBBER, poisson_ratio=0.5)
+    wedge = kv.Scene(kv.Wedge(0.05), rubber, LINE.support, LINE.drive)
+    space = replace(RUBBER, thickness=math.inf)
+    ball = kv.Scene(kv.Sphere(0.01, radius_across=0.005), space, BALL.support, BALL.drive)
+    for scene in (wedge, ball):
+        state = kv.steady(scene, method="layer")
+        assert state.friction_coefficient > 0.0
+        path = tmp_path / "scene.toml"
+        path.write_text(kv.to_toml(scene))
+        found = printed("steady", path, "--method", "layer")
+        assert found["friction_force"] == state.friction_force
+        assert "is not known here" in printed("scene", path)["notes"][0]
+        assert kv.solve(scene, quantity="depth", rtol=0.03).model == "layer"
+        for ask in (
+            kv.steady, kv.asymptotes, kv.stability, lambda each: kv.transient(each, at=[0.0]),
+            lambda each: kv.elements(each, at=[0.0]), kv.restitution, kv.footprint,
+            lambda each: kv.sweep(each, over={"drive.velocity": [0.1]}),
+        ):  # fmt: skip
+            with pytest.raises(ValueError, match=r'"thin", or the body itself.*`method` = "layer"'):
+                ask(scene)
+    own = replace(wedge, indenter=LINE.indenter)
+    assert own.foundation.stiffness > 0.0
+    assert replace(own, indenter=kv.Wedge(0.05)) == wedge
 
 
 def test_an_array_in_a_message_is_a_list():

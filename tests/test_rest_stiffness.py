@@ -142,8 +142,9 @@ def test_the_motion_the_simulator_and_stability_take_this_stiffness():
     ):
         assert np.array_equal(ask(scene), ask(plain), equal_nan=True)
     for shape in (kv.Wedge(0.1), kv.Sphere(0.01, radius_across=0.02)):
-        with pytest.raises(kv.SceneError, match='expected "thin"'):
-            replace(scene, indenter=shape)
+        bare = replace(scene, indenter=shape, support=kv.Fixed(1e-4))
+        with pytest.raises(ValueError, match='stiffness_from = "thin"'):
+            kv.steady(bare)
     thin = replace(scene, foundation=layer("2 mm", 0.3, stiffness_from="thin"))
     assert replace(thin, indenter=kv.Wedge(0.1)).foundation.stiffness == layer_stiffness(
         1e6, 2e-3, 0.3

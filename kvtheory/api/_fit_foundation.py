@@ -155,13 +155,14 @@ def fit_foundation(
         layer["stiffness_from"] = scene.foundation.stiffness_from
         own |= {"stiffness": relaxed} if per_area else layer
         whole = replace(scene, foundation=GeneralizedMaxwell(**own))
+    K = None if whole is None else whole.foundation.stiffness
     source = (
         Path(found.measured.source).name if isinstance(data, (str, Path)) else found.measured.source
     )
     return FoundationFit(
         arms=pairs,
         modulus=None if per_area else relaxed,
-        stiffness=relaxed if per_area else None if whole is None else float(whole.foundation.stiffness),
+        stiffness=relaxed if per_area else K if K is None else float(K),
         misfit=float(np.sqrt(np.mean(residuals**2))),
         largest_misfit=float(np.abs(residuals).max()),
         least_misfit=found.least_misfit,

@@ -26,7 +26,7 @@ def model_error(scene: Scene) -> tuple[Any, Any] | None:
     foundation, none = scene.foundation, np.zeros(scene.shape)
     if foundation.stiffness_from != REST:
         return None
-    if foundation.springpot:
+    if foundation.springpot or foundation.stiffness is None:
         return none + math.inf, none + math.inf
     from kvtheory.layer.model_error import relative_error, spectrum  # SciPy takes a while to import
 

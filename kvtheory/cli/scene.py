@@ -76,7 +76,7 @@ def scene(
         key.replace(".", "_") if key in AMBIGUOUS else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
     }
-    if np.isfinite(foundation.slow_damping).all():
+    if foundation.stiffness is not None and np.isfinite(foundation.slow_damping).all():
         name = "slow_damping" if foundation.arms else "damping"
         quantities[name] = foundation.slow_damping
     if foundation.temperature is not None:
@@ -119,13 +119,16 @@ def _notes(scene: Any) -> tuple[str, ...]:
     from kvtheory.api import steady
     from kvtheory.api._edge import layer_note
     from kvtheory.scene import Drive
+    from kvtheory.scene.layer import THIN_WAY
     from kvtheory.scene.start import REST
 
     if scene.foundation.modulus is None:
         return ()
     still = replace(scene, drive=Drive(velocity=0.0), start=REST)
     there = scene if scene.drive.ends else still
-    return tuple(filter(None, [layer_note(there, steady(still).half_length)]))
+    thin = scene.foundation.stiffness_from == THIN_WAY
+    half_length = steady(still).half_length if thin else None  # else of no use
+    return tuple(filter(None, [layer_note(there, half_length)]))
 
 
 def _dimensionless(scene: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from kvtheory.results import BodyLimits
 from kvtheory.scene.capabilities import lacks_body, lacks_quadratic
-from kvtheory.scene.layer import unfit
+from kvtheory.scene.layer import not_at_rest
 from kvtheory.scene.model import Scene
 from kvtheory.theory.contact_at_rest import depth_at_rest, energy_at_rest, load_at_rest
 
@@ -25,9 +25,8 @@ def limits(scene: Scene) -> BodyLimits | None:
     """
     foundation, support = scene.foundation, scene.support
     indenter: Any = scene.indenter
-    if foundation.modulus is None or lacks_body(scene) or lacks_quadratic(scene):
-        return None
-    if unfit(foundation, indenter, at_rest=True):
+    lacking = lacks_body(scene) or lacks_quadratic(scene) or not_at_rest(indenter)
+    if foundation.modulus is None or lacking:
         return None
     R, line, none = indenter.radius, indenter.per_width, np.zeros(scene.shape)
     low = foundation.retardation_time / R + none

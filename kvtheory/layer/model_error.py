@@ -18,13 +18,14 @@ tau = sum E_i tau_i/E_0 and r = sum (E_i/tau_i)/E_g, over which the map is writt
 """
 
 import json
+import math
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RegularGridInterpolator
 
 Array = NDArray[np.float64]
 
@@ -44,16 +45,16 @@ def spectrum(arms: Any) -> tuple[Any, Any]:
     if not len(arms):
         return 0.0, np.inf
     size = sum(E for E, _ in arms)
-    product = sum(E * tau for E, tau in arms) * sum(E / tau for E, tau in arms) / size**2
-    return np.log10(np.maximum(product, 1.0)), 1.0 + size
+    spread = sum(E * tau for E, tau in arms) * sum(E / tau for E, tau in arms) / size**2
+    return np.log10(np.maximum(spread, 1.0)), 1.0 + size
 
 
 def half_width(spectrum_width: Any, stiffening: Any) -> Any:
     """Return how many decades of V on either side of V* friction needs from its low to its high limit."""
     M = np.asarray(stiffening, dtype=float)
     finite = np.where(np.isinf(M), 1.0, M)
-    product = 10.0**spectrum_width * (finite - 1.0) ** 2 / finite
-    return 1.0 + 0.5 * np.log10(1.0 + product)
+    steps = 10.0**spectrum_width * (finite - 1.0) ** 2 / finite
+    return 1.0 + 0.5 * np.log10(1.0 + steps)
 
 
 def relative_error(
@@ -97,15 +98,15 @@ def relative_error(
     support = "fixed" if held else "dead-weight"
     with np.errstate(divide="ignore", invalid="ignore"):
         place = np.log10(np.abs(v)) / half_width(width, M)
-        arms = _map(support, kind, "arms")
-        voigt = _map(support, kind, "kelvin_voigt")
+        arms, voigt = _map(support, kind, "arms"), _map(support, kind, "kelvin_voigt")
         found = np.where(
             np.isinf(M)[..., None],
-            _at(voigt, np.log(h), nu, place),
-            _at(arms, np.log(h), nu, np.log(M), width, place),
+            _at(*voigt, np.log(h), nu, place),
+            _at(*arms, np.log(h), nu, np.log(M), width, place),
         )
-        thick = (kind == "line") & (np.log(h) > voigt.grid[0][-1])
-        fast = np.where(np.isinf(M), place > voigt.grid[-1][-1], np.log(M) > arms.grid[2][-1])
+        thicknesses, _, places = voigt[0]
+        thick = (kind == "line") & (np.log(h) > thicknesses[-1])
+        fast = np.where(np.isinf(M), place > places[-1], np.log(M) > arms[0][2][-1])
     lowest, highest, largest = np.moveaxis(found.reshape(*found.shape[:-1], 3, 2), -2, 0)
     bound = np.maximum(abs(lowest), abs(highest)) + SAFETY * largest + LEAST
     bound = np.where((thick | fast)[..., None], np.inf, bound)
@@ -113,8 +114,8 @@ def relative_error(
 
 
 @cache
-def _map(support: str, kind: str, law: str) -> Any:
-    """Return the interpolator of the lowest, highest and largest errors of both quantities."""
+def _map(support: str, kind: str, law: str) -> tuple[list[Array], Array]:
+    """Return the axes of the map, and the lowest, highest and largest errors of both quantities."""
     table = json.loads(TABLE.read_text())
     own = table[support]
     axes = [np.log(table["thickness"]), np.array(table["poisson_ratio"]), np.array(table["place"])]
@@ -122,13 +123,17 @@ def _map(support: str, kind: str, law: str) -> Any:
         axes[2:2] = [np.log(own["stiffening"]), np.array(own["width"])]
     found = np.reshape(own[f"{kind} {law}"], (*map(len, axes), 4)) * 1e-3  # from per mille
     largest = np.maximum(abs(found[..., :2]), abs(found[..., 2:]))
-    return RegularGridInterpolator(axes, np.concatenate([found, largest], axis=-1))
+    return axes, np.concatenate([found, largest], axis=-1)
 
 
-def _at(interpolator: Any, *point: Any) -> Array:
-    """Return interpolated errors at the nearest point of the map."""
-    inside = [
-        np.clip(x, axis[0], axis[-1]) for x, axis in zip(point, interpolator.grid, strict=True)
-    ]
-    places = np.stack(np.broadcast_arrays(*inside), axis=-1)
-    return interpolator(places).reshape(*places.shape[:-1], -1)  # one point would be a row
+def _at(axes: list[Array], entries: Array, *point: Any) -> Array:
+    """Return entries at a point, linear along each axis; beyond the ends of an axis, those at its end."""
+    corners: list[tuple[Any, Any]] = []
+    for x, axis in zip(np.broadcast_arrays(*point), axes, strict=True):
+        i = np.clip(np.searchsorted(axis, x, side="right") - 1, 0, axis.size - 2)
+        share = np.clip((x - axis[i]) / (axis[i + 1] - axis[i]), 0.0, 1.0)
+        corners.append(((i, 1.0 - share), (i + 1, share)))
+    return sum(  # type: ignore[return-value]
+        math.prod(weight for _, weight in corner)[..., None] * entries[tuple(i for i, _ in corner)]
+        for corner in product(*corners)
+    )

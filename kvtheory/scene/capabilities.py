@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from kvtheory.scene.foundations import ARMS, DAMPED, LAWS
 from kvtheory.scene.indenters import SHAPES as CLASSES
 from kvtheory.scene.indenters import Profile, Revolved
+from kvtheory.scene.layer import not_at_rest
 from kvtheory.scene.model import SUPPORTS as KINDS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
@@ -63,19 +64,27 @@ class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
     Called with a scene, it returns an empty text if the scene meets it; else the first condition of the
-    nearest set that it does not meet.
+    nearest set that it does not meet. All but those of `on_body` need the stiffness K of independent elements.
 
     >>> lacks_parabola(Scene())
     ''
     """
 
-    def __init__(self, *sets: Scenes, over_time: tuple[str, ...] = ()) -> None:
-        self.sets = sets
+    def __init__(
+        self, *sets: Scenes, over_time: tuple[str, ...] = (), on_body: bool = False
+    ) -> None:
+        self.sets, self.on_body = sets, on_body
         self.over_time = over_time  # the laws on which the depth of a fixed indenter may change
         self.messages: dict[tuple[str, ...], str] = {}
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
+        if scene.foundation.stiffness is None and not self.on_body:
+            own = not_at_rest(scene.indenter)
+            return (
+                f'needs the K of the contact at rest, which {own}; expected foundation.stiffness_from = "thin", '
+                'or the body itself by `method` = "layer" of `steady`'
+            )
         if scene.depths and scene.foundation.law not in self.over_time:
             with_it = " with arms beside foundation.damping" if self.over_time else ""
             return f"holds at one depth only, not for support.history{with_it}"
@@ -116,7 +125,7 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes())
-lacks_body = Needs(Scenes(laws=ONE_OF_BOTH))
+lacks_body = Needs(Scenes(laws=ONE_OF_BOTH), on_body=True)
 lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
 
 
@@ -219,7 +228,9 @@ def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
     if not (lacking := lacks(scene)):
         return
     instead = ""
-    if lacks in IN_MOTION and lacks_arms(scene):
+    if scene.foundation.stiffness is None:
+        pass  # `lacking` says what to do
+    elif lacks in IN_MOTION and lacks_arms(scene):
         prony = f'a Prony series (foundation.kind = "{ARMS}") that approximates it'
         instead = f"; `steady` holds for it, and `elements` follows {prony}"
     elif lacks in IN_MOTION:

@@ -16,7 +16,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kvtheory.export import above
-from kvtheory.scene.layer import REST, THIN_WAY, WAYS, layer_stiffness, rest_stiffness
+from kvtheory.scene.layer import (
+    REST,
+    THIN_WAY,
+    WAYS,
+    layer_stiffness,
+    not_at_rest,
+    rest_stiffness,
+)
 from kvtheory.scene.mistakes import Problems, SceneError, mistake, nearest
 from kvtheory.scene.quantities import (
     Derived,
@@ -285,13 +292,17 @@ class _Relaxed(Part):
             derive(arm, f"foundation.arms[{i}]", "stiffness", own, "the layer")
 
     def under(self, indenter: Any, support: Any) -> Any:
-        """Return the foundation under an indenter: of a layer, with the K of its contact at rest."""
+        """Return the foundation under an indenter: of a layer, with the K of its contact at rest, if known."""
         if self.stiffness_from != REST:
             return self
         found = copy.copy(self)
         if "arms" in vars(self):
             object.__setattr__(found, "arms", tuple(map(copy.copy, self.arms)))
-        found._stiffen(rest_stiffness(self, indenter, support))
+        if not_at_rest(indenter):
+            for part in (found, *found.arms):
+                object.__setattr__(part, "stiffness", None)
+        else:
+            found._stiffen(rest_stiffness(self, indenter, support))
         found.mark(part for _, part in found.nested())
         return found
 
@@ -327,8 +338,12 @@ class _Relaxed(Part):
 
     @property
     def retardation_time(self) -> Value:
-        """(C + sum K_i tau_i)/K, in s."""
-        return None if self.stiffness is None else self.slow_damping / self.stiffness
+        """(C + sum K_i tau_i)/K, in s; of a layer E and E_i instead."""
+        if self.stiffness is not None:
+            return self.slow_damping / self.stiffness
+        if self.modulus is None:
+            return None
+        return sum(arm.modulus * arm.relaxation_time for arm in self.arms) / self.modulus
 
     @property
     def shift_factor(self) -> Value:

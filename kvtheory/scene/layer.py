@@ -53,24 +53,26 @@ def rest_stiffness(foundation: Any, indenter: Any, support: Any) -> Any:
         return (load / unit / depth)[()]
 
 
-def unfit(foundation: Any, indenter: Any, *, at_rest: bool = False) -> Problems:
-    """Report a layer whose contact at rest is needed and not known, or has no depth under the indenter."""
-    found, shape = Problems(), indenter.shape
-    if getattr(foundation, "modulus", None) is None:
-        return found
-    rest = at_rest or foundation.stiffness_from == REST
-    if rest and indenter.per_width and np.any(np.isinf(foundation.thickness)):
+def unfit(foundation: Any, indenter: Any) -> Problems:
+    """Report a half-plane, on which a line contact has no depth."""
+    found = Problems()
+    own = getattr(foundation, "modulus", None) is not None and foundation.stiffness_from == REST
+    if own and indenter.per_width and np.any(np.isinf(foundation.thickness)):
         message = (
             f"a line contact has no depth on a half-plane; expected a length, or a ball beside inf "
-            f'(indenter.shape = "{shape}" is a line contact)'
+            f'(indenter.shape = "{indenter.shape}" is a line contact)'
         )
         found.add("foundation.thickness", foundation.thickness, message)
-    round_ball = np.all(getattr(indenter, "stretch", 1.0) == 1.0)
-    if rest and not (shape in SHAPES and round_ball):
-        own = f'indenter.shape = "{shape}"' if round_ball else "indenter.radius_across"
-        message = f"is known for a parabola, a circle and a ball of one radius, not for {own}"
-        found.add("foundation.stiffness_from", REST, f'{message}; expected "{THIN_WAY}"')
     return found
+
+
+def not_at_rest(indenter: Any) -> str:
+    """Return why the contact at rest of an indenter on a layer is not known, or an empty text."""
+    round_ball = np.all(getattr(indenter, "stretch", 1.0) == 1.0)
+    if indenter.shape in SHAPES and round_ball:
+        return ""
+    own = f'indenter.shape = "{indenter.shape}"' if round_ball else "indenter.radius_across"
+    return f"is known for a parabola, a circle and a ball of one radius, not for {own}"
 
 
 def layer_number(thickness: Any, half_length: Any, poisson_ratio: Any) -> Any:

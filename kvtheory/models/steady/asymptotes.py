@@ -124,7 +124,7 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
         return *static, support.weight
     lift = support.weight + support.spring * depth
     viscous = *_carrying(scene, limit, lift), lift
-    if np.all(limit.rise > 0.0):
+    if np.all((limit.rise > 0.0) | np.equal(support.spring, 0.0)):  # a power of the load
         return viscous
 
     from scipy.optimize import elementwise  # slow to import
