@@ -3,7 +3,7 @@
 The stiffness of the elements gives the depth at rest of the layer under the load. Left and middle: the
 error of friction coefficient and depth of a standard linear solid that stiffens by a factor of six, at
 Poisson's ratio 0.49, over V/V* and the thickness over the half length at rest. At low velocity the elements
-are right, whatever the layer. Right: the largest error of friction at any velocity, for several Poisson's
+are right, whatever the layer. The levels are those of the colour bar. Right: the largest error of friction at any velocity, for several Poisson's
 ratios, and for a wide spectrum (dashed, six decades of relaxation times).
 """
 
@@ -19,7 +19,7 @@ VELOCITIES = np.geomspace(1e-2, 1e3, 101)
 THICKNESSES = np.geomspace(0.1, 100.0, 61)
 RATIOS = {0.3: "#2171b5", 0.45: "#41ab5d", 0.5: "#cb181d"}
 STIFFENING, WIDTHS, NEARLY = 6.0, {0.0: ("-", "one arm"), 6.0: ("--", "six decades")}, 0.49
-LEVELS = np.array([0.05, 0.1, 0.2, 0.5, 1.0])
+LEVELS = [0.03, 0.05, 0.1, 0.2, 0.5, 1.0]
 KINDS = {"line": "cylinder", "ball": "ball"}
 
 
@@ -49,17 +49,16 @@ def compute() -> Data:
 
 
 def draw(data: Data) -> Figure:
-    """Draw lines of equal error, and the largest error of friction."""
-    drawn = drawing.figure(9.0, 5.4)
+    """Draw the levels of the error, and the largest error of friction."""
+    drawn = drawing.figure(9.6, 5.4)
     axes = drawn.subplots(2, 3, sharey=True)
     for row, (kind, words) in zip(axes, KINDS.items(), strict=True):
         for ax, error, name in zip(row, data.maps[kind], ("friction", "depth"), strict=False):
-            ax.contourf(VELOCITIES, THICKNESSES, error, levels=[0.0, *LEVELS, 10.0], cmap="YlOrRd",
-                        norm="log", vmin=5e-3, vmax=3.0)  # fmt: skip
-            lines = ax.contour(
-                VELOCITIES, THICKNESSES, error, levels=LEVELS, colors="black", linewidths=0.7
+            filled = ax.contourf(VELOCITIES, THICKNESSES, error, levels=LEVELS, cmap="YlOrRd",
+                                 norm="log", extend="both")  # fmt: skip
+            ax.contour(
+                VELOCITIES, THICKNESSES, error, levels=LEVELS, colors="black", linewidths=0.5
             )
-            ax.clabel(lines, fmt=lambda level: f"{level:.0%}", fontsize=8)
             ax.set(xscale="log", yscale="log", title=f"{words}: {name}")
         row[0].set_ylabel("$H/a$")
         for (name, nu, width), largest in data.largest.items():
@@ -69,7 +68,9 @@ def draw(data: Data) -> Figure:
                 row[2].plot(largest, THICKNESSES, label=label, **style)
         row[2].set(xlim=(0.0, None), title=f"{words}: friction, any velocity")
         row[2].xaxis.set_major_formatter("{x:.0%}")
-        row[2].legend(fontsize=7)
+        row[2].legend(fontsize=7, loc="upper left")
+    bar = drawn.colorbar(filled, ax=axes[:, 1].tolist(), format="{x:.0%}", label="largest error")
+    bar.minorticks_off()
     for ax in axes[1, :2]:
         ax.set_xlabel("$V/V^*$")
     axes[1, 2].set_xlabel("largest error")

@@ -1,5 +1,6 @@
 """How far a foundation is from the layer that gives it: notes, and `solve`, which climbs to the layer."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -48,6 +49,28 @@ def test_notes_say_it_wherever_it_counts(tmp_path):
     taken = replace(LINE, foundation=replace(RUBBER, stiffness_from="thin"))
     assert "not thin" in kv.steady(taken).notes[0]
     assert model_error(taken) is model_error(kv.Scene()) is None
+
+
+@pytest.mark.parametrize("scene", [LINE, HELD])
+def test_a_sweep_says_how_far_it_is_from_the_layer(scene, tmp_path):
+    over = {"drive.velocity": [0.01, 0.05, 0.2], "foundation.thickness": [1e-3, math.inf]}
+    output = tmp_path / "map.csv"
+    swept = kv.sweep(scene, over=over, block=2, output=output)
+    assert swept.failed == 3
+    there = {"foundation.thickness": 1e-3, "drive.velocity": over["drive.velocity"]}
+    assert swept.model_error == errors_of(scene.replace(there))
+    assert swept.notes == kv.steady(scene, over=there).notes
+    assert "depth.model" not in swept.certificate.relative_error
+    again = kv.sweep(scene, over=over, block=2, output=output)
+    assert (again.computed, again.model_error, again.notes) == (0, swept.model_error, swept.notes)
+    moved = kv.sweep(scene, over={"run.duration": [0.01]}, quantities="depth.end")
+    assert moved.notes == kv.transient(scene, at=[0.0]).notes
+    assert kv.sweep(scene, over=there, method="layer", quantities="load").notes == ()
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(scene))
+    words = "--over", "drive.velocity=10 mm/s,50 mm/s", "-o", tmp_path / "two.csv"
+    assert "The foundation gives mu within" in run("sweep", path, *words).stdout
+    assert "throughout" in printed("sweep", path, *words)["notes"][0]
 
 
 def test_solve_climbs_to_the_layer_where_the_foundation_is_not_enough():

@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
+from kvtheory.api._model_error import errors_of, note_of
 from kvtheory.api._steady import BODY, LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
@@ -91,7 +93,8 @@ def sweep(
     Returns
     -------
     Sweep
-        Labelled arrays in SI. With `output`, they are read from the file on access.
+        Labelled arrays in SI. With `output`, they are read from the file on access. Its `notes` say how far a
+        foundation given by a layer is from the layer itself.
 
     Raises
     ------
@@ -126,8 +129,11 @@ def sweep(
     how: Any = {"executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block}
     how["report"] = progress
     if file is None:
-        return engine.in_memory(plan, **how)
-    return engine.into_file(plan, file, overwrite=overwrite, **how)
+        found = engine.in_memory(plan, **how)
+    else:
+        found = engine.into_file(plan, file, overwrite=overwrite, **how)
+    note = note_of(found.model_error, plan.scene)
+    return replace(found, notes=(note,)) if note else found
 
 
 @argument.checked(
@@ -153,7 +159,7 @@ def plan_of(
     if quantities is None and at is None and sprung and not (on_body or lacks_stability(scene)):
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
-    plan = Plan(scene, axes, columns, times, method, rtol)
+    plan = Plan(scene, axes, columns, times, method, rtol, errors_of)
     if scene.depths and plan.needed(steady=True):
         method_for(scene, asked)  # it refuses
     if on_body and (plan.transient or any(column.base == STABLE for column in columns)):

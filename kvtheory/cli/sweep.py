@@ -98,7 +98,7 @@ def sweep(
         save_plot(result, plot)
     if as_json:
         counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
-        outcome = {"failures": record(result.failures), "seconds": seconds}
+        outcome = {"failures": record(result.failures), "seconds": seconds, "notes": result.notes}
         console.print_json({"file": str(result.path), **counts, **outcome})
         return
     click.echo(
@@ -112,6 +112,8 @@ def sweep(
     for remark in REMARKS:
         if remark in result.certificate.statement:
             click.echo(f"{remark[0].upper()}{remark[1:]}.")
+    for note in result.notes:
+        click.echo(note)
     for failure in result.failures[:SHOWN_FAILURES]:
         point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
         click.echo(f"  {point}: {failure.reason}")

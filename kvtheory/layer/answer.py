@@ -9,7 +9,7 @@ import numpy as np
 from kvtheory.layer.body import Body, Support
 from kvtheory.layer.sliding import Sliding, slide, slide_at
 from kvtheory.progress import Progress
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
+from kvtheory.results import STEADY_UNITS, Certificate, PressureField, SteadyState, units_for
 from kvtheory.scene.model import Scene
 
 RTOL = {True: 1e-3, False: 2e-2}
@@ -41,6 +41,7 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
     size, flat = scene.shape, scene.flat()
     scenes = [flat.rows(i) for i in range(math.prod(size))] if size else [scene]
     rows: list[list[float]] = []
+    fields: list[PressureField] = []
     at_rest: dict[tuple[int, float], Sliding] = {}
     for i, (each, found) in enumerate(zip(scenes, _slidings(scene, scenes), strict=True)):
         key = 0 if _at_velocities(scene) else i, found.depth
@@ -48,6 +49,7 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
             shape, body, _ = given(each)
             at_rest[key] = slide(shape, body, 0.0, Support(found.depth), AT_REST)
         rows.append(_row(each, found, at_rest[key]))
+        fields = [] if size else [_field(found)]
         report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")
     names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
     table = np.array(rows, dtype=float).reshape(len(scenes), len(names)).T
@@ -59,6 +61,7 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
         dissipated_in_contact=np.full(size, math.nan) if size else math.nan,
         model="layer",
         certificate=Certificate("estimated", STATEMENT, errors, RELATIVE_TO),
+        pressure_field=fields[0] if fields else None,
         units=units_for(scene.indenter, STEADY_UNITS),
         notes=(SINGULAR,) if np.isinf(values["peak_pressure"]).any() else (),
     )
@@ -100,6 +103,14 @@ def _row(scene: Scene, found: Sliding, at_rest: Sliding) -> list[float]:
     ]
     retardation_length = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     return [*values, half_length, retardation_length, *errors, half_error / half_length]
+
+
+def _field(found: Sliding) -> PressureField:
+    """Return the pressure of a line, or on both halves of a ball."""
+    if found.pressure.shape[1] == 1 and not found.y[0]:
+        return PressureField(found.x, found.y, found.pressure)
+    both = np.concatenate([found.pressure[:, ::-1], found.pressure], axis=1)
+    return PressureField(found.x, np.concatenate([-found.y[::-1], found.y]), both)
 
 
 def _relative(error: float, value: float) -> float:

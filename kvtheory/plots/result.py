@@ -168,18 +168,19 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
 def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -> Any:
     """Draw p = K delta (1 - x^2/a^2 - 2 l_r x/a^2) from edge to edge (Eqs. 8 and 12, for V >= 0).
 
-    For a ball it is the pressure in the middle plane.
+    For a ball it is the pressure in the middle plane. On a layer it is that of the cells.
     """
+    sphere = state.units["load"] == "N"
+    if state.pressure_field is not None:
+        field = state.pressure_field
+        return _draw_pressure(ax, field.x, field.pressure[:, field.y.size // 2], sphere, style)
     a, l = float(state.half_length), float(state.retardation_length / state.half_length)
     low, high = sorted((float(state.leading_edge), float(state.trailing_edge)))
     x = np.linspace(low, high, POINTS)
     forward = -1.0 if state.leading_edge > 0.0 else 1.0
     peak = 1.0 + l * l if l < 1.0 else 2.0 * l  # theorem F7
     p = state.peak_pressure / peak * (1.0 - (x / a) ** 2 - 2.0 * l * forward * x / a)
-    sphere = state.units["load"] == "N"
-    if state.model == "layer":
-        off = math.inf
-    elif not sphere:
+    if not sphere:
         off = abs(simpson(p, x) / state.load - 1.0)
     elif l == 0.0:  # there is no friction, and only a ball is exact
         off = 0.0 if state.model == "exact" else math.inf
@@ -192,6 +193,11 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
             "the pressure is drawn for a parabola and for a ball on independent Kelvin-Voigt elements only; "
             'give several velocities, such as drive.velocity = "1 mm/s:1 m/s:50:log", for a curve of friction'
         )
+    return _draw_pressure(ax, x, p, sphere, style)
+
+
+def _draw_pressure(ax: Any, x: Any, p: Any, sphere: bool, style: dict[str, Any]) -> Any:
+    """Draw the pressure (Pa) over the position (m), of a ball in its middle plane."""
     ax.plot(x * 1e3, p * 1e-6, **style)
     place = "pressure in the middle plane" if sphere else "pressure"
     ax.set(xlabel=r"position $x$ [mm]", ylabel=rf"{place} $p$ [MPa]")

@@ -16,6 +16,7 @@ from kvtheory.results.steady import (
     AsymptoteLine,
     AsymptoteReport,
     BodyLimits,
+    PressureField,
     Stability,
     SteadyState,
 )
@@ -43,7 +44,7 @@ __all__ = [
     "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis",
     "BodyLimits", "Certificate", "Check", "ClimbStep", "Comparison", "DivergenceError", "Event",
     "Explanation", "Failure", "FewerArms", "FoundationFit", "FrictionFit", "Impact",
-    "QuadratureError",
+    "PressureField", "QuadratureError",
     "Simulation", "Solution", "SprungSimulation", "SprungTransient", "Stability", "SteadyState",
     "Sweep", "ToleranceError", "Transient", "TransientError", "record", "units_for",
 ]  # fmt: skip

@@ -6,6 +6,7 @@ from html import escape
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.presented import (
@@ -27,6 +28,18 @@ UNKNOWN = (
 )
 
 
+@dataclass(frozen=True)
+class PressureField:
+    """The pressure (Pa) on the cells of a grid, of shape (x, y), whose centres are at `x` and `y`, in m.
+
+    Of a line contact `y` is 0 alone. Where the pressure is singular, it is the mean over the cell.
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+
+
 @dataclass(frozen=True, repr=False)
 class SteadyState(Presented):
     """Steady sliding: each quantity a float, or an array where the input was an array.
@@ -35,6 +48,7 @@ class SteadyState(Presented):
     velocity: the leading edge is at x < 0 for a positive velocity. For a ball they are those of its middle
     plane; its contact extends over |y| < a sqrt(R'/R), and its forces are in N, see `units`.
 
+    `pressure_field` is that of one scene by the method `layer`, else None.
     `stable` says whether steady sliding is stable (None: not known), as it is with a rigid drive. `over`
     holds the values that vary, by key of the scene, in SI; each has the shape of the quantities. `notes` are
     sentences about limits of the model that this scene exceeds.
@@ -52,6 +66,7 @@ class SteadyState(Presented):
     dissipated_in_contact: Value
     model: str
     certificate: Certificate
+    pressure_field: PressureField | None = field(default=None, compare=False)
     units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
     stable: Any = True
     over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)

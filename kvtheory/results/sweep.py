@@ -48,8 +48,9 @@ class Sweep(Recorded):
     series; `events` is an array of JSON texts. The arrays of a sweep in a file (`path`) are read on access.
     `units` covers swept keys and quantities. `computed` counts the points that this call solved; the others
     were in the file already. `failed` counts the scenes that failed; `failures` lists them, for a file the
-    first hundred. The errors in the certificate are the largest over the sweep. `plan` (the request) and
-    `read` (reads the arrays) are internal.
+    first hundred. The errors in the certificate are the largest over the sweep. `model_error` holds the
+    largest errors of independent elements against the layer that gives them, which `notes` say in words.
+    `plan` (the request) and `read` (reads the arrays) are internal.
     """
 
     scene: Scene
@@ -65,6 +66,8 @@ class Sweep(Recorded):
     path: Path | None
     plan: Any = field(repr=False, compare=False)
     read: Callable[[], Mapping[str, Any]] = field(repr=False, compare=False)
+    model_error: Mapping[str, float] = field(default_factory=dict, compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     @cached_property
     def values(self) -> Mapping[str, Any]:
@@ -132,6 +135,6 @@ class Sweep(Recorded):
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""
         time = {} if self.time is None else {"time": self.time}
-        names = "points", "failed", "failures", "certificate"
+        names = "points", "failed", "failures", "certificate", "model_error", "notes"
         rest = {name: getattr(self, name) for name in names}
         return dict(record({**self.swept, **time, **self.values, **rest}))

@@ -64,7 +64,7 @@ class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
     Called with a scene, it returns an empty text if the scene meets it; else the first condition of the
-    nearest set that it does not meet. All but those of `on_body` need the stiffness K of independent elements.
+    nearest set that it does not meet. All but those `on_body` need the stiffness K of independent elements.
 
     >>> lacks_parabola(Scene())
     ''
@@ -81,10 +81,9 @@ class Needs:
         """Return what the scene lacks."""
         if scene.foundation.stiffness is None and not self.on_body:
             own = not_at_rest(scene.indenter)
-            return (
-                f'needs the K of the contact at rest, which {own}; expected foundation.stiffness_from = "thin", '
-                'or the body itself by `method` = "layer" of `steady`'
-            )
+            body = 'the body itself by `method` = "layer" of `steady`'
+            expected = f'expected foundation.stiffness_from = "thin", or {body}'
+            return f"needs the K of the contact at rest, which {own}; {expected}"
         if scene.depths and scene.foundation.law not in self.over_time:
             with_it = " with arms beside foundation.damping" if self.over_time else ""
             return f"holds at one depth only, not for support.history{with_it}"

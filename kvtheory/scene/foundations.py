@@ -292,7 +292,7 @@ class _Relaxed(Part):
             derive(arm, f"foundation.arms[{i}]", "stiffness", own, "the layer")
 
     def under(self, indenter: Any, support: Any) -> Any:
-        """Return the foundation under an indenter: of a layer, with the K of its contact at rest, if known."""
+        """Return the foundation under an indenter: of a layer, with the K of its contact at rest if known."""
         if self.stiffness_from != REST:
             return self
         found = copy.copy(self)

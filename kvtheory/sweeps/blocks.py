@@ -5,7 +5,7 @@ same bits. A scene that fails is a missing value with its reason; the others are
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import thread_time
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.capabilities import lacks_continuum
 from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.plan import FAILS, REMARKS, STABLE, Array, Measured, Plan, Table
+from kvtheory.sweeps.plan import FAILS, OF_MODEL, REMARKS, STABLE, Array, Measured, Plan, Table
 
 MEASURED = 50
 """Fewest points of a sweep of which two are solved to see how long that takes."""
@@ -75,9 +75,24 @@ def compute(given: Task) -> Block:
             table[name] = motion.values[name]
         table[name][failed] = column.missing
     errors.pop(STABLE, None)
+    errors |= _model_errors(given, failed)
     failures = [(given.start + index, _reason(reasons[index])) for index in failed]
     statements = sorted(steady.statements | motion.statements)
     return Block(given.start, given.start + given.points, table, failures, statements, errors)
+
+
+def _model_errors(given: Task, failed: Sequence[int]) -> dict[str, float]:
+    """Return the largest errors of the model, by the names of their quantities with `OF_MODEL`."""
+    plan, left = given.plan, np.setdiff1d(np.arange(given.points), failed)
+    scene = plan.scene
+    if plan.model_error is None or scene.foundation.modulus is None or plan.method not in METHODS:
+        return {}
+    if not left.size or not scene.drive.ends:
+        return {}
+    with np.errstate(all="ignore"):
+        scene = scene.replace({key: array[left] for key, array in given.over.items()})
+        found = plan.model_error(scene) or {}
+    return {f"{name}{OF_MODEL}": error for name, error in found.items()}
 
 
 def _state(scene: Scene, method: str) -> SteadyState:

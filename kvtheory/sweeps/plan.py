@@ -8,7 +8,7 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -61,6 +61,8 @@ UNSETTLED = (
 )
 REMARKS = f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND}", UNSETTLED
 """What a certificate says of some scenes, for those who do not read it."""
+OF_MODEL = ".model"
+"""Ends the name of a quantity whose error is that of independent elements against the layer."""
 CYCLE = {
     "stick_slip_settles": "1", "stick_slip_amplitude": "m", "stick_slip_period": "s",
     "sliding_velocity.cycle_max": "m/s", "sliding_velocity.cycle_min": "m/s",
@@ -189,6 +191,8 @@ class Plan:
     times: tuple[float, ...] | None
     method: str
     rtol: float
+    model_error: Callable[[Scene], Mapping[str, float] | None] | None = None
+    """The largest errors of independent elements against the layer of scenes, by quantity."""
 
     @cached_property
     def points(self) -> int:
