@@ -3,8 +3,9 @@
 The stiffness of the elements gives the depth at rest of the layer under the load. Left and middle: the
 error of friction coefficient and depth of a standard linear solid that stiffens by a factor of six, at
 Poisson's ratio 0.49, over V/V* and the thickness over the half length at rest. At low velocity the elements
-are right, whatever the layer. The levels are those of the colour bar. Right: the largest error of friction at any velocity, for several Poisson's
-ratios, and for a wide spectrum (dashed, six decades of relaxation times).
+are right, whatever the layer. The levels are those of the colour bar. Right: the largest error of friction
+at any velocity, for several Poisson's ratios, and for a wide spectrum (dashed, six decades of relaxation
+times).
 """
 
 from dataclasses import dataclass
@@ -68,7 +69,7 @@ def draw(data: Data) -> Figure:
                 row[2].plot(largest, THICKNESSES, label=label, **style)
         row[2].set(xlim=(0.0, None), title=f"{words}: friction, any velocity")
         row[2].xaxis.set_major_formatter("{x:.0%}")
-        row[2].legend(fontsize=7, loc="upper left")
+    axes[0, 2].legend(fontsize=7, loc="lower right")
     bar = drawn.colorbar(filled, ax=axes[:, 1].tolist(), format="{x:.0%}", label="largest error")
     bar.minorticks_off()
     for ax in axes[1, :2]:
