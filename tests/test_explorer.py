@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.api._model_error import model_error
 from kvtheory.explorer import save_explorer
 from kvtheory.explorer.controls import SECTIONS, controls
 from kvtheory.results import STEADY_UNITS
@@ -682,6 +683,8 @@ def test_a_layer_that_is_not_thin_is_said_to_be_so(session, page, modulus, thick
     [
         (kv.Parabola(0.01), kv.Suspended(load=500.0, stiffness=1e6), 2e-3, [(4e6, 0.02), (2e6, 0.5)]),
         (kv.Sphere(0.01), kv.DeadWeight(load=1.0), np.inf, [(4e6, 0.02)]),
+        (kv.Sphere(0.01), kv.Suspended(load=1.0, stiffness=1e3), 3e-3, [(4e6, 0.02), (2e6, 80.0)]),
+        (kv.Sphere(0.01), kv.Suspended(load=1.0, stiffness=1e3), 3e-3, None),
         (kv.Parabola(0.01), kv.Fixed(1e-4), 2e-3, None),
     ],
 )  # fmt: skip
@@ -696,13 +699,20 @@ def test_the_limits_on_the_layer_itself_are_shown(
     save_explorer(scene, path)
     right = kv.asymptotes(scene).layer
     with watched(session, path) as browser:
-        K, low, high, words, drawn = browser.run(
-            "(s => (l => [s.K, l.low(1), l.high ? l.high(1) : null, "
+        K, low, high, errors, words, drawn = browser.run(
+            "(s => (l => [s.K, l.low(1), l.high ? l.high(1) : null, model_error(s), "
             "document.getElementById('body').textContent, "
             "document.querySelectorAll('#curve .layer').length])(layer_limits(s)))(scene_of(state))"
         )
     assert pytest.approx(scene.foundation.stiffness, rel=1e-6 if thickness == np.inf else 1e-9) == K
     assert low == pytest.approx(right.low)
+    mu, other = model_error(scene)
+    assert errors == pytest.approx([float(mu), float(other)], rel=1e-5)
+    second = "load" if scene.held else "depth"
+    shown = re.search(rf"\u03bc is within ([\d.]+) %, {second} within ([\d.]+) %", words)
+    assert [float(each) for each in shown.groups()] == pytest.approx(
+        [100 * float(mu), 100 * float(other)], rel=0.06
+    )
     assert words.startswith("On the layer itself")
     assert drawn == 1 + bool(arms)
     if arms:

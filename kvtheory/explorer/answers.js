@@ -16,6 +16,15 @@ function layer_number({ layer, stretch }, { half_length }) {
   return layer?.way === "thin" ? (layer.H / (half_length * Math.min(1, stretch))) ** 2 / (1 - 2 * layer.nu) : 0;
 }
 
+/** How far the curve is from the layer, in words. */
+function told_error(scene) {
+  const error = model_error(scene), instead = "<code>kvtheory steady --method layer</code> solves the layer itself.";
+  if (!error) return " <code>kvtheory scene</code> says how far the curve, of independent elements, is from it.";
+  if (!Number.isFinite(error[0])) return ` How far the curve, of independent elements with the same contact at rest, is from it is not known here; ${instead}`;
+  const [mu, second] = error.map((each) => `<b>${short(100 * each, 2)} %</b>`);
+  return ` The curve is that of independent elements with the same contact at rest: here \u03bc is within ${mu}, ${scene.depth === undefined ? "depth" : "load"} within ${second}; ${instead}`;
+}
+
 function show_layer(scene, state) {
   const place = document.getElementById("layer"), number = layer_number(scene, state), body = document.getElementById("body");
   place.hidden = number <= MODEL.thin;
@@ -26,7 +35,7 @@ function show_layer(scene, state) {
   body.hidden = !low;
   body.innerHTML = low ? `On the layer itself \u03bc \u2192 <b>${short(low(1))}</b> s/m V at low velocity`
     + (high ? `, \u03bc \u2192 <b>${short(high(1))}</b> m/s / V at high velocity; they cross at V* = <b>${short(critical * 1e3)}</b> mm/s.` : ".")
-    + " The curve is that of independent elements with the same contact at rest; <code>kvtheory scene</code> says how far it is from the layer." : "";
+    + told_error(scene) : "";
 }
 
 /** What leaves the range in which the foundation was measured, as kvtheory.scene.foundations says it. */

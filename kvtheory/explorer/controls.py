@@ -1,11 +1,13 @@
 """The sliders of the explorer: the quantities that a scene gives, and those that its parts could be given."""
 
 import dataclasses
+import json
 import math
 from collections.abc import Iterator
 from decimal import Decimal
 from typing import Any
 
+from kvtheory.layer import model_error
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.capabilities import DRIVES, LAWS, SUPPORTS, lacks_scripts
 from kvtheory.scene.foundations import (
@@ -125,10 +127,18 @@ def controls(scene: Scene) -> dict[str, Any]:
         "sections": sections, "allowed": _allowed(), "scene": shown,
         "arm": {name: _slider("arm", s, name, None, True) for name, s in quantities(Arm).items()},
         "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
+        "model_error": None if scene.foundation.modulus is None else _model_error(),
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
         "shift_factors": scene.foundation.shift_factors or [], "same_temperature": SAME_TEMPERATURE,
     }  # fmt: skip
+
+
+def _model_error() -> dict[str, Any]:
+    """Return the map of the error of a layer; it is large, and left out of the page of another foundation."""
+    names = "SAFETY", "LEAST", "APART", "REACHED"
+    own = {name.lower(): getattr(model_error, name) for name in names}
+    return {"table": json.loads(model_error.TABLE.read_text()), **own}
 
 
 def _given(scene: Scene, section: str) -> dict[str, tuple[float, Quantity]]:

@@ -43,7 +43,7 @@ def explorer_page(scene: Scene) -> str:
     parts = {
         "style": _text("explorer.css"),
         "script": "\n".join(_text(f"{name}.js") for name in SCRIPTS),
-        "data": json.dumps(data, ensure_ascii=False).replace("</", r"<\/"),
+        "data": json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("</", r"<\/"),
         "version": __version__,
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], _text("explorer.html"))
