@@ -77,8 +77,7 @@ class Needs:
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
         if scene.depths and scene.foundation.law not in self.over_time:
-            with_it = " with arms beside foundation.damping" if self.over_time else ""
-            return f"holds at one depth only, not for support.history{with_it}"
+            return "holds at one depth only, not for support.history"
         kind = *scene.kind, scene.foundation.kind
         if kind not in self.messages:
             shape = kind[0]
@@ -109,7 +108,7 @@ lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
 lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, MOVING, ("rigid",)))
-lacks_continuum = Needs(Scenes(("parabola",), FINITE), over_time=ONE_OF_BOTH)
+lacks_continuum = Needs(Scenes(("parabola",), FINITE), over_time=FINITE)
 lacks_rigid_continuum = Needs(Scenes(("parabola",), FINITE, drives=("rigid",)))
 lacks_stability = lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE))
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
