@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.checks.trial_elements import Rule, simulate
 from kvtheory.models.continuum import solver
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import Beginning, Spring
@@ -428,7 +429,7 @@ def test_a_wrong_history_of_the_depth_is_refused(support, message):
 
 def test_what_holds_at_one_depth_refuses_a_history_and_a_sweep_takes_it():
     scene = kv.Scene(support=kv.Fixed(history=CYCLE), run=kv.Run(0.1))
-    for question in (kv.steady, kv.asymptotes, kv.stability, kv.compare):
+    for question in (kv.steady, kv.asymptotes, kv.stability):
         with pytest.raises(ValueError, match="holds at one depth only"):
             question(scene)
     over = {"support.depth": [1e-4, 3e-4], "foundation.retardation_time": [0.05, 0.1]}
@@ -438,6 +439,26 @@ def test_what_holds_at_one_depth_refuses_a_history_and_a_sweep_takes_it():
         kv.transient(half, at=[0.1]).normal_force[0], rel=1e-6
     )
     assert kv.solve(scene, at=[0.05]).model == "continuum"
+
+
+def test_an_indentation_is_compared_with_theory():
+    support, drive = kv.Fixed(history=CYCLE), kv.Drive(0.02)
+    scene = kv.Scene(kv.Parabola(0.01), kv.Foundation(1e10, 0.1), support, drive, kv.Run(0.5))
+    assert kv.compare(scene).verdict == "agrees"
+    other = kv.transient(
+        scene.replace({"foundation.retardation_time": 0.13}),
+        at=np.linspace(0.0, 0.5, 60),
+        certify=False,
+    )
+    data = {"t [s]": other.time, "depth [m]": other.depth, "F_z [N/m]": other.normal_force}
+    found = kv.compare(scene, data=data)
+    assert (found.verdict, found.explanations[0].name) == ("disagrees", "wrong tau")
+    grid, known = simulate(scene, (Rule(depth_rate=0.0), Rule()), 0.5)
+    assert known["depth"][:, 1] == pytest.approx(np.interp(grid, *np.transpose(CYCLE)), abs=1e-9)
+    exact = kv.transient(scene, at=[0.05, 0.15], certify=False).normal_force
+    assert np.interp([0.05, 0.15], grid, known["normal_force"][:, 1]) == pytest.approx(
+        exact, rel=0.02
+    )
 
 
 @pytest.mark.parametrize(
