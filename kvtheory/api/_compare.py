@@ -175,7 +175,7 @@ def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress:
             f"{step:.3g} s: give a shorter one, or `data`"
         )
     stride = min(2.0 * step, end / MINIMUM_TIMES)
-    changes = [*(time for time in scene.drive.changes if time < end), end]
+    changes = [*(time for time in scene.changes if time < end), end]
     ticks = np.concatenate([[0.0], np.geomspace(SOONEST, SOON, DENSE), np.linspace(0.0, 1.0, EVEN)])
     times = {end}
     for start, stop in pairwise(changes):

@@ -191,14 +191,14 @@ def _smear(time: Array, step: float) -> Array:
 
 def beside_jumps(theory: Theory, time: Array, step: float) -> Mask:
     """Return which times are so near a jump of the drive that the data may be of its other side."""
-    off = np.abs(time[:, None] - np.array([*theory.scene.drive.jumps]))
+    off = np.abs(time[:, None] - np.array([*theory.jumps]))
     return np.asarray((off <= _smear(time, step)[:, None]).any(axis=1))
 
 
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
     """Return theory at the times, a few steps before and after, and its least and greatest values between."""
     smear = _smear(time, step)
-    jumps = [t for t in theory.scene.drive.jumps if t < time[-1]]
+    jumps = [t for t in theory.jumps if t < time[-1]]
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
     found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)
     parts = {name: [*found[name][: 3 * time.size].reshape(3, -1)] for name in CURVES}

@@ -53,14 +53,14 @@ class Row(NamedTuple):
 
 
 def initial_rest(case: Case) -> Measured:
-    """Compare the depth at t <= 0 with the static depth (Eq. 40)."""
+    """Compare the depth at t <= 0 with the static or given depth (Eq. 40)."""
     time, depth_0 = case.time, case.theory.static.depth
     if not case.theory.scene.start.at_rest:
         raise NotMade("the motion does not start at rest")
     before = time <= 0.0
     if not before.any():
         raise NotMade(f"the data begin at {time[0] * 1e3:.4g} ms, after the start")
-    off = abs(float(case.columns["depth"][before].mean()) / depth_0 - 1.0)
+    off = abs(float(case.columns["depth"][before].mean()) - case.theory.begun.depth) / depth_0
     sigma = float(case.bands["depth"].noise[before].max()) / depth_0
     random = SURE * sigma / np.sqrt(before.sum())
     return off, case.tolerance * random + case.limit("depth")[before].max(), ""
@@ -70,7 +70,7 @@ def jump(case: Case) -> Measured:
     """Compare the force right after the start with the jump that theory gives."""
     time, theory = case.time, case.theory
     force = next((n for n in ("normal_force", "friction_force") if n in case.names), None)
-    if 0.0 not in theory.scene.drive.jumps:
+    if 0.0 not in theory.jumps:
         raise NotMade("the drive does not jump at t = 0")
     if force is None:
         raise NotMade("the data hold no force")
@@ -196,6 +196,8 @@ def steady_limit(case: Case) -> Measured:
         raise NotMade("the drive is a function, which need not settle")
     if theory.scene.drive.coasts:
         raise NotMade("the indenter coasts")
+    if theory.scene.depths and theory.scene.depths[-1][1] <= 0.0:
+        raise NotMade("the indenter is withdrawn")
     if theory.rates is not None:
         slow = theory.rates.settling
     else:

@@ -76,7 +76,8 @@ def _untested(case: Case) -> str:
     untested = [f"{what}, as {LARGER:g} times as much would not show ({problem})"
             for what, problem, by in parts
             if not rows.shows(rows.against(scaled_scene(scene, by, LARGER)))]  # fmt: skip
-    memory, one_way = "the memory of the free surface", scene.drive.constant and scene.drive.rigid
+    memory = "the memory of the free surface"
+    one_way = scene.drive.constant and scene.drive.rigid and not scene.depths
     if one_way and motion.highest_speed:
         untested.append(f"{memory}, as the sliding never reverses (reversal)")
     elif one_way or not rows.shows(_without_memory(rows)):

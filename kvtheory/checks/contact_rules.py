@@ -30,9 +30,11 @@ class Mistake(NamedTuple):
 SHOWS: Mapping[str, Callable[[Scene], bool]] = {
     "Kelvin-Voigt": lambda scene: not scene.foundation.arms,
     "arms": lambda scene: bool(scene.foundation.arms),
-    "moves": lambda scene: not scene.held,
+    "moves": lambda scene: not scene.held or bool(scene.depths),
     "starts at rest": lambda scene: not scene.held and scene.start.at_rest,
-    "comes back": lambda scene: not (scene.drive.constant and scene.drive.rigid),
+    "comes back": lambda scene: (
+        bool(scene.depths) or not (scene.drive.constant and scene.drive.rigid)
+    ),
     "ball": lambda scene: not scene.indenter.per_width,
     "": lambda _scene: True,
 }

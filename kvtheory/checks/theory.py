@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
 from kvtheory.scene import Drive, Sphere
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import Fixed, Scene
 from kvtheory.scene.start import REST, StartState
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.closed_forms import trailing_edge_ratio
@@ -82,7 +82,8 @@ class Theory:
     """A scene and the methods that solve it.
 
     `static` is the scene at rest, `radius` is R in m, `units` are the SI units of the curves, and
-    `last_change` is the time in s after which the drive keeps its velocity, infinite if it need not.
+    `last_change` is the time in s after which the drive keeps its velocity, infinite if it need not, and a
+    fixed indenter its depth; `jumps` are the times at which a velocity jumps, of the base or of the depth.
     `by_elements` says whether the transient is computed with elements: for a ball, and on arms.
     """
 
@@ -92,7 +93,9 @@ class Theory:
         self.radius = float(scene.indenter.radius)  # type: ignore[union-attr]
         self.units = units_for(scene.indenter, SERIES_UNITS)
         self.by_elements = bool(scene.foundation.arms) or not scene.indenter.per_width
-        self.last_change = scene.drive.last_change if scene.drive.ends else math.inf
+        kinks = [time for time, _ in scene.depths]
+        self.last_change = max([scene.drive.last_change if scene.drive.ends else math.inf, *kinks])
+        self.jumps = tuple(sorted({*scene.drive.jumps, *kinks}))
         self._known: dict[tuple[float, bytes], dict[str, Array]] = {}
 
     @cached_property
@@ -128,12 +131,12 @@ class Theory:
     @cached_property
     def motion(self) -> Any:
         """V(t) and Y(t) until the end of the run."""
-        return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
+        return self.scene.motion(self.scene.run.duration, self.static.velocity)
 
     @property
     def begun(self) -> StartState:
         """The state just after t = 0."""
-        return self.scene.start.at(self.static.depth, self.motion.velocity(0.0))
+        return self.scene.start.of(self.motion, self.static.depth)
 
     @property
     def final_velocity(self) -> float:
@@ -148,10 +151,10 @@ class Theory:
 
     @cached_property
     def steady_state(self) -> Any:
-        """Steady sliding at the last velocity."""
-        return self.methods.steady(
-            replace(self.scene, drive=Drive(self.final_velocity), start=REST)
-        )
+        """Steady sliding at the last velocity and given depth."""
+        support = Fixed(self.scene.depths[-1][1]) if self.scene.depths else self.scene.support
+        last = {"support": support, "drive": Drive(self.final_velocity), "start": REST}
+        return self.methods.steady(replace(self.scene, **last))
 
     @cached_property
     def rates(self) -> Rates | None:

@@ -319,7 +319,7 @@ def instants(scene: Scene, motion: Any, end: float) -> Array:
 def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, dict[str, Array]]:
     """Return times, and each curve as an array (times, rules), up to a time (s): Newton-trapezoidal steps."""
     static = StaticState.of(scene)
-    motion: Any = scene.drive.motion(scene.run.duration, static.velocity)
+    motion: Any = scene.motion(scene.run.duration, static.velocity)
     times = instants(scene, motion, end)
     drive, held = scene.drive, scene.held
     begun, reach, elements = _begin(scene, rules, motion, float(times[-1]))
@@ -350,6 +350,8 @@ def simulate(scene: Scene, rules: tuple[Rule, ...], end: float) -> tuple[Array, 
             return sunk, shift, elements.pressed(h, near, *state)  # noqa: B023
 
         before, before_along = rate, along_rate
+        if h > 0.0 and scene.depths:
+            before = rate = (np.interp(now, *np.transpose(scene.depths)) - depth) / h
         if h > 0.0 and (not drive.rigid or not held):
             sunk, shift, found = at(h)
             if not held:
@@ -395,7 +397,7 @@ def _begin(
 ) -> tuple[StartState, float, Elements]:
     """Return the state just after t = 0, how far a contact reaches, and the elements that it meets."""
     static = StaticState.of(scene)
-    begun = scene.start.at(static.depth, motion.velocity(0.0))
+    begun = scene.start.of(motion, static.depth)
     wider, (low, high) = _widens(scene, begun), motion.extremes(0.0, end)
     reach = WINDOW * static.half_length * wider
     outside = reach + _swing(scene, begun, motion, end)

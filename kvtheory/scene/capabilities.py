@@ -85,8 +85,7 @@ class Needs:
             expected = f'expected foundation.stiffness_from = "thin", or {body}'
             return f"needs the K of the contact at rest, which {own}; {expected}"
         if scene.depths and scene.foundation.law not in self.over_time:
-            with_it = " with arms beside foundation.damping" if self.over_time else ""
-            return f"holds at one depth only, not for support.history{with_it}"
+            return "holds at one depth only, not for support.history"
         kind = *scene.kind, scene.foundation.kind
         if kind not in self.messages:
             shape = kind[0]
@@ -117,9 +116,10 @@ lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
 lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, MOVING, ("rigid",)))
-lacks_continuum = Needs(Scenes(("parabola",), FINITE), over_time=ONE_OF_BOTH)
+lacks_continuum = Needs(Scenes(("parabola",), FINITE), over_time=FINITE)
 lacks_rigid_continuum = Needs(Scenes(("parabola",), FINITE, drives=("rigid",)))
-lacks_stability = lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE))
+lacks_stability = Needs(Scenes(QUADRATIC, FINITE))
+lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, FINITE), over_time=FINITE)
 lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_numbers = Needs(Scenes(QUADRATIC, ONE_OF_BOTH), *lacks_asymptotes.sets)
 lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)

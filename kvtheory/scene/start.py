@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.mistakes import Problems
 from kvtheory.scene.quantities import Part, Value, given, quantity, validate
 
@@ -67,6 +68,11 @@ class Start(Part):
         return StartState(
             depth if self.gap is None else -self.gap, self.depth_rate or 0.0, velocity - sliding
         )
+
+    def of(self, motion: BaseMotion, static_depth: float) -> StartState:
+        """Return the state just after t = 0 on a `Scene.motion`, whose depth may be given."""
+        found = self.at(static_depth, motion.velocity(0.0))
+        return StartState(*motion.depths[0], found.along_rate) if motion.depths else found
 
     def landing_speed(self, support: Any, static_depth: float) -> float:
         """Return the speed (m/s) at which an indenter of this mass, weight and spring lands from its gap."""

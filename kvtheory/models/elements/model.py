@@ -137,10 +137,7 @@ class Model:
 
     def begun(self, path: BaseMotion) -> StartState:
         """Return the state just after t = 0."""
-        if path.depths:
-            *_, along = self.start.at(self.constants.depth, path.velocity(0.0))
-            return StartState(*path.depths[0], along)
-        return self.start.at(self.constants.depth, path.velocity(0.0))
+        return self.start.of(path, self.constants.depth)
 
     def impact(self, path: BaseMotion) -> tuple[float, float]:
         """Return the speed of the indenter to expect after a start that is not at rest, and the depth.

@@ -371,13 +371,20 @@ def _beyond_end(run: Run, k: int, at: Motion, xi: float, f: float) -> float:
     return xi - outward * max(min(f / abs(slope), FARTHEST), -FARTHEST)
 
 
+def ends_never(run: Run, k: int) -> bool:
+    """Whether an edge does not come to an end of its segment; in a pause one that touches stands still."""
+    side = run.now.sides[k]
+    stands = side.state == TOUCHING and run.clock.paused[run.now.piece]
+    return bool(side.segment == NEVER or stands)
+
+
 def at_far_end(run: Run, k: int, at: Motion, middle: float) -> float:
     """Return p, or the gap if the edge touches, where the segment of an edge ends; `element` has A_i and B_i.
 
     An end that is beyond the `middle` of the contact is passed by the other edge.
     """
     side, never, Y = run.now.sides[k], math.inf, at.Y
-    if side.segment == NEVER:
+    if ends_never(run, k):
         return never
     segment, touches = run.segments[side.segment], side.state == TOUCHING
     far, X = (segment.a, segment.X_a) if segment.edge == k else (segment.b, segment.X_b)

@@ -311,7 +311,8 @@ class Ground:
         for k in range(2):
             side = self.steps["sides"][index, k]
             number = np.where(side["state"] == TOUCHING, side["segment"], r_.NEVER)
-            at = np.nonzero((number != r_.NEVER) & (self.segments["step"][number] != r_.NEVER))[0]
+            at = np.nonzero(number != r_.NEVER)[0]
+            at = at[self.segments["step"][number[at]] != r_.NEVER]
             if not at.size:
                 continue
             segment = self.segments[number[at]]

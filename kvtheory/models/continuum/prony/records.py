@@ -120,8 +120,9 @@ class Run(NamedTuple):
     for arms, stages, coefficients or unknowns is read by its name before the indices: `stages.edges[j, k]`.
     Compiled, it is a structured array; interpreted, an object with an array for each name, see `named`.
 
-    `depths` are those of the drive, see `BaseMotion`. `polynomials` (steps, coefficients) are those of the
-    steps, `memory` (steps, arms, coefficients) those of the arms, `state` (arms) is the present one.
+    `depths` are d and d' at the start of each piece of the drive, and d'' in it, if they are given, see
+    `BaseMotion`. `polynomials` (steps, coefficients) are those of the steps, `memory` (steps, arms,
+    coefficients) those of the arms, `state` (arms) is the present one.
     `from_modes` gives the stresses of free ground from the rates of the dampers, s_i/(k_i T_i): k_i times
     the difference to u cancels on a stiff arm. The others are of the step: `stages` and `arm_stages` (arms,
     stages), `filters` of the arms, `jacobian`, `inverse_jacobian` and `unknowns` of Broyden's method, and
@@ -186,9 +187,7 @@ def begin(
     (eps, kappa), count, fixed = numbers, len(arms), math.isinf(numbers[1])
     n = stages_for(rtol)
     starts = start.rate != 0.0 or start.along_rate != 0.0
-    pieces, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
-    if drive.depths and damper > 0.0:
-        raise ValueError("a depth that changes is not followed on a damper beside arms", 0.0)
+    pieces, depths, clock, end = with_pauses(drive, end, needed=damper > 0.0, starts=starts)
     unknowns, own = n * max(2 - fixed - (spring is None), 1), spring or Spring()
     given = (
         eps, 0.0 if fixed else kappa, end, rtol, own.eps, own.damping, own.stiffness,
@@ -210,8 +209,7 @@ def begin(
         "state": count, "element": count, "unknowns": unknowns,
     }  # fmt: skip
     run = Run(
-        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, clock=clock,
-        depths=np.array(drive.depths).reshape(-1, 2),
+        given=[new(GIVEN, *given)], now=blanks(1, NOW), pieces=pieces, depths=depths, clock=clock,
         steps=blanks(1 if arrays else ROOM, STEP), segments=blanks(3 if arrays else 2 * ROOM, SEGMENT),
         chain=np.zeros(8 * ROOM, dtype=np.int64), method=method, arms=own_arms, modes=modes, stages=stages,
         to_modes=np.ascontiguousarray(element.to_modes),
@@ -229,38 +227,47 @@ def begin(
 
 def with_pauses(
     drive: BaseMotion, end: float, *, needed: bool, starts: bool = False
-) -> tuple[Any, Any, float]:
-    """Return the pieces of a drive on the clock of a run, what time it is in them, and the clock at the end.
+) -> tuple[Any, Any, Any, float]:
+    """Return pieces of a drive on the clock of a run, their depths and times, and the clock at the end.
 
-    Where the velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
+    Where a velocity jumps, the pressure of a damper does, and an edge passes ground at once. So the clock
     runs on for a while in which time stands still and the velocity changes uniformly: also at first, if the
     indenter `starts` with a velocity. Without a damper there is no such pause, and the clock shows the time.
     """
+    held = np.pad(np.array(drive.depths).reshape(-1, 2), ((0, 0), (0, 1)))
     if not needed:
         clock = np.zeros(len(drive.rows), PIECE)
         clock["since"] = drive.rows[:, b_.START]
-        return drive.rows, clock, end
+        return drive.rows, held, clock, end
     found: list[Any] = []
     pauses: list[Any] = []
-    lost, before, last = 0.0, 0.0, end
+    depths: list[Any] = []
+    lost, before, last, rate_before = 0.0, 0.0, end, 0.0
     rows = np.pad(drive.rows, ((0, 0), (0, max(b_.POWERS + 2 - drive.rows.shape[1], 0))))
     pause = end / (1.0 + len(rows))
-    for row in rows:
+    for row, (depth, rate) in zip(rows, drive.depths or [(0.0, 0.0)] * len(rows), strict=True):
         start, after = row[b_.START], row[b_.POWERS]
-        jumps = abs(after - before) > SMOOTH * (1.0 + abs(after)) or (starts and start <= 0.0)
+        jumps = _differ(after, before) or _differ(rate, rate_before) or (starts and start <= 0.0)
         if start <= end and jumps:
             new = np.zeros_like(row)
             new[: b_.POWERS] = start + lost, start + lost + pause, row[b_.DISPLACEMENT]
             new[b_.POWERS : b_.POWERS + 2] = before, (after - before) / pause
             found, lost = [*found, new], lost + pause
             pauses.append((True, start))
+            depths.append((depth, rate_before, (rate - rate_before) / pause))
             last = end + lost
         moved = row.copy()
         moved[[b_.START, b_.END]] += lost
         found.append(moved)
         pauses.append((False, start))
-        before = b_.evaluate(row, row[b_.END])[1]
-    return np.array(found), np.array(pauses, PIECE), last
+        depths.append((depth, rate, 0.0))
+        before, rate_before = b_.evaluate(row, row[b_.END])[1], rate
+    held = np.array(depths if drive.depths else held)
+    return np.array(found), held, np.array(pauses, PIECE), last
+
+
+def _differ(after: float, before: float) -> bool:
+    return abs(after - before) > SMOOTH * (1.0 + abs(after))
 
 
 def _longer(rows: Any, count: int) -> Any:

@@ -283,6 +283,8 @@ def place(run: Run, free: int) -> bool:
             if given.sprung:
                 x += span * run.method.A[j, k] * change[free + k]
         stages.depth_rate[j] = now.v + (change[j] if free else 0.0)
+        if len(run.depths) > 0:
+            stages.depth_rate[j] += run.depths[now.piece, 2] * (stages.s[j] - now.s)
         stages.offset_rate[j] = now.w + (change[free + j] if given.sprung else 0.0)
         Y, number, _ = c_.base(run, now.piece, stages.s[j])
         stages.depth[j], stages.offset[j] = d, x

@@ -129,7 +129,8 @@ def _next_piece(run: Run) -> None:
     _, last, last_slope = b_.evaluate(run.pieces[now.piece], now.s)
     now.piece += 1
     _, number, slope = b_.evaluate(run.pieces[now.piece], now.s)
-    jumps = paused or abs(number - last) > SMOOTH * (1.0 + abs(number))
+    jumps = paused or run.clock.paused[now.piece]
+    jumps = jumps or abs(number - last) > SMOOTH * (1.0 + abs(number))
     if len(run.depths) > 0:
         jumps = jumps or run.depths[now.piece, 1] != now.v
         now.d, now.v = run.depths[now.piece, 0], run.depths[now.piece, 1]
@@ -149,6 +150,8 @@ def _jump(run: Run) -> None:
     if now.piece == 0 and run.clock.paused[0]:
         faster = run.given.start_rate / run.pieces[0, b_.END]
         slope -= run.given.start_along / run.pieces[0, b_.END]
+    if len(run.depths) > 0:
+        faster = run.depths[now.piece, 2]
     for k in range(2):
         side = now.sides[k]
         peels = side.state == PEELING
@@ -222,7 +225,7 @@ def _keeps(run: Run, k: int, at: Motion) -> float:
 def _ahead(run: Run, k: int, xi: float, Y: float) -> float:
     """Return how far an edge is from the end of its segment."""
     side = run.now.sides[k]
-    if side.segment == NEVER:
+    if c_.ends_never(run, k):
         return math.inf
     segment = run.segments[side.segment]
     if segment.edge != k and segment.b == math.inf:
