@@ -116,8 +116,17 @@ def steady(
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
             "" if method == BODY else layer_note(scene, state.half_length),
             beyond(scene.foundation),
+            _of_function(scene),
         ]
         return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
+
+
+def _of_function(scene: Scene) -> str:
+    """Return how far a series may be from the relaxation function that it stands for, or an empty text."""
+    known = scene.indenter.shape == "parabola" and scene.support.kind == "dead-weight"
+    bound = getattr(scene.foundation, "friction_bound", 0.0) if known else 0.0
+    of = "mu of the relaxation function itself, under this load, differs by at most"
+    return f"{of} {bound:.2g} of it (F27)." if bound else ""
 
 
 @checked(scene=a_scene, over=replacements)
