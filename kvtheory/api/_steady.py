@@ -4,9 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of
+from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of, varied
 from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
@@ -107,10 +105,7 @@ def steady(
             state = replace(state, stable=None if method == BODY else lasts(scene))
             state = replace(state, notes=(*state.notes, *filter(None, [state.unstable])))
         if scene.shape:
-            specs, arrays = scene.replaceable, scene.arrays()
-            units = {**state.units, **{key: specs[key].unit for key in arrays}}
-            varied = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
-            state = replace(state, over=varied, units=units)
+            state = replace(state, **varied(scene, state.units))
         length = state.trailing_edge - state.leading_edge
         notes = [
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
