@@ -58,6 +58,7 @@ RADIANS = (
     "rad/sec",
     "1/s",
     "s^-1",
+    "s⁻¹",
     "rad s^-1",
     "rad*s^-1",
     "rad·s⁻¹",
@@ -73,6 +74,7 @@ FREQUENCIES = {
     "angular frequency": dict.fromkeys(RADIANS, 1.0),
 }  # fmt: skip
 """The factor to rad/s of each unit that leaves no doubt."""
+UNITS = {"frequency": "Hz or rad/s", "angular frequency": "rad/s"}
 DOUBTFUL = "Hz", "1/s", "s^-1"
 """Units that do: of an angular frequency, or of a frequency."""
 ANGLES = {**dict.fromkeys(("°", "deg", "degree", "degrees", "Grad"), math.pi / 180.0), "rad": 1.0}
@@ -204,7 +206,7 @@ def _angular_frequency(table: Table) -> Array:
             if column.unit not in units:
                 what = f'has the unit "{column.unit}"' if column.unit else "has no unit"
                 what += ", which may mean Hz or rad/s" if column.unit in DOUBTFUL else ""
-                raise table.error(name, f"{what}; expected {' or '.join(units)}")
+                raise table.error(name, f"{what}; expected {UNITS[name]}")
             found.append(column.values * units[column.unit])
     if len(found) == 2:
         same = np.abs(found[0] - found[1]) <= AGREE * np.abs(found[1])

@@ -21,7 +21,7 @@ EXCEL = ".xlsx", ".xlsm"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
 _HEADS = (
-    re.compile(r"^(?P<name>.*\S)\s*\[(?P<unit>[^\]]*)\]$"),
+    re.compile(r"^(?P<name>.*\S)\s*[\[{<](?P<unit>[^\]}>]*)[\]}>]$"),
     re.compile(r"^(?P<name>.*\S)\s*\((?P<unit>(?:[^()]|\([^()]*\))*)\)$"),
     re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
     re.compile(r"^(?P<name>[^,]*?),\s*(?P<unit>\S+)$"),
@@ -45,6 +45,7 @@ def number(cell: str, decimal: str) -> float | None:
     """Return a number, or None; a decimal comma is read where the comma is not the separator."""
     if decimal == "," and cell.count(",") == 1 and "." not in cell:
         cell = cell.replace(",", ".")
+    cell = cell.replace("\N{MINUS SIGN}", "-")
     if EXPONENT.search(cell):
         cell = EXPONENT.sub("e", cell)
     try:
