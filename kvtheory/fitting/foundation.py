@@ -103,6 +103,11 @@ def fit(
         )
     if arms is not None and series.time.size < arms:
         notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
+    unknowns, values = 2 * series.time.size + 1, thin.target.size
+    if unknowns >= values:
+        notes.append(
+            f"The series has {unknowns} unknowns for {values} values: it passes through them, untested."
+        )
     notes += _inconsistent(thin, spectrum, least, sweeps)
     if measured.creep is not None:
         off = creep.misfit(series, *measured.creep)
