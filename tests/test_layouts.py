@@ -219,8 +219,7 @@ def test_noise_of_a_compliance_is_not_amplified(noise):
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["t [s],X [mm]\n", "Time (s);Position (mm)\n", "# t [s]\tx [mm]\n", "t_s,x_mm\n"],
+    "text", ["t [s],X [mm]\n", "Time (s);Position (mm)\n", "# t [s]\tx [mm]\n", "t_s,x_mm\n"]
 )
 def test_a_position_is_differentiated(tmp_path, text):
     t = np.linspace(0.0, 0.1, 81)

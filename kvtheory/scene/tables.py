@@ -9,11 +9,7 @@ import warnings
 from importlib import import_module
 from pathlib import Path
 
-MARKS = {
-    codecs.BOM_UTF8: "utf-8-sig",
-    codecs.BOM_UTF16_LE: "utf-16",
-    codecs.BOM_UTF16_BE: "utf-16",
-}
+MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 """Byte order marks, and the encodings that they indicate."""
 MOST = 2**28
 """Largest size of a file in bytes; a million rows of ten columns are smaller."""
