@@ -318,6 +318,8 @@ OUTPUTS = {
     "solve --plot a.png": SHORT,
     "steady -o a.csv": [],
     "steady --plot a.svg": [],
+    "stability -o a.csv": [],
+    "stability --plot a.svg": [],
     "sweep -o a.csv": OVER,
     "sweep -o a.nc": OVER,
     "sweep --plot a.pdf": [*OVER, "-o", "b.csv"],

@@ -294,7 +294,7 @@ def test_sweeps_shift_to_the_master_curve_and_wlf_is_found():
 
 @pytest.mark.parametrize(("last", "notes"), [(-2.505, 1), (-1.9, 0)])
 def test_a_law_that_misses_a_shift_factor_is_noted(last, notes):
-    """Three temperatures have two shift factors, too few for the two constants of WLF's law."""
+    """The first shift factors fall ever faster, as those of no WLF law do; the others obey Arrhenius' law."""
     T = np.array([273.15, 293.15, 333.15])
     master = SimpleNamespace(
         temperatures=T,
@@ -586,13 +586,35 @@ def test_a_long_record_is_averaged_and_read_in_one_go(tmp_path):
     assert "30,000 values were averaged to 1,200" in found.notes[0]
 
 
+def test_as_many_constants_as_shift_factors_are_taken_where_the_simpler_law_misses():
+    """Shifts of a rubber that obeys WLF: Arrhenius' law is off by half a decade."""
+    T, log_shift = np.array([273.15, 293.15, 333.15]), np.array([2.155, 0.0, -2.503])
+    errors, T_ref = np.array([0.007, 0.0, 0.009]), 293.15
+    three = shifting.law_of(
+        SimpleNamespace(temperatures=T, log_shift=log_shift, errors=errors, reference=T_ref)
+    )
+    assert three.name == "wlf"
+    assert three.log_shift(T, T_ref) == pytest.approx(log_shift, abs=1e-6)
+    assert "none is left to test it" in three.test
+    assert 0.05 < three.errors[0] / three.constants[0] < 0.5
+    two = shifting.law_of(
+        SimpleNamespace(
+            temperatures=T[:2], log_shift=log_shift[:2], errors=errors[:2], reference=T_ref
+        )
+    )
+    assert two.name == "arrhenius"
+    assert "none is left to test it" in two.test
+    assert two.errors[0] / two.constants[0] == pytest.approx(np.hypot(0.1, 0.007) / 2.155, rel=1e-3)
+
+
 def test_measured_shift_factors_hold_in_the_scene_where_the_law_misses_them(tmp_path):
-    """Of three temperatures two factors are known, too few for WLF's two constants: Arrhenius misses them."""
     T = [0.0, 20.0, 60.0]
-    data, shifts = swept(WLF, np.geomspace(0.03, 3000.0, 26), T)
+    bent = SimpleNamespace(log_shift=lambda T, T_ref: -(T - T_ref) * (0.06 + 3e-4 * (T - T_ref)))
+    data, shifts = swept(bent, np.geomspace(0.03, 3000.0, 26), T)
     layer = {"thickness": "0.1 mm", "poisson_ratio": 0.3}
     found = kv.fit_foundation(data, temperature="60 degC", **layer)
     assert found.shift_law.startswith("Arrhenius")
+    assert any("Arrhenius misses the shift factor at" in note for note in found.notes)
     assert found.reference_temperature == 333.15
     assert "Prony series at 60 degC" in str(found)
     path = tmp_path / "rubber.toml"
@@ -637,7 +659,8 @@ def test_cards_keep_the_law_of_temperature_or_say_that_they_do_not(tmp_path):
     layer, omega = {"thickness": "2 mm", "poisson_ratio": 0.3}, np.geomspace(0.03, 3000.0, 16)
     found = kv.fit_foundation(swept(WLF, omega, [0.0, 20.0, 40.0, 60.0])[0], **layer)
     of = found.foundation
-    three = kv.fit_foundation(swept(WLF, omega, [0.0, 20.0, 60.0])[0], **layer)
+    arrhenius = shifting.Law("arrhenius", (120e3,))
+    three = kv.fit_foundation(swept(arrhenius, omega, [0.0, 20.0, 60.0])[0], **layer)
     assert three.shift_law.startswith("Arrhenius")
     for suffix in (".inp", ".mac"):
         card, text = tmp_path / f"card{suffix}", found.to_card(suffix)

@@ -73,6 +73,20 @@ ALIKE = {
         "Kreisfrequenz [rad/s];Speichermodul G' [MPa];Verlustmodul G'' [MPa]\n" + table("{w};{G};{L}")
     ),
     "end in the last row": HEAD + PLAIN + "End of data\n",
+    "bars of Markdown": "| w[rad/s] | G'[MPa] | G''[MPa] |\n|--|--:|--|\n" + table("| {w} | {G} | {L} |"),
+    "bars and |G*|": "w [rad/s] | |G*| [MPa] | phase [deg]\n" + table("{w} | {size} | {phase}"),
+    "drawn": (
+        "+----+----+----+\n| w | G' | G'' |\n| rad/s | MPa | MPa |\n+====+====+====+\n"
+        + table("| {w} | {G} | {L} |") + "+----+----+----+\n"
+    ),
+    "LaTeX": (
+        "$\\omega$ (rad/s) & $G'$ (MPa) & $G''$ (MPa) \\\\ \\hline\n" + table("{w} & {G} & {L} \\\\")
+    ),
+    "underlined": "w[rad/s]  G'[MPa]  G''[MPa]\n--------  -------  ---\n" + table("{w}  {G}  {L}"),
+    "symbols behind words": (
+        "Angular frequency ω [rad/s],Storage modulus (G') (MPa),Loss (G'') <MPa>\n" + PLAIN
+    ),
+    "signs of typography": HEAD + table("{w:e},{G:e},{L:e}").replace("-", "\N{MINUS SIGN}"),
     "|G*| and phase": "w [rad/s],|G*| [MPa],phase angle [deg]\n" + table("{w},{size},{phase}"),
     "|G*| and tan delta": "w [rad/s],G* [MPa],tan(delta)\n" + table("{w},{size},{tan}"),
     "tan delta in percent": "w [rad/s],G' [MPa],tan_delta [%]\n" + table("{w},{G},{tan}e2"),
@@ -142,6 +156,15 @@ REFUSED = {
                      "leave out the column that is wrong"),
     "logarithms": ("f [Hz],log G' [Pa],log G'' [Pa]\n1,6,5\n",
                    "\"log G' [Pa]\" is a logarithm, expected the values themselves"),
+    "without units": ("w | G' | G''\n" + table("{w} | {G} | {L}"),
+                      'line 1, column "w": has no unit; expected rad/s'),
+    "a page": ("<html>\n" + HEAD + PLAIN, "not a table but a page of HTML, XML or JSON"),
+    "in a row": ("w [rad/s],1,2,3\nG' [MPa],1,2,3\nG'' [MPa],1,2,3\n",
+                 "holds the values of one quantity; expected a column for each, not a row"),
+    "other mark": ("w [rad/s] : G' [MPa] : G'' [MPa]\n1 : 2 : 3\n",
+                   "line 2 has 5 cells, the header has 3, separated by spaces"),
+    "errors": ("w [rad/s]\tG' [MPa]\tG'' [MPa]\n1\t2.0 ± 0.1\t1.0 ± 0.1\n",
+               'line 2, column "G\' [MPa]": "2.0 ± 0.1" is not a number'),
     "nothing below": (HEAD + "text\n", "no numbers stand below line 1"),
 }  # fmt: skip
 
@@ -196,8 +219,7 @@ def test_noise_of_a_compliance_is_not_amplified(noise):
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["t [s],X [mm]\n", "Time (s);Position (mm)\n", "# t [s]\tx [mm]\n", "t_s,x_mm\n"],
+    "text", ["t [s],X [mm]\n", "Time (s);Position (mm)\n", "# t [s]\tx [mm]\n", "t_s,x_mm\n"]
 )
 def test_a_position_is_differentiated(tmp_path, text):
     t = np.linspace(0.0, 0.1, 81)

@@ -31,7 +31,15 @@ def test_friction_of_a_spectrum_is_within_the_bound():
     assert inside.sum() > 5
     off = np.abs(own.friction_coefficient / exact.friction_coefficient - 1.0)[inside]
     r = (1.0 + found.deviation) / (1.0 - found.deviation)
-    assert off.max() < r**4 - 1.0
+    assert off.max() < r**4 - 1.0 < found.friction_bound == r**4.5 - 1.0
+    own = kv.Scene(foundation=found)
+    for speed, held in ((V[inside][0], True), (V[inside][-1], True), (300.0, False)):
+        notes = kv.steady(own, over={key: speed}).notes
+        assert f"differs by at most {found.friction_bound:.2g} of it" in notes[-1]
+        assert any("is outside the frequencies" in note for note in notes) != held
+    held = own.replace({"foundation.stiffness": 2e9})
+    assert held.foundation.friction_bound == 0.0
+    assert kv.steady(kv.Scene(kv.Parabola(1e-2), found, kv.Fixed("0.1 mm"))).notes == ()
 
 
 @pytest.mark.parametrize(

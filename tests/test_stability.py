@@ -324,6 +324,34 @@ def test_the_command_prints_a_table_and_json():
     assert record["stable"] is False
 
 
+def test_a_pair_of_rates_is_one_motion_in_files_and_pictures(tmp_path):
+    path, picture = tmp_path / "rates.csv", tmp_path / "rates.png"
+    soft = ["stability", "--set", "drive.stiffness=1 MN/m^2", "-o", path, "--plot", picture]
+    run(*soft, "--set", "drive.velocity=91 mm/s")
+    assert picture.stat().st_size > 5000
+    whole = kv.stability(over={"drive.velocity": 0.091, "drive.stiffness": 1e6})
+    (row,) = np.genfromtxt(path, delimiter=",", names=True, ndmin=1)
+    assert row["growth_rate_1s"] == whole.growth_rate == whole.rates[0, 0]
+    assert row["growth_frequency_Hz"] == abs(whole.rates[0, 1]) / (2.0 * np.pi) > 4.0
+    assert [row[f"growth_rate_{i}_1s"] for i in (2, 3)] == whole.rates[2:, 0].tolist()
+    assert "growth_rate_4 [1/s]" not in path.read_text()  # of the pair
+    told = run(*soft, "--set", "drive.velocity=10 mm/s:100 mm/s:3").stdout  # replaces its own files
+    several = np.genfromtxt(path, delimiter=",", names=True)
+    assert (
+        several["stable_1"].tolist()
+        == (several["growth_rate_1s"] < 0.0).tolist()
+        == [True, False, False]
+    )
+    assert several["drivevelocity_ms"] == pytest.approx([0.01, 0.055, 0.1])
+    assert f"{several['growth_rate_1s'][2]:.6g}" in told
+    some = kv.stability(over={"drive.velocity": [0.01, 0.1], "drive.stiffness": 1e6})
+    upper, lower = some.plot().axes
+    assert upper.lines[0].get_ydata() == pytest.approx(some.growth_rate)
+    assert lower.lines[0].get_ydata() == pytest.approx(some.growth_frequency)
+    with pytest.raises(ValueError, match="there are no rates to draw"):
+        kv.stability(quantity="stable").plot()
+
+
 def test_steady_and_solve_say_when_steady_sliding_does_not_happen():
     soft = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e6))
     state = kv.steady(soft)

@@ -1,6 +1,6 @@
 """What the public functions share: checks of their arguments, and of the range of floats."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -28,6 +28,13 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
     scene = scene_of(scene)
     require(lacks_one_scene, scene, what)
     return scene
+
+
+def varied(scene: Scene, units: Mapping[str, str]) -> dict[str, Any]:
+    """Return what varies over the scenes of an answer, and the units of it and of the quantities."""
+    specs, arrays = scene.replaceable, scene.arrays()
+    over = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
+    return {"over": over, "units": {**units, **{key: specs[key].unit for key in arrays}}}
 
 
 def times_of(scene: Scene, at: list[float] | None) -> Any:

@@ -21,7 +21,7 @@ from kvtheory.scene.foundations import (
 )
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import ZERO_CELSIUS, celsius
 
 LAYER = quantities(GeneralizedMaxwell)
 DIGITS = 6
@@ -172,10 +172,9 @@ def fit_foundation(
         ),
         shift_errors=None if master is None else tuple(map(_rounded, master.errors.tolist())),
         shift_law=None if law is None else (
-            f"{law.text} at {found.reference - ZERO_CELSIUS:.4g} degC"
-            + (f", log10 a_T to {law.misfit:.2g}" if law.errors else "")
+            f"{law.text} at {celsius(found.reference)} degC{law.test}"
         ),
-        reference_temperature=None if law is None else thermal["reference_temperature"],
+        reference_temperature=None if math.isnan(found.reference) else _rounded(found.reference),
         frequencies=frequencies,
         velocities=None if whole is None else _velocities(whole, frequencies),
         source=source,
@@ -231,9 +230,9 @@ def _at(temperature: float | None, thermal: Any) -> str:
     if temperature is None or temperature == thermal["reference_temperature"]:
         return ""
     a_T = Foundation(1.0, 1.0, **thermal).shift_factor
-    T, T_ref = (each - ZERO_CELSIUS for each in (temperature, thermal["reference_temperature"]))
-    of = f"times that of the arms, which hold at {T_ref:.4g} degC"
-    return f"At {T:.4g} degC every time is a_T = {a_T:.4g} {of}."
+    T, T_ref = map(celsius, (temperature, thermal["reference_temperature"]))
+    of = f"times that of the arms, which hold at {T_ref} degC"
+    return f"At {T} degC every time is a_T = {a_T:.4g} {of}."
 
 
 def _rounded(value: float) -> float:

@@ -1,11 +1,11 @@
 """Whether steady sliding is stable: `stability`."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of
-from kvtheory.results import Stability
+from kvtheory.api._edge import double_precision, scene_of, varied
+from kvtheory.results import Stability, units_for
 from kvtheory.scene.arguments import a_scene, checked, names, replacements
 from kvtheory.scene.capabilities import lacks_stability, require
 from kvtheory.scene.mistakes import SceneError, nearest, problem
@@ -47,7 +47,8 @@ def stability(
     Returns
     -------
     Stability
-        Values in SI, or arrays of the broadcast shape, with a certificate.
+        Values in SI, or arrays of the broadcast shape, with a certificate. `plot` draws the fastest growth
+        and its frequency over what varies, or all rates of one scene; `save` writes a row for each scene.
 
     Raises
     ------
@@ -84,4 +85,5 @@ def stability(
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene):
-        return stable_sliding.solve(scene, wanted)
+        found = stable_sliding.solve(scene, wanted)
+    return replace(found, **varied(scene, units_for(scene.indenter, found.units)))

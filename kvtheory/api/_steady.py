@@ -4,9 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of
+from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of, varied
 from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
@@ -107,17 +105,23 @@ def steady(
             state = replace(state, stable=None if method == BODY else lasts(scene))
             state = replace(state, notes=(*state.notes, *filter(None, [state.unstable])))
         if scene.shape:
-            specs, arrays = scene.replaceable, scene.arrays()
-            units = {**state.units, **{key: specs[key].unit for key in arrays}}
-            varied = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
-            state = replace(state, over=varied, units=units)
+            state = replace(state, **varied(scene, state.units))
         length = state.trailing_edge - state.leading_edge
         notes = [
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
             "" if method == BODY else layer_note(scene, state.half_length),
             beyond(scene.foundation),
+            _of_function(scene),
         ]
         return replace(state, notes=(*state.notes, *filter(None, notes))) if any(notes) else state
+
+
+def _of_function(scene: Scene) -> str:
+    """Return how far a series may be from the relaxation function that it stands for, or an empty text."""
+    known = scene.indenter.shape == "parabola" and scene.support.kind == "dead-weight"
+    bound = getattr(scene.foundation, "friction_bound", 0.0) if known else 0.0
+    of = "mu of the relaxation function itself, under this load, differs by at most"
+    return f"{of} {bound:.2g} of it (F27)." if bound else ""
 
 
 @checked(scene=a_scene, over=replacements)

@@ -31,8 +31,8 @@ BEGINNINGS = {
     ".bib": (b"@article{NakanoKono2020,",),
 }
 """First bytes of the files that commands write; a sweep recognises its own files."""
-STEADY_HEADER = b"depth [m],half_length [m],"
-"""Part of the first line of a CSV of steady sliding, after the varied keys."""
+STEADY_HEADERS = b"depth [m],half_length [m],", b"growth_rate [1/s],growth_frequency [Hz],"
+"""Parts of the first line of a CSV of steady sliding, or of its stability, after the varied keys."""
 BYTES = 2**14
 """Bytes of a file that are read to recognise it: more than the longest header."""
 OVERWRITE = "kvtheory.overwrite"
@@ -117,6 +117,7 @@ def _is_ours(path: Path) -> bool:
     """Whether a file begins like those that commands write; an empty file may be overwritten."""
     with path.open("rb") as file:
         start = file.read(BYTES)
-    if path.suffix.lower() == ".csv" and STEADY_HEADER in start.partition(b"\n")[0]:
+    first = start.partition(b"\n")[0]
+    if path.suffix.lower() == ".csv" and any(header in first for header in STEADY_HEADERS):
         return True
     return not start or start.startswith(BEGINNINGS.get(path.suffix.lower(), (b"",)))

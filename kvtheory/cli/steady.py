@@ -58,21 +58,24 @@ def asymptotes(scene: "Scene", progress: Any, tolerance: float) -> Iterator[Any]
 @console.scene_command(
     'kvtheory stability --set drive.velocity="91 mm/s" --set drive.stiffness="1 MN/m^2"'
 )
+@console.result_options
 def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
     """Print whether steady sliding on a spring is stable.
 
     Also the critical stiffness of the spring, and the velocity at the onset of instability.
     The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
     drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
-    one, such as a sudden start, may still end in stick-slip.
+    one, such as a sudden start, may still end in stick-slip. --plot draws the fastest growth over what
+    varies, such as drive.velocity = "1 mm/s:1 m/s:50:log", or all rates of one scene.
     """
     from kvtheory.api import stability as examine
-    from kvtheory.results import QUANTITIES, STABILITY_UNITS, units_for
+    from kvtheory.results import QUANTITIES
 
     found = examine(scene)
     yield found
     _print_final_velocity(scene)
-    units, kind = units_for(scene.indenter, STABILITY_UNITS), scene.support.kind
+    kind = scene.support.kind
+    units = {name: unit for name, unit in found.units.items() if name in QUANTITIES}
     if scene.shape:
         click.echo(f"Steady sliding, {kind} support\n")
         console.print_scenes(scene, found, {"stable": "1", **units})
@@ -86,6 +89,7 @@ def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
         verdict = f"unstable, {where} of the spring"
     click.echo(f"Steady sliding, {kind} support: {verdict}\n")
     key = "critical_velocity"  # not V* of `asymptotes`, which has the same name
+    units = {name: unit for name, unit in units.items() if not name.startswith("growth")}
     console.print_quantities(found, units, {key: QUANTITIES[key].words})
     if found.rates.size:  # of a pair one; the time constant of a growing motion is negative
         errors = found.certificate.relative_error["rates"]

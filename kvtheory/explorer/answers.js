@@ -43,7 +43,7 @@ function beyond_measured({ V, a_T, measured: m }, { leading_edge, trailing_edge 
   const told = [], rate = Math.abs(V / (trailing_edge - leading_edge)) * a_T;
   if (rate > 0 && (rate < m.lowest_frequency / MODEL.barely || rate > m.highest_frequency * MODEL.barely)) {
     told.push(`V${m.temperature === undefined ? "" : "\u00a0a<sub>T</sub>"}/c = <b>${short(rate, 3)} Hz</b> is outside the frequencies at which the foundation `
-      + `was measured, so that its series extrapolates (${short(m.lowest_frequency, 3)} to ${short(m.highest_frequency, 3)} Hz).`);
+      + `is known, so that its series extrapolates (${short(m.lowest_frequency, 3)} to ${short(m.highest_frequency, 3)} Hz).`);
   }
   const low = m.lowest_temperature ?? m.reference_temperature - m["wlf.c_2"] + MODEL.glass, high = m.highest_temperature ?? Infinity;
   if (low > m.temperature + MODEL.near || high < m.temperature - MODEL.near) {

@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from kvtheory.fitting import cards, creep, moduli, shifting
 from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import celsius
 
 CONFIDENCE = 0.95
 """Probability with which the scatter of the data alone makes the sum of squares as large as is allowed."""
@@ -39,7 +39,7 @@ MISSED = 2.0
 class Fitted(NamedTuple):
     """A series fitted to the master curve `data`, the dual bound on misfits, the shifts, remarks.
 
-    `reference` is the temperature (K) at which the series holds, NaN without a law.
+    `reference` is the temperature (K) at which the series holds, NaN if it is not known.
     """
 
     measured: moduli.Measured
@@ -103,13 +103,18 @@ def fit(
         )
     if arms is not None and series.time.size < arms:
         notes.append(f"{series.time.size} arms fit best; {arms} would be no better.")
+    unknowns, values = 2 * series.time.size + 1, thin.target.size
+    if unknowns >= values:
+        notes.append(
+            f"The series has {unknowns} unknowns for {values} values: it passes through them, untested."
+        )
     notes += _inconsistent(thin, spectrum, least, sweeps)
     if measured.creep is not None:
         off = creep.misfit(series, *measured.creep)
         notes.append(
             f"The creep compliance of the series is off by {off:.2g} (root mean square, relative)."
         )
-    reference = math.nan if law is None or master is None else master.reference
+    reference = sweeps[0].temperature if master is None else master.reference
     return Fitted(measured, thin, series, least, master, law, reference, tuple(notes))
 
 
@@ -171,7 +176,7 @@ def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
 
 def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     notes = []
-    vague = [f"{T - ZERO_CELSIUS:.4g}" for T in master.temperatures[master.errors > VAGUE]]
+    vague = [celsius(T) for T in master.temperatures[master.errors > VAGUE]]
     if vague:
         message = "The sweeps overlap too little, or are too flat, to tell their shift factors"
         notes.append(f"{message} to {VAGUE} decades at {', '.join(vague)} degC.")
@@ -181,8 +186,8 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     off = np.abs(law.log_shift(master.temperatures, master.reference) - master.log_shift)
     worst = int(np.argmax(off / np.hypot(USUAL, master.errors)))
     if off[worst] > MISSED * math.hypot(USUAL, master.errors[worst]):
-        name, T = law.text.split(":")[0], master.temperatures[worst] - ZERO_CELSIUS
-        notes.append(f"{name} misses the shift factor at {T:.4g} degC by {off[worst]:.2g} decades.")
+        name, T = law.text.split(":")[0], celsius(master.temperatures[worst])
+        notes.append(f"{name} misses the shift factor at {T} degC by {off[worst]:.2g} decades.")
     return notes
 
 

@@ -158,8 +158,7 @@ class Problem:
         place = i, *own.values()
         if place not in self.memory:
             nodes, at = data.nodes
-            end = {"run.duration": max(self.scene.run.duration, float(nodes[-1]))}
-            scene = self.of({**data.conditions, **end, **own})
+            scene = self.of({**data.conditions, "run.duration": float(nodes[-1]), **own})
             found = dict(self.follow(scene, nodes, self.rtol))  # type: ignore[misc]
             self._lifted(found, own, np.sign(speeds(scene, nodes)), found["normal_force"])
             self.memory[place] = {name: found[name][at].mean(axis=0) for name in data.measured}

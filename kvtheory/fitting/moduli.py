@@ -10,7 +10,7 @@ from kvtheory.fitting.creep import relaxing
 from kvtheory.fitting.records import plausible
 from kvtheory.fitting.spectrum import Array, Moduli
 from kvtheory.scene.columns import SPELLINGS, Reader, Table
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import celsius
 
 NAMES = {
     "frequency": "f, freq, freq., frequency, test frequency, Frequenz, Messfrequenz",
@@ -58,6 +58,7 @@ RADIANS = (
     "rad/sec",
     "1/s",
     "s^-1",
+    "s⁻¹",
     "rad s^-1",
     "rad*s^-1",
     "rad·s⁻¹",
@@ -73,6 +74,7 @@ FREQUENCIES = {
     "angular frequency": dict.fromkeys(RADIANS, 1.0),
 }  # fmt: skip
 """The factor to rad/s of each unit that leaves no doubt."""
+UNITS = {"frequency": "Hz or rad/s", "angular frequency": "rad/s"}
 DOUBTFUL = "Hz", "1/s", "s^-1"
 """Units that do: of an angular frequency, or of a frequency."""
 ANGLES = {**dict.fromkeys(("°", "deg", "degree", "degrees", "Grad"), math.pi / 180.0), "rad": 1.0}
@@ -157,7 +159,7 @@ def read(data: Any, modulus: str | None = None) -> Measured:
             notes.append(f"{each.size - own.shape[1]} rows occur twice and count once.")
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
             what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
-            where = "" if one else f" at {temperature[each].mean() - ZERO_CELSIUS:.4g} degC"
+            where = "" if one else f" at {celsius(temperature[each].mean())} degC"
             message = (
                 f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
             )
@@ -204,7 +206,7 @@ def _angular_frequency(table: Table) -> Array:
             if column.unit not in units:
                 what = f'has the unit "{column.unit}"' if column.unit else "has no unit"
                 what += ", which may mean Hz or rad/s" if column.unit in DOUBTFUL else ""
-                raise table.error(name, f"{what}; expected {' or '.join(units)}")
+                raise table.error(name, f"{what}; expected {UNITS[name]}")
             found.append(column.values * units[column.unit])
     if len(found) == 2:
         same = np.abs(found[0] - found[1]) <= AGREE * np.abs(found[1])
@@ -318,11 +320,11 @@ def _by_temperature(table: Table, temperature: Array) -> list[NDArray[np.int_]]:
     order = np.argsort(temperature, kind="stable")
     parts = np.split(order, np.flatnonzero(np.diff(temperature[order]) > GAP) + 1)
     for part in parts:
-        low, high = temperature[part[0]] - ZERO_CELSIUS, temperature[part[-1]] - ZERO_CELSIUS
+        low, high = temperature[part[[0, -1]]]
         if high - low > SPREAD:
             message = (
-                f"drifts from {low:.4g} to {high:.4g} degC without a gap of {GAP:g} K; expected sweeps "
-                f"at temperatures constant to {SPREAD:g} K"
+                f"drifts from {celsius(low)} to {celsius(high)} degC without a gap of {GAP:g} K; "
+                f"expected sweeps at temperatures constant to {SPREAD:g} K"
             )
             raise table.error("temperature", message)
     return parts

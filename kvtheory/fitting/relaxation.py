@@ -3,7 +3,8 @@ r"""A Prony series for any relaxation function, or for any spectrum of relaxatio
 Within the factors 1 - eps and 1 + eps lie the slopes -H' of the series over those of G, from the shortest
 time to the longest, the integrals of -H' t and -H' t^2 before, and H - K at the end. So do, at an equal
 length of the contact, load and friction in steady sliding, for every contact that is passed in a time up
-to the longest; faster times than the shortest act as dampers.
+to the longest; faster times than the shortest act as dampers. Times are compared beyond this range by the
+factor by which the contacts of both may differ under one load.
 """
 
 from collections.abc import Callable
@@ -12,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.fitting.fewer import EARLY, Slopes
+from kvtheory.fitting.fewer import EARLY, MARGIN, Slopes
 from kvtheory.fitting.spectrum import Array, Series, fewer, refined, solved
 
 STEP = 1e-3
@@ -40,8 +41,7 @@ def arms_of(
     G: Callable[[Any], Any], K: float, rtol: float, over: tuple[float, float]
 ) -> tuple[Series, float]:
     """Return the fewest arms for a relaxation function (N/m^3), and eps; or raise ValueError."""
-    shortest, longest = over
-    first = EARLY * rtol * shortest
+    first, longest = EARLY * rtol * over[0] / MARGIN, over[1] * MARGIN
     x = Slopes.of(np.ones(1), np.ones(1), first, longest).x
 
     def at(t: Array) -> Array:
@@ -62,7 +62,7 @@ def arms_of(
             "expected a finite function that falls, to more than its relaxed value within the range"
         )
         raise ValueError(f"`G`: {message}")
-    return _fewest(Measured(x, np.ones((1, x.size)), np.ones(1), np.array(over), slope), over, rtol)
+    return _fewest(Measured(x, np.ones((1, x.size)), np.ones(1), np.array(over), slope), rtol)
 
 
 def arms_of_spectrum(
@@ -74,15 +74,20 @@ def arms_of_spectrum(
     size = np.array([float(H(each)) for each in tau.tolist()]) * np.log(tau[1] / tau[0])
     if not (np.isfinite(size).all() and (size >= 0.0).all() and size.any()):
         raise ValueError("`H`: expected finite values of at least 0, not all of them 0")
-    data = Slopes.of(size[size > 0.0], tau[size > 0.0], EARLY * rtol * over[0], over[1])
-    return _fewest(data, over, rtol)
+    data = Slopes.of(
+        size[size > 0.0], tau[size > 0.0], EARLY * rtol * over[0] / MARGIN, over[1] * MARGIN
+    )
+    return _fewest(data, rtol)
 
 
-def _fewest(data: Slopes, over: tuple[float, float], rtol: float) -> tuple[Series, float]:
-    low, high = np.log10([data.x.min(), over[1]]) + BEYOND * np.array([-1.0, 1.0])
+def _fewest(data: Slopes, rtol: float) -> tuple[Series, float]:
+    def off(series: Series) -> float:
+        return (1.0 + data.deviation(series)) / (1.0 - EARLY * rtol) ** 2 - 1.0
+
+    low, high = np.log10([data.x.min(), data.x.max()]) + BEYOND * np.array([-1.0, 1.0])
     series = solved(data, np.logspace(low, high, int((high - low) * GRID) + 1))
     series = Series(0.0, series.modulus, series.time)
-    best, least = series, data.deviation(series)
+    best, least = series, off(series)
     if least > rtol:
         raise ValueError(
             f"`rtol` = {rtol:g}: no series was found within it; the best is off by {least:.2g}"
@@ -90,7 +95,7 @@ def _fewest(data: Slopes, over: tuple[float, float], rtol: float) -> tuple[Serie
     while series.time.size > 1:
         series = refined(data, fewer(data, series, 0))
         series = Series(0.0, series.modulus, series.time)
-        if (off := data.deviation(series)) > rtol:
+        if (now := off(series)) > rtol:
             break
-        best, least = series, off
+        best, least = series, now
     return best, least

@@ -87,7 +87,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
             both = f'columns "{heads[quantity]}" and "{column.head}"'
             problems.append(f"{both} are both the {quantity}; keep one of them")
         try:
-            array = _si(table, name, units[quantity])
+            unit = units[quantity]
+            array = table.number(name) if unit == "1" else table.si(name, unit)[0]
         except ValueError as error:
             problems.append(str(error).removeprefix(f"{table.source}: "))
             continue
@@ -122,14 +123,6 @@ def _misspelt(heads: Iterable[str]) -> Iterator[str]:
         if near := READER.meant(head):
             message = f'column "{head}": unknown name, did you mean "{near}"?'
             yield f"{message} Rename a column that is something else"
-
-
-def _si(table: Table, name: str, unit: str) -> Array:
-    """Return a column in an SI unit; a number may be a percentage."""
-    column = table.columns[name]
-    if unit == "1" and column.unit in ("", "-", "1", "%"):
-        return column.values * (0.01 if column.unit == "%" else 1.0)
-    return table.si(name, unit)[0]
 
 
 def _raise(source: str, problems: Sequence[str]) -> None:

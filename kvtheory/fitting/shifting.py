@@ -22,7 +22,7 @@ from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli, grid
 from kvtheory.scene.columns import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT, log_shift
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import celsius
 
 STEPS = 200
 """Shifts at which the interpolated sweeps are compared for the first guess."""
@@ -63,7 +63,10 @@ SHIFTS = Reader(
 
 
 class Law(NamedTuple):
-    """A law of the shift factor: its constants with standard errors, and the misfit of log10 a_T (RMS)."""
+    """A law of the shift factor: its constants with standard errors, and the misfit of log10 a_T (RMS).
+
+    The misfit is NaN where there are no more shift factors than constants.
+    """
 
     name: str
     constants: tuple[float, ...]
@@ -86,6 +89,13 @@ class Law(NamedTuple):
             return f"WLF: C_1 = {pairs[0]}, C_2 = {pairs[1]} K"
         c, e = self.constants[0] / 1e3, self.errors[0] / 1e3
         return f"Arrhenius: E_a = {c:.4g} ± {e:.2g} kJ/mol"
+
+    @property
+    def test(self) -> str:
+        """By how much the law misses the shift factors, in words; nothing for a law that was given."""
+        if math.isnan(self.misfit):
+            return ", through all shift factors, of which none is left to test it"
+        return f", log10 a_T to {self.misfit:.2g}" if self.errors else ""
 
 
 class Shifted(NamedTuple):
@@ -116,7 +126,7 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
         raise table.error(
-            "temperature", f"{T[twice[0]] - ZERO_CELSIUS:g} degC occurs twice", int(order[twice[0]])
+            "temperature", f"{celsius(T[twice[0]])} degC occurs twice", int(order[twice[0]])
         )
     if np.abs(log_shift).min() > 1e-6:
         message = "holds no temperature with a_T = 1, the reference"
@@ -152,7 +162,7 @@ def shifted(
         far = np.abs(factors[0][place] - T)
         if far.max() > SAME:
             worst = int(far.argmax())
-            message = f"the file of shift factors has none for {T[worst] - ZERO_CELSIUS:.4g} degC"
+            message = f"the file of shift factors has none for {celsius(T[worst])} degC"
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         shifts = factors[1][place]
@@ -332,30 +342,38 @@ def _scatter(x: Array, y: Array) -> Array:
 
 
 def law_of(master: Shifted) -> Law | None:
-    """Return the law that fits shift factors better for its number of constants; None if none does."""
-    T, log_shift, reference = master.temperatures, master.log_shift, master.reference
-    off = np.abs(T - reference) > 0.0
-    if not off.any():
+    """Return the law that fits shift factors better for its number of constants; None if none does.
+
+    A law with as many constants as there are shift factors is taken where the other misses them by more than
+    is usual.
+    """
+    away, reference = master.temperatures != master.reference, master.reference
+    T, log_shift, sigma = (
+        each[away]
+        for each in (master.temperatures, master.log_shift, np.hypot(USUAL, master.errors))
+    )
+    if not T.size:
         return None
-    sigma, slope = np.hypot(USUAL, master.errors), 1.0 / T - 1.0 / reference
+    slope, usual = 1.0 / T - 1.0 / reference, float(np.mean(sigma**-2)) ** -0.5
     start = max(float(slope @ log_shift / (slope @ slope)) * GAS_CONSTANT * math.log(10.0), 1.0)
     tried: list[tuple[str, list[float], Any]] = [("arrhenius", [start], 0.0)]
-    if np.count_nonzero(off) > 2:  # from the law made linear in its constants
+    if T.size > 1:  # from the law made linear in its constants
         x, pole = T - reference, max(float((reference - T).max()), 0.0) + LEAST_C_2
-        first = np.linalg.lstsq(np.column_stack([-x, -log_shift]), x * log_shift)[0]
-        tried.append(("wlf", [max(first[0], 1.0), max(first[1], pole + 10.0)], (1e-3, pole)))
+        c_1, c_2 = np.linalg.lstsq(np.column_stack([-x, -log_shift]), x * log_shift)[0]
+        if T.size > 2 or (c_1 > 0.0 and c_2 > pole):
+            tried.append(("wlf", [max(c_1, 1.0), max(c_2, pole + 10.0)], (1e-3, pole)))
     laws = []
     for name, guess, low in tried:
+        free = T.size - len(guess)
         found, covariance = curve_fit(
             lambda T, *constants, name=name: Law(name, constants).log_shift(T, reference),
-            T, log_shift, guess, sigma, bounds=(low, np.inf), x_scale=guess,
+            T, log_shift, guess, sigma, bounds=(low, np.inf), x_scale=guess, absolute_sigma=not free,
         )  # fmt: skip
-        off_law = Law(name, tuple(found)).log_shift(T, reference) - log_shift
-        free = T.size - found.size
-        misfit = math.sqrt(float(np.average(off_law**2, weights=sigma**-2)) * T.size / free)
-        errors_ = tuple(np.sqrt(np.diag(covariance)).tolist())
-        laws.append(Law(name, tuple(found.tolist()), errors_, misfit))
+        off = (Law(name, tuple(found)).log_shift(T, reference) - log_shift) / sigma
+        misfit = usual * math.sqrt(float(off @ off) / free) if free else math.nan
+        errors = tuple(np.sqrt(np.diag(covariance)).tolist())
+        laws.append(Law(name, tuple(found.tolist()), errors, misfit))
     if len(laws) > 1 and laws[1].constants[1] > MOST_C_2:  # a straight line in T
         del laws[1]
-    best: Law = min(laws, key=lambda law: law.misfit)
-    return best if best.misfit < float(np.std(log_shift)) else None
+    best: Law = min(laws, key=lambda law: usual if math.isnan(law.misfit) else law.misfit)
+    return None if best.misfit >= float(np.std(master.log_shift)) else best

@@ -12,7 +12,7 @@ from kvtheory.plots.style import BLACK, BLUE, LABELS, RED, Picture
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.results.fits import FoundationFit, FrictionFit
 from kvtheory.results.presented import with_unit
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import ZERO_CELSIUS, celsius
 
 WIDTH, HEIGHT = 7.2, 2.6
 """Of a picture with two panels in a row, and of each row, in inches."""
@@ -84,7 +84,7 @@ def _curves(ax: Any, fit: FoundationFit) -> None:
     master = fit.data["shifted"]
     title = "data and fit"
     if master is not None:
-        title = f"master curve at {master.reference - ZERO_CELSIUS:.4g} °C"
+        title = f"master curve at {celsius(master.reference)} °C"
     ax.legend()
     ax.set(xlabel=label, ylabel=f"modulus [{unit}]", title=title)
 
@@ -210,5 +210,5 @@ def _condition(fit: FrictionFit, key: str, value: float) -> str:
     """Return a condition of a curve with its unit."""
     unit = fit.scene.replaceable[key].unit
     if unit == "K":
-        return f"{value - ZERO_CELSIUS:.4g} °C"
+        return f"{celsius(value)} °C"
     return with_unit(value, unit) if unit in SHOWN_UNITS else f"{value:.4g} {unit}"

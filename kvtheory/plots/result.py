@@ -21,6 +21,7 @@ from kvtheory.results import (
     Comparison,
     FoundationFit,
     FrictionFit,
+    Stability,
     SteadyState,
     Sweep,
     Transient,
@@ -38,6 +39,8 @@ CONSTANT = 1e-6
 """Relative range of a series that is drawn as a constant one."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """Quantity that is drawn together with another one if the drive has a spring."""
+WHOLE: dict[Any, Any] = {Comparison: draw_comparison, FoundationFit | FrictionFit: draw_fit}
+"""Results that are drawn as a whole figure of their own."""
 MISMATCH = 1e-6
 """Relative difference of the integral of the pressure from the load beyond which the indenter is not a
 parabola, and of the friction coefficient from its closed form beyond which it is not a ball."""
@@ -147,10 +150,11 @@ def plot_pressure(ax: Any, result: Transient, positions: ArrayLike, times: Array
 
 def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
     """Draw a time series, steady sliding, a comparison or a sweep, and return the figure."""
-    if isinstance(result, Comparison):
-        return draw_comparison(result)
-    if isinstance(result, FoundationFit | FrictionFit):
-        return draw_fit(result)
+    for kinds, draw in WHOLE.items():
+        if isinstance(result, kinds):
+            return draw(result)
+    if isinstance(result, Stability):
+        return plot_stability(axes, result, **style)
     if isinstance(result, Sweep):
         return plot_sweep(axes, result, **style).figure
     if hasattr(result, "time"):
@@ -163,6 +167,29 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return plot_over(axes, result, **style).figure
     axes = Picture(*STEADY).subplots() if axes is None else axes
     return _plot_contact_pressure(axes, result, {"color": BLUE, **style})
+
+
+def plot_stability(axes: Any, result: Stability, **style: Any) -> Any:
+    """Draw the fastest growth and its frequency over what varies, or the rates of one scene."""
+    motions = result.motions
+    if np.isnan(motions).all():
+        raise ValueError("there are no rates to draw: nothing can move, or they were not requested")
+    if motions.ndim > 2:
+        axes = Picture(*SERIES).subplots(2, 1) if axes is None else axes
+        for ax, name in zip(axes, ("growth_rate", "growth_frequency"), strict=True):
+            plot_over(ax, result, name, **style)
+        axes[0].axhline(0.0, color=RED, linestyle="--", linewidth=0.8)
+        return axes[0].figure
+    ax = Picture(*STEADY).subplots() if axes is None else axes
+    growth, frequency = motions.T
+    for sign in (1.0, -1.0):
+        ax.plot(
+            growth, sign * frequency, **{"color": BLUE, "marker": "x", "linestyle": "", **style}
+        )
+    ax.axvline(0.0, color=RED, linestyle="--", linewidth=0.8)
+    ax.set_xscale("symlog", linthresh=np.abs(growth[growth != 0.0]).min(initial=math.inf))
+    ax.set(xlabel="growth rate [1/s], stable below 0", ylabel="frequency [Hz]")
+    return ax.figure
 
 
 def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -> Any:

@@ -9,7 +9,7 @@ from matplotlib.colors import LogNorm
 from numpy.typing import NDArray
 
 from kvtheory.plots.style import BLUE, Picture, label, with_unit
-from kvtheory.results import QUANTITIES, SteadyState, Sweep
+from kvtheory.results import QUANTITIES, Stability, SteadyState, Sweep
 from kvtheory.scene.mistakes import nearest
 from kvtheory.sweeps.plan import Plan
 
@@ -62,7 +62,7 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     return _draw(ax, sides, _side(name, result.units[name], values), style)
 
 
-def plot_over(ax: Any, state: SteadyState, quantity: str = FIRST, **style: Any) -> Any:
+def plot_over(ax: Any, state: SteadyState | Stability, quantity: str = FIRST, **style: Any) -> Any:
     """Draw a quantity of steady sliding over what varies, as `plot_sweep` does, and return the axes.
 
     Where several keys vary together, the axis is the velocity if it is one of them, or else the first.

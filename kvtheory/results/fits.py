@@ -12,7 +12,7 @@ from kvtheory.results.presented import Exported, Recorded, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import celsius
 
 WIDTH = 100
 
@@ -64,10 +64,10 @@ class FoundationFit(_Fit):
 
     `shift_factors` are pairs of temperature (degrees Celsius) and log10 a_T, `shift_errors` the standard
     errors of the latter, `shift_law` the law that was fitted to them; the arms are those at the
-    `reference_temperature` (K), as in the scene, which shifts them. `frequencies` (Hz) are those that the
-    data cover at the reference temperature; sliding at `velocities` (m/s), V over the length of the contact
-    of `scene`, is within them. `notes` are remarks on the data. Without a layer there is no `scene`: its
-    `foundation` needs `thickness` and `poisson_ratio`.
+    `reference_temperature` (K), None if the data do not tell it, as in the scene, which shifts them.
+    `frequencies` (Hz) are those that the data cover at the reference temperature; sliding at `velocities`
+    (m/s), V over the length of the contact of `scene`, is within them. `notes` are remarks on the data.
+    Without a layer there is no `scene`: its `foundation` needs `thickness` and `poisson_ratio`.
     """
 
     heading = "# A scene whose foundation was fitted to measured moduli"
@@ -116,7 +116,7 @@ class FoundationFit(_Fit):
         law, T = self.data["law"], self.reference_temperature
         if law is None or law.name == "wlf" or T is None:
             return ""
-        return f"Without the law of temperature: the arms hold at {T - ZERO_CELSIUS:.4g} degC. {law.text}"
+        return f"Without the law of temperature: the arms hold at {celsius(T)} degC. {law.text}"
 
     @property
     def remarks(self) -> list[str]:
@@ -144,7 +144,7 @@ class FoundationFit(_Fit):
         rows = [(f"{E:.6g}", f"{tau:.6g}") for E, tau in self.arms]
         relaxed = self.stiffness if self.modulus is None else self.modulus
         T = self.reference_temperature
-        at = "" if T is None else f" at {T - ZERO_CELSIUS:.4g} degC"
+        at = "" if T is None else f" at {celsius(T)} degC"
         first = f"Prony series{at}, relaxed {relaxed:.6g} {unit}"
         return "\n".join([first, *aligned(heads, rows), *self.remarks])
 

@@ -1,5 +1,6 @@
 """Steady sliding: its state, its stability, and which asymptote of it holds."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.export import Columns
 from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.presented import (
     Presented,
@@ -17,7 +19,7 @@ from kvtheory.results.presented import (
     value_range,
     with_unit,
 )
-from kvtheory.results.table import STEADY_UNITS
+from kvtheory.results.table import STABILITY_UNITS, STEADY_UNITS
 
 UNSTABLE = (
     "Steady sliding is unstable{} on the spring in the drive and will not persist; see `stability`."
@@ -83,7 +85,7 @@ class SteadyState(Presented):
 
 
 @dataclass(frozen=True)
-class Stability(Recorded):
+class Stability(Presented):
     """Stability of steady sliding: each quantity a value, or an array where the input was an array.
 
     `stable` means stable against small disturbances: the real parts of all rates are negative. `rates` holds,
@@ -93,7 +95,7 @@ class Stability(Recorded):
     `lower_critical_stiffness`, which is 0 where friction falls with velocity. `frequency` (Hz) is that of the
     motion at the upper critical stiffness. `critical_velocity` (m/s) is the smallest velocity at which the
     present stiffness is critical; V* of `kvtheory.asymptotes`, where the asymptotes of friction cross, is
-    another one. Values that do not exist, or were not requested, are NaN.
+    another one. Values that do not exist, or were not requested, are NaN. `over` is as in `SteadyState`.
     """
 
     stable: Any
@@ -106,6 +108,40 @@ class Stability(Recorded):
     rigid_drive: bool
     model: str
     certificate: Certificate
+    units: Mapping[str, str] = field(
+        default_factory=STABILITY_UNITS.copy, repr=False, compare=False
+    )
+    over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def motions(self) -> Any:
+        """Growth (1/s) and frequency (Hz), along the last axis, of each motion; a pair of rates is one."""
+        rates = np.asarray(self.rates)
+        if (
+            not rates.shape[-2] or rates.shape[-1] == 1
+        ):  # nothing can move, or they were not requested
+            return np.full((*rates.shape[:-2], 1, 2), np.nan)
+        once = np.where(rates[..., 1:] < 0.0, np.nan, rates / [1.0, math.tau])
+        order = np.argsort(np.isnan(once[..., 0]), axis=-1, kind="stable")
+        once = np.take_along_axis(once, order[..., np.newaxis], axis=-2)
+        return once[..., : max((~np.isnan(once[..., 0])).sum(axis=-1).max(initial=1), 1), :]
+
+    @property
+    def growth_rate(self) -> Value:
+        """Of the motion that grows fastest, or decays slowest, in 1/s."""
+        return self.motions[..., 0, 0][()]
+
+    @property
+    def growth_frequency(self) -> Value:
+        """Its frequency in Hz."""
+        return self.motions[..., 0, 1][()]
+
+    def _columns(self) -> Columns:
+        columns = {**super()._columns(), "stable": (np.asarray(self.stable, dtype=float), "1")}
+        for i in range(1, self.motions.shape[-2]):
+            for k, (name, unit) in enumerate((("growth_rate", "1/s"), ("growth_frequency", "Hz"))):
+                columns[f"{name}_{i + 1}"] = self.motions[..., i, k], unit
+        return columns
 
 
 REGIMES = {

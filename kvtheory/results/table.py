@@ -40,6 +40,8 @@ _ROWS = (
     Row("lower_critical_stiffness", "", "N/m^2", "lower critical stiffness of the spring", ""),
     Row("frequency", "", "Hz", "frequency at the onset of instability", ""),
     Row("critical_velocity", "", "m/s", "velocity at the onset of instability", ""),
+    Row("growth_rate", "", "1/s", "fastest growth of small motions", ""),
+    Row("growth_frequency", "", "Hz", "frequency of the fastest growth", ""),
 )
 QUANTITIES = {row.name: row for row in _ROWS}
 
@@ -57,7 +59,9 @@ TRANSIENT_UNITS = _units(
     "time velocity depth depth_rate normal_force friction_force leading_edge trailing_edge peak_pressure"
 )
 """The quantities of a time series and their units, `time` first."""
-STABILITY_UNITS = _units("critical_stiffness lower_critical_stiffness frequency critical_velocity")
+STABILITY_UNITS = _units(
+    "critical_stiffness lower_critical_stiffness frequency critical_velocity growth_rate growth_frequency"
+)
 """The quantities of the stability of steady sliding and their units, beside its rates."""
 SPRING_UNITS = _units("sliding_velocity spring_force")
 """The additional quantities of a time series if the drive has a spring."""
@@ -77,6 +81,7 @@ SHOWN_UNITS = {
     "kg": ("kg", 1.0),
     "kg/m": ("kg/mm", 1e-3),
     "Hz": ("Hz", 1.0),
+    "1/s": ("1/s", 1.0),
 }
 """The unit in which tables show each SI unit, as in the paper, and the factor to it."""
 

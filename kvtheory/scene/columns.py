@@ -30,12 +30,15 @@ from kvtheory.scene.layouts import (
     best_row,
     blank,
     tables,
+    undrawn,
 )
 from kvtheory.scene.mistakes import mistake, shown
 from kvtheory.scene.tables import EXCEL, number, parts, plain, read_text, sheets, suffixed
 from kvtheory.scene.units import bare, to_si
 
 Array = NDArray[np.float64]
+
+NAMED = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 
 MISSPELT = 0.8
 """Similarity to a known name from which a name counts as misspelt."""
@@ -68,6 +71,8 @@ BY_UNIT = {"T": ("t", "s"), "t": ("T", "K")}
 """Letters that mean the other where their unit is of its dimension: T [s] is a time."""
 SYMBOL = re.compile(r"[^\W\d_]_(?![xyz]$)\w{1,3}", re.IGNORECASE)
 """A symbol behind the words of a name, which tell the quantity; those of directions do not."""
+IN_BRACKETS = re.compile(r"(.*\S)\s*\(([^()]+)\)$")
+"""A symbol in brackets behind the words of a name."""
 LOGARITHM = re.compile(r"(?:log|lg)(?:_?10)?[\s_(]+", re.IGNORECASE)
 IN_HEAD = re.compile(
     r"(?P<value>[-+]?\d+(?:[.,]\d+)?)[\s;\"]*(?P<unit>°\s?C|℃|deg\.? ?C|degC|K)(?![\w/])"
@@ -94,13 +99,16 @@ class Table:
     notes: tuple[str, ...] = ()
     parts: NDArray[np.int_] | None = None
     """The number of the table of each row, where a file holds several."""
+    header: int = 0
+    """The line of the first header, in a file."""
 
     def __contains__(self, quantity: str) -> bool:
         return quantity in self.columns
 
     def error(self, quantity: str, message: str, row: int | None = None) -> ValueError:
         """Return an error about a column, and a row of it."""
-        line = "" if row is None else f"line {self.lines[row]}, "
+        line = self.header if row is None else self.lines[row]
+        line = f"line {line}, " if line else ""
         return ValueError(
             f'{self.source}: {line}column "{shown(self.columns[quantity].head)}": {message}'
         )
@@ -110,7 +118,8 @@ class Table:
         column = self.columns[quantity]
         if not column.unit:
             raise self.error(
-                quantity, f'has no unit; expected "{column.head} [{units[0]}]" or the like'
+                quantity,
+                f'has no unit; expected "{column.head} [{units[0]}]" or the like, or a row of units',
             )
         message = ""
         for unit in units:
@@ -237,8 +246,9 @@ class Reader:
             text = read_text(path)
         except UnicodeDecodeError:
             text = "\0"
-        if "\0" in text:
-            message = "not a text file; export a table as text or CSV"
+        if "\0" in text or text.lstrip()[:1] in ("<", "{"):
+            kind = "a text file" if "\0" in text else "a table but a page of HTML, XML or JSON"
+            message = f"not {kind}; export a table as text or CSV"
             raise ValueError(f"{path}: {message}; expected {self.example}")
         return self._of_lines(text.splitlines(), str(path))
 
@@ -258,6 +268,7 @@ class Reader:
         return replace(table, notes=(*table.notes, *notes))
 
     def _of_lines(self, lines: Sequence[str], path: str) -> Table:
+        lines = undrawn(lines)
         layouts, nameless = tables(lines, self._named)
         if nameless is not None:
             message = f"line {nameless + 1} holds numbers, and no row above it names the columns"
@@ -297,7 +308,7 @@ class Reader:
         )
         return Table(
             path, columns, numbers, others, tuple(dict.fromkeys(notes)),
-            np.repeat(np.arange(len(sizes)), sizes),
+            np.repeat(np.arange(len(sizes)), sizes), layouts[0].line + 1,
         )  # fmt: skip
 
     def _unread(self, lines: Sequence[str], first: Layout) -> list[str]:
@@ -355,10 +366,13 @@ class Reader:
 
     def _name(self, head: str) -> str | None:
         """Return the quantity of a name, or of a symbol behind words, or of these: Friction force F_R."""
-        words, _, last = head.rpartition(" ")
+        symbol = IN_BRACKETS.match(head)
+        words, last = symbol.groups() if symbol else head.rpartition(" ")[::2]
         tried = [head]
-        if words and not last.isalnum() and not LOGARITHM.match(head):
-            tried += [last, words] if SYMBOL.fullmatch(last) else [last]
+        if words and not LOGARITHM.match(head):
+            both = [self.known.get(_key(each), [None])[0] for each in (words, last)]
+            if not last.isalnum() or both[0] == both[1]:
+                tried += [last, words] if SYMBOL.fullmatch(last) else [last]
         return next((self.known[_key(each)][0] for each in tried if _key(each) in self.known), None)
 
     def _known(self, cells: Sequence[str], source: str, units: Sequence[str] = ()) -> Known:
@@ -407,6 +421,8 @@ class Reader:
         message = self._lacking(cells)
         if 0 < len(words) < len(cells):  # a row of numbers with a mistake; no header has any
             message = f'"{shown(words[0])}" is not a number'
+            if len(words) == 1 and cells[0] == words[0] and self._quantity(words[0])[0]:
+                message = "holds the values of one quantity; expected a column for each, not a row"
         return f'line {at + 1}, "{shown(lines[at])}": {message}'
 
     def _lacking(self, heads: Sequence[str]) -> str:
@@ -458,6 +474,7 @@ def _numbers(
             del cells[-1]
         if len(cells) > len(own.heads):
             message = f"line {k + 1} has {len(cells)} cells, the header has {len(own.heads)}"
+            message += f", separated by {NAMED.get(own.separator, 'spaces')}"
             message += "; are there decimal commas? Then separate by semicolons" * (
                 own.separator == ","
             )

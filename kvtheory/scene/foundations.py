@@ -56,7 +56,7 @@ THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf", "s
 GAS_CONSTANT = 8.31446261815324
 """R, in J/(mol K), exact."""
 EXTRAPOLATED = (
-    "outside the frequencies at which the foundation was measured, so that its series extrapolates"
+    "outside the frequencies at which the foundation is known, so that its series extrapolates"
 )
 BEYOND = "outside the temperatures at which its shift is known, so that a_T extrapolates"
 NEAR, GLASS = 2.0, 30.0
@@ -519,6 +519,16 @@ class GeneralizedMaxwell(_Relaxed):
     """eps of fact F27, of a foundation from a relaxation function or a spectrum; 0 of arms as given, such as
     those of a foundation that `replace` has changed."""
 
+    @property
+    def friction_bound(self) -> float:
+        """Most by which mu of a parabola under a load differs from that of the function, relative to it.
+
+        At an equal length of the contact, loads differ by the factor r = (1 + eps)/(1 - eps) at most and
+        friction forces by r^2; these grow with the load to the power 5/2 at most, so that mu, at an equal
+        load, differs by r^(9/2) (fact F27).
+        """
+        return float(((1.0 + self.deviation) / (1.0 - self.deviation)) ** 4.5 - 1.0)
+
     @classmethod
     def from_relaxation(
         cls, G: Callable[[float], float], *, rtol: float = 0.01, over: Any, stiffness: Any = None
@@ -529,8 +539,8 @@ class GeneralizedMaxwell(_Relaxed):
         It has to fall with time, and may be infinite at t = 0. `over` are the shortest and the longest time
         in which a contact is passed, in s or with a unit. At an equal length of the contact, load and
         friction in steady sliding are within the factors 1 - eps and 1 + eps of those of G, eps =
-        `deviation` <= `rtol` (fact F27), while c/V, c the contact length, is within `over`; so at a given
-        load is mu, but for the factors that its growth with the load adds.
+        `deviation` <= `rtol` (fact F27), while c/V, c the contact length, is within `over`; outside, results
+        have a note. Under a given load mu differs by `friction_bound` of it at most.
 
         Raises ValueError if `G` does not fall, or no series is within `rtol`.
 
@@ -545,7 +555,8 @@ class GeneralizedMaxwell(_Relaxed):
             if stiffness is None
             else convert(stiffness, quantities(cls)["stiffness"])
         )
-        return cls._of(K, *above("fitting.relaxation").arms_of(G, K, _share(rtol), _range(over)))
+        over = _range(over)
+        return cls._of(K, over, *above("fitting.relaxation").arms_of(G, K, _share(rtol), over))
 
     @classmethod
     def from_spectrum(
@@ -562,13 +573,16 @@ class GeneralizedMaxwell(_Relaxed):
         True
         """
         K = convert(stiffness, quantities(cls)["stiffness"])
-        found = above("fitting.relaxation").arms_of_spectrum(H, _share(rtol), _range(over))
-        return cls._of(K, *found)
+        over = _range(over)
+        return cls._of(
+            K, over, *above("fitting.relaxation").arms_of_spectrum(H, _share(rtol), over)
+        )
 
     @classmethod
-    def _of(cls, K: float, series: Any, deviation: float) -> "GeneralizedMaxwell":
+    def _of(cls, K: float, over: Any, series: Any, deviation: float) -> "GeneralizedMaxwell":
         pairs = zip(series.modulus.tolist(), series.time.tolist(), strict=True)
-        found = cls(K, arms=tuple(Arm(*pair) for pair in pairs))
+        rates = dict(zip(MEASURED_RANGES[0], (1.0 / over[1], 1.0 / over[0]), strict=True))
+        found = cls(K, arms=tuple(Arm(*pair) for pair in pairs), **rates)
         object.__setattr__(found, "deviation", deviation)
         return found
 

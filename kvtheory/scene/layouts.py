@@ -25,10 +25,18 @@ STARTS = re.compile(r"[\s,;\"]*(?:[-+.]*\d|nan\b)", re.IGNORECASE)
 COMMENT = re.compile(r"^\s*(?:#|%|//)+\s*(?:\w+:\s+)?")
 """The mark of a comment, and a word with a colon behind it, such as "columns:"."""
 UNITLESS = "", "-", "1"
+RULE = re.compile(r"[\s|+=_:,;-]*(?:-{2}|={2}|_{2})[\s|+=_:,;-]*$")
+"""A line that is drawn between the rows of a table."""
+SIZE = re.compile(r"(?<![^\s|])\|\s*(E|G|η|eta)\*?\s*\|")
+"""A modulus between bars that are not those of a table."""
+END = re.compile(r"\s*(?:\\\\|\\(?:hline|toprule|midrule|bottomrule)).*$")
+"""The end of a row in LaTeX, and its rules."""
 INCH = re.compile(r'(?<=[EG])"(?=\s*(?:[\[(/\t;, ]|$))')
 """A double prime written as a quotation mark, before a unit or at the end of a name."""
 BEFORE_UNITS = 2
 """Most blank rows between a header and its row of units."""
+DECIMAL = re.compile(r"[-+]?\d*[.,]\d")
+"""The beginning of a cell that holds a number, with an error behind it or a mistake, and no unit."""
 LONGEST_UNIT = 12
 """Longest text that may be a unit in a row of units."""
 
@@ -82,6 +90,24 @@ class Layout:
     def decimal(self) -> str:
         """The decimal mark that rows may have beside the point."""
         return "." if self.separator == "," else ","
+
+
+def undrawn(lines: Sequence[str]) -> list[str]:
+    r"""Return the lines of a table without its rules, and with tabs for bars or the ampersands of LaTeX.
+
+    >>> undrawn(["| f [Hz] | |G*| [Pa] |", "|---|---|", "| 1 | 2 |"])
+    ['f [Hz] \t G* [Pa]', '', '1 \t 2']
+    """
+    lines = ["" if RULE.match(line) else line for line in lines]
+    for mark in "|&":
+        row = re.compile(rf"\s*[{mark}]?\s*[-+.]*\d[^{mark}]*[{mark}]")
+        if any(mark in line and row.match(line) for line in lines):
+            plain = (SIZE.sub(r"\1*", END.sub("", line)).strip() for line in lines)
+            lines = [
+                line.removeprefix(mark).removesuffix(mark).strip(" ").replace(mark, "\t")
+                for line in plain
+            ]
+    return lines
 
 
 def blank(line: str) -> bool:
@@ -182,7 +208,8 @@ def _units_below(
     raw = splitter(separator)(COMMENT.sub("", lines[below]))
     cells = [cell.strip("[]() ") for cell in raw]
     texts = [cell for cell in cells if cell]
-    is_number = [number(cell, ",") is not None for cell in texts if cell not in UNITLESS]
+    is_number = [DECIMAL.match(cell) or number(cell, ",") is not None for cell in texts
+                 if cell not in UNITLESS]  # fmt: skip
     long = any(len(cell) > LONGEST_UNIT for cell in texts)
     spaced = separator in SPACES and len(cells) != count
     numbers = all(

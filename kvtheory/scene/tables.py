@@ -9,11 +9,7 @@ import warnings
 from importlib import import_module
 from pathlib import Path
 
-MARKS = {
-    codecs.BOM_UTF8: "utf-8-sig",
-    codecs.BOM_UTF16_LE: "utf-16",
-    codecs.BOM_UTF16_BE: "utf-16",
-}
+MARKS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 """Byte order marks, and the encodings that they indicate."""
 MOST = 2**28
 """Largest size of a file in bytes; a million rows of ten columns are smaller."""
@@ -21,7 +17,7 @@ EXCEL = ".xlsx", ".xlsm"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
 _HEADS = (
-    re.compile(r"^(?P<name>.*\S)\s*\[(?P<unit>[^\]]*)\]$"),
+    re.compile(r"^(?P<name>.*\S)\s*[\[{<](?P<unit>[^\]}>]*)[\]}>]$"),
     re.compile(r"^(?P<name>.*\S)\s*\((?P<unit>(?:[^()]|\([^()]*\))*)\)$"),
     re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
     re.compile(r"^(?P<name>[^,]*?),\s*(?P<unit>\S+)$"),
@@ -45,6 +41,7 @@ def number(cell: str, decimal: str) -> float | None:
     """Return a number, or None; a decimal comma is read where the comma is not the separator."""
     if decimal == "," and cell.count(",") == 1 and "." not in cell:
         cell = cell.replace(",", ".")
+    cell = cell.replace("\N{MINUS SIGN}", "-")
     if EXPONENT.search(cell):
         cell = EXPONENT.sub("e", cell)
     try:

@@ -90,6 +90,16 @@ TEMPERATURES = (
 )
 """Scales of temperature: the size of a degree in K, and the zero of the scale in K."""
 
+
+def celsius(T: float) -> str:
+    """Return a temperature in K as text in degrees Celsius, without the rounding of its difference.
+
+    >>> celsius(273.15 - 1e-13), celsius(298.1812)
+    ('0', '25.03')
+    """
+    return f"{round(T - ZERO_CELSIUS, 6) + 0.0:.4g}"
+
+
 LONGEST_UNIT = 60
 _NUMBER = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)(?![0-9.])", re.I
