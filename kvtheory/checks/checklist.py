@@ -1,7 +1,7 @@
 """The checks: each compares one number with what theory allows, or raises `NotMade` with the reason."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks import comparison_case as case_of
+from kvtheory.checks.allowances import ELEMENTS_AT_AN_EDGE
 from kvtheory.checks.comparison_case import COARSE, SMALLEST, Case, NotMade, rms
-from kvtheory.checks.noise import SURE, extreme, means
+from kvtheory.checks.noise import SURE, extreme, means, noise
 from kvtheory.checks.theory import Array, Curves
 from kvtheory.results.comparison import Check
 from kvtheory.scene.model import Support
@@ -54,9 +55,9 @@ class Row(NamedTuple):
 
 
 class Mean(NamedTuple):
-    """The mean of a curve over some rows, and what theory gives; both, and what is allowed, are in SI."""
+    """The mean of a weighted sum of curves over some rows: what theory gives, and is allowed, both in SI."""
 
-    curve: str
+    weights: Mapping[str, float]  # by curve, that of the first is 1
     rows: NDArray[np.bool_]
     expected: float
     allowed: float
@@ -64,15 +65,17 @@ class Mean(NamedTuple):
 
     def off(self, columns: Curves) -> float:
         """Return how far the mean is from theory."""
-        return float(columns[self.curve][self.rows].mean()) - self.expected
+        found = (by * columns[name][self.rows].mean() for name, by in self.weights.items())
+        return float(sum(found)) - self.expected
 
 
 def worst_mean(case: Case, means_of: Callable[[Case], Sequence[Mean]]) -> Measured:
     """Compare the mean that is worst relative to its allowance."""
     worst = max(means_of(case), key=lambda each: abs(each.off(case.columns)) / each.allowed)
-    scale, off = case.theory.scales[worst.curve], worst.off(case.columns)
-    mean = f"{worst.curve} {worst.expected + off:.6g}, {worst.words} {worst.expected:.6g} in SI"
-    return abs(off) / scale, worst.allowed / scale, mean if worst.words else ""
+    name, off = next(iter(worst.weights)), worst.off(case.columns)
+    note = f"{name} {worst.expected + off:.6g}, {worst.words} {worst.expected:.6g} in SI"
+    scale = case.theory.scales[name]
+    return abs(off) / scale, worst.allowed / scale, note if worst.words else ""
 
 
 def initial_rest(case: Case) -> list[Mean]:
@@ -85,7 +88,7 @@ def initial_rest(case: Case) -> list[Mean]:
         raise NotMade(f"the data begin at {time[0] * 1e3:.4g} ms, after the start")
     random = SURE * float(case.bands["depth"].noise[before].max()) / np.sqrt(before.sum())
     allowed = case.tolerance * random + case.allowed("depth")[before].max()
-    return [Mean("depth", before, depth_0, float(allowed))]
+    return [Mean({"depth": 1.0}, before, depth_0, float(allowed))]
 
 
 def jump(case: Case) -> Measured:
@@ -243,7 +246,7 @@ def steady_limit(case: Case) -> list[Mean]:
         random = SURE * rms(case.bands[curve].noise[late]) / math.sqrt(late.sum())
         smooth = float(case.bands[curve].systematic[late].max()) + SMALLEST * theory.scales[curve]
         allowed = case.tolerance * (smooth + left + random)
-        found.append(Mean(curve, late, float(exact[curve]), allowed, "exact"))
+        found.append(Mean({curve: 1.0}, late, float(exact[curve]), allowed, "exact"))
     line = theory.scene.indenter.per_width and not theory.scene.foundation.arms
     if line and theory.scene.drive.rigid and "friction_force" in case.columns:
         found.append(_settled_friction(case, time > settled))
@@ -251,23 +254,33 @@ def steady_limit(case: Case) -> list[Mean]:
 
 
 def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
-    """Return the mean friction of a line contact after the transient, with that of theory at these times.
+    """Return the mean of F_x - F_z a/R of a line contact after the transient: the leading edge leaves it alone.
 
-    Where the leading edge lacks the force b, friction lacks b a/R. A free indenter sinks by b/(K A + k_s)
-    (F12) until it bears its load, and dF_x/d(delta) = C V L/R, L the length of the contact, nearly restores it.
+    Elements that lack the force b there lack the friction b a/R. A free indenter then sinks by b/(K A + k_s) (F12),
+    where F_z grows by K A and F_x by C V L/R, L being the length of the contact. Where data are in step with
+    elements, so is delta', by half of what b changes in a step, with a mean slope of a/2R. At the other edge
+    p = 0, and elements change p' x dx, with p' = K sqrt(a^2 + l_r^2)/R.
     """
-    theory, name = case.theory, "friction_force"
-    state, K = theory.steady_state, theory.scene.foundation.stiffness
-    a, l_r = float(state.half_length), abs(float(state.retardation_length))
+    theory, scene, columns = case.theory, case.theory.scene, case.columns
+    state, R, step = theory.steady_state, theory.radius, case.resolution.time_step
+    K, C, off = scene.foundation.stiffness, scene.foundation.damping, ELEMENTS_AT_AN_EDGE * case.resolution.spacing
+    a, l_r = float(state.half_length), float(state.retardation_length)
     L = abs(float(state.trailing_edge - state.leading_edge))
-    restored = 0.0 if theory.scene.held else K * l_r * L / theory.stiffness(state.depth, a, l_r)
-    friction, normal = (case.bands[n] for n in (name, "normal_force"))
-    edge = (normal.systematic - normal.rounding) * abs(a - restored) / theory.radius
-    smooth = float((edge + friction.rounding)[late].max()) + SMALLEST * theory.scales[name]
-    random = SURE * rms(friction.noise[late]) / math.sqrt(late.sum())
-    words = f"in the mean after {case.time[late][0] * 1e3:.4g} ms, theory"
-    expected = float(case.now[name][late].mean())
-    return Mean(name, late, expected, case.tolerance * (smooth + random), words)
+    lever = math.copysign(a / R, l_r) if "normal_force" in columns else 0.0
+    weights = {"friction_force": 1.0} | ({"normal_force": -lever} if lever else {})
+    data, theirs = (sum(by * curves[n] for n, by in weights.items()) for curves in (columns, case.now))
+    arm = off if lever else a
+    if lever and not scene.held:
+        regained = K * abs(l_r) * L / theory.stiffness(state.depth, a, abs(l_r))
+        arm += abs(a - regained) + 0.25 * a * min(step * C * L / scene.support.mass, 1.0)
+    friction, normal = case.bands["friction_force"], case.bands["normal_force"]
+    lost = (normal.systematic - normal.rounding) * arm + 0.5 * K * math.hypot(a, l_r) * off**2 * L / R
+    smooth = (lost / R + friction.rounding + abs(lever) * normal.rounding)[late].max()
+    sigma = rms(noise(case.time, np.asarray(data - theirs), case.now["friction_force"])[late])
+    allowed = float(smooth) + SURE * sigma / math.sqrt(late.sum())
+    allowed += SMALLEST * theory.scales["friction_force"]
+    words = f"less F_z a/R in the mean after {case.time[late][0] * 1e3:.4g} ms, theory"
+    return Mean(weights, late, float(theirs[late].mean()), case.tolerance * allowed, words)
 
 
 def phase(case: Case) -> Measured:

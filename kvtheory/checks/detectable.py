@@ -110,7 +110,10 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
 
 
 def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
-    """Return the smallest error with which the data fail, whatever its sign; infinite if they never do."""
+    """Return the smallest error with which the data fail, the mean of both signs; infinite if they never do.
+
+    What the data are off already adds to an error of one sign and hides one of the other.
+    """
     values, here, low, high = bounds
     slope = values({**case.columns, **{n: case.columns[n] + by for n, by in slopes.items()}}) - here
     found = []
@@ -123,7 +126,7 @@ def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
             if x > 0.0 and left(end := min(x, MOST)) > 0.0:
                 x = float(brentq(left, 0.0, end, rtol=PRECISE))
         found.append(x)
-    return max(found)
+    return sum(found) / 2.0
 
 
 def _beyond(case: Case, name: str, rows: int, slope: Array, x: float) -> float:

@@ -133,10 +133,10 @@ def _means(case: Case) -> list[Mean]:
         band = case.bands[name]
         random = SURE * rms(band.noise) / math.sqrt(case.time.size)
         allowed = case.tolerance * (rms(band.systematic) + random)
-        found.append(Mean(name, every, float(case.now[name].mean()), allowed))
+        found.append(Mean({name: 1.0}, every, float(case.now[name].mean()), allowed))
     return found
 
 
 def _mean(case: Case, name: str) -> Measured:
     """Compare the mean of a column."""
-    return worst_mean(case, lambda case: [each for each in _means(case) if each.curve == name])
+    return worst_mean(case, lambda case: [each for each in _means(case) if name in each.weights])
