@@ -29,7 +29,7 @@ def run(
 
     Faults: `slides` or `remembers` false, `hunt` (the damping grows with the compression), `middle` (friction
     by the normal in the middle of the patch), `share` of the contact, `loaded` (arms at the start), `start`
-    (factor on the initial depth).
+    (factor on the initial depth), `sinks` (factor on delta' in the compression rate).
     """
     slides, remembers = fault.get("slides", True), fault.get("remembers", True)
     K_i, T_i = np.array(arms, dtype=float).reshape(-1, 2).T[:, :, None, None]
@@ -51,7 +51,7 @@ def run(
     def press(d, rate, k, v, moving):
         x = X + Y[k]
         g = d - (x * x + y * y) / (2 * R)
-        rise = rate - slides * x / R * v
+        rise = fault.get("sinks", 1.0) * rate - slides * x / R * v
         if arms:
             free = ((gain * u - kept * s).sum(axis=0) / (K + gain.sum())) if moving else u
         else:

@@ -11,6 +11,7 @@ from kvtheory.checks import faults
 from kvtheory.checks.checklist import PHASE, SAMPLING, judge
 from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNKNOWN, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
+from kvtheory.checks.detectable import detectable
 from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Pair, Trial, bench, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.checks.trial_elements import Rule, changes
@@ -125,10 +126,12 @@ def compare(
         checks = judge(case)
     case, checks = _undecided(case, checks)
     text, explanations = diagnose(case, checks)
+    known = verdict(checks)
+    limits, shown = ({}, "") if known == "disagrees" else detectable(case)
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
-        verdict(checks), checks, text + unused(series), explanations, series.source, tolerance,
-        dict(series.columns), dict(case.now), allowed, theory.units,
+        known, checks, text + shown + unused(series), explanations, series.source, tolerance,
+        dict(series.columns), dict(case.now), allowed, theory.units, limits,
     )  # fmt: skip
 
 

@@ -67,7 +67,10 @@ LIKELY, READ = 0.8, 0.75
 """Ranks of faults that show but cannot be tried: an unknown time step, and an estimated spacing."""
 LARGE, MANY = 10.0, 30.0
 """Multiples of the scale and of the initial difference beyond which a difference has grown."""
-UNSTABLE, FEW = "unstable time step", "too few elements"
+LOST, NEAR, SEVERAL = 0.75, 0.12, 2
+"""Part of a force below which contact counts as lost, if nine in ten other rows are as near to theory as the
+second; and the fewest losses that are told."""
+UNSTABLE, FEW, DROPS = "unstable time step", "too few elements", "contact lost for single steps"
 """The names of the faults."""
 
 
@@ -306,6 +309,13 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
                 f"rather than {density:.3g} /mm"
             )
             yield Explanation(FEW, text, 1.0 if known else READ, True)
+    if (drops := _drops(case)).size >= SEVERAL:
+        text = (
+            f"the contact is lost for single steps, {drops.size} times from {drops[0] * 1e3:.4g} ms on, and is back "
+            "at once: an element in contact fails its test by rounding, as where its position is once k dt + dt and "
+            "once (k + 1) dt. Compare with a tolerance, or keep contact until p < 0 (Eqs. 23 and 24)"
+        )
+        yield Explanation(DROPS, text, LIKELY, True)
     if case.theory.scene.held or case.resolution.step_known:
         return
     steps = np.diff(case.time)
@@ -324,6 +334,17 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     else:
         return
     yield Explanation(UNSTABLE, f"the time step is unstable (F15), {text}", LIKELY, False)
+
+
+def _drops(case: Case) -> Array:
+    """Return the times at which all forces fall far below theory, if other rows are near it."""
+    forces = [name for name in ("normal_force", "friction_force") if name in case.names]
+    with np.errstate(all="ignore"):
+        part = np.array([case.columns[name] / case.now[name] for name in forces])
+    lost = (part < LOST).all(axis=0) & bool(forces)
+    if lost.all() or np.nanquantile(np.abs(part[0, ~lost] - 1.0), 0.9) > NEAR:
+        return np.zeros(0)
+    return case.time[1:][lost[1:] & ~lost[:-1]]
 
 
 def _grows(case: Case) -> bool:

@@ -40,10 +40,10 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
 }
 """Kinds of scenes in which a mistake can show."""
 FORGETFUL, DAMPERS = math.inf, (0.3, 1.0, 3.0)
-TIMES, PARTS = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25)
+TIMES, PARTS, RATES = (0.4, 0.7, 1.4), (0.03, 0.1, 0.25), (0.5, 0.8, 1.25, 2.0)
 STARTS, LOSSES, LAGS = (0.85, 1.15), (0.3, 0.6, 0.8, 0.95), (0.0, 0.1, 0.25, 0.6)
-"""Simulated strengths: factors of damping, of a time and of the depth; parts of a force and of a length; and
-lags, of which Runge-Kutta is unstable with more than the last one."""
+"""Simulated strengths: factors of damping, of a time, of a rate and of the depth; parts of a force and of a
+length; and lags, of which Runge-Kutta is unstable with more than the last one."""
 BETWEEN = 5
 """Starts of a fit for each simulated strength: beyond some strength there may be no slope."""
 HUGE, BEYOND = 1e100, 0.02
@@ -56,6 +56,9 @@ MISTAKES = (
     Mistake("no depth term in the compression rate",
             "the compression rate is -h' V alone: an indenter that sinks or rises adds delta' (Eq. 7)",
             [Rule(depth_rate=0.0), Rule(depth_rate=0.0, decay=FORGETFUL)], "moves"),
+    Mistake("wrong depth term in the compression rate",
+            "the compression rate is {:.3g} delta' - h' V: the whole of delta' counts (Eq. 7)",
+            [Rule(depth_rate=factor) for factor in RATES], "moves", RATES, 1.0),
     Mistake("sign of the compression rate",
             "the pressure falls with the compression rate: it is p = K u + C u' (Eq. 5)",
             [Rule(depth_rate=-1.0, slide_rate=-1.0, decay=FORGETFUL)]),

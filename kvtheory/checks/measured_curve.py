@@ -3,6 +3,7 @@
 It is a case whose "time" is the velocity, so that faults are tried as for a time series.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
@@ -13,9 +14,19 @@ import numpy as np
 
 from kvtheory.checks import comparing
 from kvtheory.checks.allowances import Band, Resolution
-from kvtheory.checks.checklist import RELATIVE, Row, judge, largest, root_mean_square
+from kvtheory.checks.checklist import (
+    RELATIVE,
+    Mean,
+    Measured,
+    Row,
+    judge,
+    largest,
+    root_mean_square,
+    worst_mean,
+)
 from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.contact_rules import mistakes
+from kvtheory.checks.detectable import detectable
 from kvtheory.checks.noise import SURE, noise, rounded
 from kvtheory.checks.theory import CURVES, Array, Theory
 from kvtheory.checks.trial_elements import steady_changes
@@ -79,13 +90,14 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
         for check in judge(case, _rows(case))
     )
     text, explanations = comparing.diagnose(case, checks, FAMILIES)
-    if comparing.verdict(checks) == "agrees":
-        text += STEADY_ONLY
+    known = comparing.verdict(checks)
+    limits, shown = ({}, "") if known == "disagrees" else detectable(case, (_means,))
+    text += (STEADY_ONLY if known == "agrees" else "") + shown
     columns = {"velocity": series.time, **{name: series.columns[name] for name in names}}
     return Comparison(
-        comparing.verdict(checks), checks, text + comparing.unused(series), explanations, series.source,
+        known, checks, text + comparing.unused(series), explanations, series.source,
         tolerance, columns, now, {name: case.allowed(name) for name in names},
-        {**steady.units, "friction_coefficient": "1"},
+        {**steady.units, "friction_coefficient": "1"}, limits,
     )  # fmt: skip
 
 
@@ -114,9 +126,17 @@ def _loudest(case: Case) -> tuple[float, float, str]:
     return loud, case.tolerance * LARGEST_SCATTER, ""
 
 
-def _mean(case: Case, name: str) -> tuple[float, float, str]:
-    """Compare the mean difference of a column."""
-    band, scale = case.bands[name], case.theory.scales[name]
-    random = SURE * rms(band.noise) / np.sqrt(case.time.size)
-    allowed = case.tolerance * (rms(band.systematic) + random) / scale
-    return abs(float(np.mean(case.residual(name)))), allowed, ""
+def _means(case: Case) -> list[Mean]:
+    """Return the mean of each column."""
+    every, found = np.ones(case.time.size, dtype=bool), []
+    for name in case.names:
+        band = case.bands[name]
+        random = SURE * rms(band.noise) / math.sqrt(case.time.size)
+        allowed = case.tolerance * (rms(band.systematic) + random)
+        found.append(Mean({name: 1.0}, every, float(case.now[name].mean()), allowed))
+    return found
+
+
+def _mean(case: Case, name: str) -> Measured:
+    """Compare the mean of a column."""
+    return worst_mean(case, lambda case: [each for each in _means(case) if name in each.weights])

@@ -1,0 +1,136 @@
+"""The smallest errors that a series would have shown, by the allowances that judge it.
+
+An error x of a quantity changes each curve by x times its slope: that of a column is the column itself, that of
+a parameter the change of theory over the change of the parameter. All that is compared with an allowance is
+linear in the curves, except root mean squares.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from itertools import product
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from kvtheory.checks.checklist import Mean, balances, initial_rest, lengths, steady_limit
+from kvtheory.checks.comparison_case import Case, NotMade, with_longer_steps
+from kvtheory.checks.faults import FRICTION, parameters_of
+from kvtheory.checks.hypotheses import VELOCITY, Bench, bench, scaled_scene
+from kvtheory.checks.noise import means
+from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves
+
+QUANTITIES = {
+    "friction_force": ("friction", ("friction_force", *FRICTION)),
+    "load": ("load", ("normal_force",)), "depth": ("depth", ("depth",)),
+    "stiffness": ("K", ("K",)), "retardation_time": ("tau", ("tau", "all tau_i", "tau_1")),
+    "mass": ("M", ("M",)), "velocity": ("V", ("V",)), "radius": ("R", ("R",)),
+}  # fmt: skip
+"""Each quantity with its word, and the columns or symbols that stand for it: the first that there is counts."""
+STEP, FAR = {False: 0.03, True: 0.2}, 2.0
+"""Change of a parameter for slopes, larger where theory is a simulation by elements; and from how many steps
+on a slope is taken again, at the error that was found."""
+MOST, PRECISE = 1.0, 0.01
+"""Largest error that is looked for: as much as the quantity itself; and precision of what is found."""
+
+Bounds = tuple[Callable[[Curves], Array], Array, Array, Array]
+
+
+def detectable(
+    case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]] = (initial_rest, steady_limit)
+) -> tuple[dict[str, float | None], str]:
+    """Return the smallest relative error of each quantity that data which agree would have shown, and words.
+
+    It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
+    """
+    case = with_longer_steps(case) or case
+    rows, bounds = bench(case), _bounds(case, means_of)
+    powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
+    found: dict[str, float | None] = {}
+    shown, unseen = [], []
+    for name, (word, ways) in QUANTITIES.items():
+        x, way = MOST, next((way for way in ways if way in (*case.names, *powers)), None)
+        if way in powers:
+            step = STEP[case.theory.by_elements]
+            x = _smallest(case, bounds, _slopes(case, rows, powers[way], step))
+            if FAR * step < x < np.inf:
+                x = _smallest(case, bounds, _slopes(case, rows, powers[way], min(x, MOST)))
+        elif way:
+            x = _smallest(case, bounds, {way: case.columns[way]})
+        found[name] = x if x < MOST else None
+        if x < MOST:
+            shown.append(f"{x:.2%} in {word}")
+        elif way:
+            unseen.append(word)
+    text = f" These data would have shown an error of {', '.join(shown)}." if shown else ""
+    text += f" They would not show one of {MOST:.0%} in {', '.join(unseen)}." if unseen else ""
+    return found, text
+
+
+def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
+    """Return the slope of each curve by a parameter; a velocity that the data hold would be as wrong as it."""
+    scene, times = rows.theory.scene, None
+    if rows.series.curve and VELOCITY in powers:
+        times = rows.time * (1.0 + step)
+    else:
+        scene = scaled_scene(scene, powers, 1.0 + step)
+    pair, found = rows.against(scene, times), {}
+    given = ("velocity", "sliding_velocity")[: 1 + scene.drive.rigid]
+    for name in rows.names if pair else ():
+        change = pair[1][name] - rows.now[name]
+        seen = (np.abs(change) > TRIAL_RTOL * rows.theory.scales[name]) & (name not in given)
+        found[name] = np.interp(case.time, rows.time, np.where(seen, change, 0.0) / step)
+    return found
+
+
+def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) -> Bounds:
+    """Return what is linear in the curves, as a function of these; its values, and the least and greatest."""
+    parts: list[tuple[Callable[[Curves], Any], Any, Any]] = []
+    for name in case.names:
+        for n in lengths(case):
+            band, allowed = case.bands[name].averaged(n), case.limit(name, n) * case.theory.scales[name]
+            averages = partial(lambda curves, name, n: means(curves[name], n), name=name, n=n)
+            parts.append((averages, band.low - allowed, band.high + allowed))
+    for of in means_of:
+        with suppress(NotMade, KeyError):
+            parts += [(each.off, -each.allowed, each.allowed) for each in of(case)]
+    support, depth_0 = case.theory.scene.support, case.theory.static.depth
+    if not (case.series.curve or case.theory.scene.held) and {"depth", "normal_force"} <= {*case.names}:
+        for window, limit in balances(case):
+            missing = partial(window.missing_force, support=support, depth_0=depth_0)
+            parts.append((missing, -limit, limit))
+
+    def values(curves: Curves) -> Array:
+        return np.hstack([part(curves) for part, _, _ in parts])
+
+    low, high = (np.hstack([part[k] for part in parts]) for k in (1, 2))
+    return values, values(case.columns), low, high
+
+
+def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
+    """Return the smallest error with which the data fail, the mean of both signs; infinite if they never do.
+
+    What the data are off already adds to an error of one sign and hides one of the other.
+    """
+    values, here, low, high = bounds
+    slope = values({**case.columns, **{n: case.columns[n] + by for n, by in slopes.items()}}) - here
+    found = []
+    for sign in (1.0, -1.0):
+        with np.errstate(all="ignore"):
+            room = np.where(sign * slope > 0.0, high - here, here - low) / np.abs(slope)
+        x = max(float(np.nanmin(room, initial=np.inf)), 0.0)
+        for name, n in product(slopes, lengths(case)):
+            left = partial(_beyond, case, name, n, sign * slopes[name])
+            if x > 0.0 and left(end := min(x, MOST)) > 0.0:
+                x = float(brentq(left, 0.0, end, rtol=PRECISE))
+        found.append(x)
+    return sum(found) / 2.0
+
+
+def _beyond(case: Case, name: str, rows: int, slope: Array, x: float) -> float:
+    """Return by which part the root mean square of a curve exceeds its limit with an error."""
+    columns = {**case.columns, name: case.columns[name] + x * slope}
+    shifted = replace(case, series=replace(case.series, columns=columns))
+    return shifted.beyond(name, rows) / case.rms_limit(name, rows) - 1.0
