@@ -13,6 +13,7 @@ from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
+from kvtheory.results.cycles import CYCLE
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
@@ -23,6 +24,7 @@ from kvtheory.scene.model import Scene
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below this range rounding dominates; above it any number would do."""
 
+SPRUNG = "needs drive.stiffness, of a spring"
 COASTS = "With drive.stiffness = 0 the indenter coasts to rest, and does not slide steadily."
 
 
@@ -94,20 +96,25 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
-    from kvtheory.ladder import climbing, series  # these import the models over time
+    from kvtheory.ladder import climbing, cycles, series  # these import the models over time
 
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
     problems = Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
+    of_cycle = not over_time and bool(CYCLE.keys() & (quantity or ()))
+    if of_cycle:
+        units = CYCLE
+        if scene.drive.rigid or scene.drive.coasts:
+            problems.add("`quantity`", quantity[0], SPRUNG)
     names = _names(quantity, units, over_time, problems)
     with problems.catching("`at`", at):
         times_of(scene, at)
     problems.report()
-    if over_time:
-        follow = partial(transient, progress=progress)
-        simulate = partial(elements, progress=progress)
-        rungs = series.rungs(series.Models(steady, follow, simulate, fewer_arms))
+    follow, simulate = partial(transient, progress=progress), partial(elements, progress=progress)
+    models = series.Models(steady, follow, simulate, fewer_arms)
+    if over_time or of_cycle:
+        rungs = (cycles if of_cycle else series).rungs(models)
     else:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         if scene.drive.coasts:
@@ -138,7 +145,11 @@ def _names(
         if name in units:
             continue
         if over_time and name in SPRING_UNITS:
-            what = "needs drive.stiffness, of a spring"
+            what = SPRUNG
+        elif over_time and name in CYCLE:
+            what = "belongs to the cycle in which the whole motion ends; leave out the times"
+        elif units is CYCLE and name in (STEADY_UNITS | SERIES_UNITS):
+            what = "does not belong to the cycle: ask for it apart"
         elif name in other:
             hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
