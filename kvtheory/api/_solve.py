@@ -50,13 +50,15 @@ def solve(
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
         in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
-        load and depth.
+        load and depth. On a spring in the drive also of the cycle in which the run ends, as in `sweep`:
+        ``stick_slip_amplitude`` (0 of steady sliding), ``stick_slip_period`` (NaN of it), and
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
     rtol
         Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
-        relative to the static depth, half length and load.
+        relative to the static depth, half length and load; for a cycle to its amplitude, period and ranges.
     over_time
         Solve for a time series even without `at`, at times chosen by the model.
     progress
@@ -77,7 +79,7 @@ def solve(
         If `rtol` is out of range.
     ToleranceError
         If no model is known to be within the tolerance, with how close each came; or if steady sliding is
-        asked for and not known to be stable on the spring in the drive.
+        asked for and not known to be stable on the spring in the drive; or if the run ends before its cycle.
 
     Examples
     --------

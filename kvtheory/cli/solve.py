@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     "--rtol", type=float, default=1e-3, show_default=True,
     help="Largest relative error; of a series, relative to the static state.",
 )  # fmt: skip
-@click.option("--quantity", metavar="NAME,...", help="Quantities to solve for; default: all.")
+@click.option(
+    "--quantity", metavar="NAME,...",
+    help="Quantities to solve for; default: all. On a spring also of the cycle in which the run ends, "
+    "such as stick_slip_amplitude,stick_slip_period.",
+)  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print which models were tried, and why.")
 @console.series_options
 def solve(
@@ -29,7 +33,8 @@ def solve(
 ) -> Iterator[Any]:
     """Solve SCENE by the cheapest model within the tolerance.
 
-    Without --at, -o and --plot the result is steady sliding, with them the motion from rest over time.
+    Without --at, -o and --plot the result is steady sliding, or a cycle, with them the motion from rest over
+    time.
     """
     from kvtheory.api import solve as find
 

@@ -25,11 +25,12 @@ from kvtheory.scene.model import Scene
 
 STEP = 1e-2
 """Tolerance of a step of the continuum over that of the cycle."""
-ELEMENTS = 100.0
+ELEMENTS = 120.0
 """Elements in the contact at rest in the first run."""
 GAINS = 0.7
 """Share to which a finer run must reduce the error: else it is that of the limit, for a longer run."""
 STEADY = "The motion ends in steady sliding: there is no stick-slip."
+UNSURE = "runs with fewer elements end otherwise, as they may near the onset of instability: move away from it"
 UNSETTLED = (
     "the run shows neither a cycle, in four equal or eight similar periods, nor steady sliding; choose a "
     "longer run.duration"
@@ -70,6 +71,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
             finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER[line])
             work = result.element_updates * finer ** DIMENSIONS[line]
             if error <= request.rtol or error > GAINS * before or work > MOST_UPDATES[line]:
+                need(UNSURE if error == math.inf else "")
                 return answer
             density, before = density * finer, error
 

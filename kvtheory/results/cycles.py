@@ -13,6 +13,7 @@ at 39 to 214 mm/s, this took 5 to 117 cycles; the amplitude itself was within 1 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,16 +33,18 @@ CYCLE = {
 
 REPEATS, MOST_PEAKS = 0.01, 4
 """Share of the swing, and of the period, by which a cycle may differ from the one before it; peaks in one."""
-GROWS, NOISE = 1.05, 0.1
-"""Factor on the rate from the first to the second half of that share from which even such a motion grows, and
-the share of the first share above which it is no noise."""
 RECENT, CHANGES = 3, 1e-3
 """Swings whose growth counts as that at the end of a motion, and the share by which it must differ from 1."""
 BISECTIONS = 30
 """Halvings of the time between two samples: a turn is flat, and its value then known to the last digit."""
-STEADY, LAST = 1e-3, 0.75
-"""A rate along x counts as zero if it stays below the first share of the largest sliding velocity from the
-second share of the motion to its end."""
+STEADY, LATE = 1e-3, (0.75, 0.875, 1.0)
+"""A rate along x counts as zero if it stays below this share of the largest sliding velocity in the last
+quarter of the motion, given by its two parts."""
+GROWS, NOISE = 1.2, 0.1
+"""Factor on the root mean square of the rate from one part to the next from which even such a motion grows,
+and share of that share above which a rate is no noise."""
+DRIFTS = 4.0
+"""Times the range in that quarter, by which steady sliding may drift further."""
 FEWEST = 8
 """Least number of cycles for two triples, the wider of which spans the last half of the motion."""
 AGREE, DOUBT, FAR = 1e-3, 12.0, 1.5
@@ -79,6 +82,11 @@ class Cycle(Recorded):
         return np.array(astuple(self)[1:-1])
 
     @property
+    def known(self) -> "Cycle":
+        """The cycle; one whose errors are infinite is none."""
+        return Cycle(0.0) if math.inf in self.errors else self
+
+    @property
     def quantities(self) -> dict[str, float]:
         """All quantities, by the names of `CYCLE`."""
         return dict(zip(CYCLE, [self.settles, *self.values.tolist()], strict=True))
@@ -93,13 +101,13 @@ class Cycle(Recorded):
     def beside(self, others: Sequence["Cycle"], safety: float) -> "Cycle":
         """Return the cycle with `safety` times the largest difference to others added to its errors.
 
-        It does not settle if another one ends otherwise.
+        They are infinite if another one ends otherwise.
         """
         if not others:
             return self
         ways = {(each.settles, each.amplitude == 0.0) for each in (self, *others)}
         if len(ways) > 1:
-            return Cycle(0.0)
+            return replace(self, errors=(math.inf,) * 6)
         apart = np.max([abs(self.values - each.values) for each in others], axis=0)
         errors = self.errors + safety * apart / _scale(self.values)
         return replace(self, errors=tuple(errors.tolist()))
@@ -117,14 +125,16 @@ def cycle(times: Array, states: States) -> Cycle:
     """Return the cycle in which a motion on a spring ends; `times` are dense samples of all of it."""
     found, end = states(times), times[-1]
     rates, speed = found["offset_rate"], STEADY * np.abs(found["sliding_velocity"]).max()
-    late, last = (np.abs(rates[times >= share * end]).max() for share in (LAST, 0.5 * (1.0 + LAST)))
-    before = np.abs(rates[(times >= LAST * end) & (times < 0.5 * (1.0 + LAST) * end)]).max(
-        initial=0.0
-    )
-    if late <= speed and last <= max(GROWS * before, NOISE * speed):
-        number, force = (float(found[name][-1]) for name in ("sliding_velocity", "friction_force"))
-        errors = 0.0, 0.0, *[STEADY] * 4
-        return Cycle(1.0, 0.0, math.nan, number, number, force, force, errors)
+    parts = [rates[(times >= a * end) & (times <= b * end)] for a, b in pairwise(LATE)]
+    first, second = (math.sqrt(np.square(part).mean()) if part.size else 0.0 for part in parts)
+    quiet = max(np.abs(part).max(initial=0.0) for part in parts) <= speed
+    if quiet and second <= max(GROWS * first, NOISE * speed):
+        values, errors = list[float](), list[float]()
+        for name in ("sliding_velocity", "friction_force"):
+            late = found[name][times >= LATE[0] * end]
+            values += [float(late[-1])] * 2
+            errors += [DRIFTS * float(np.ptp(late) / (abs(late[-1]) or 1.0))] * 2
+        return Cycle(1.0, 0.0, math.nan, *values, (0.0, 0.0, *errors))
     turns, x = _turns(states, times, rates)
     ends, sizes = _cycles(turns, x)
     stride, limit, doubt = _limit(sizes)

@@ -207,7 +207,7 @@ class _Motions:
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         own = dict(solution.landmarks)
         if any(column.measure in CYCLE for column in self.plan.columns) and not units.rigid_drive:
-            cycle = ended(scene, solution.cycle)
+            cycle = ended(scene, solution.cycle).known
             own |= cycle.quantities
             for name, error in cycle.relative_errors.items():
                 self.measured.errors[name][index] = error

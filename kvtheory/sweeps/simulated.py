@@ -56,7 +56,7 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
         found.statements.add(relative(run.certificate.statement + SAMPLED * sampled))
         scale = scales(model.at_rest)
         if cycle := getattr(run, "cycle", None) if cycles else None:
-            cycle = ended(scene, cycle)
+            cycle = ended(scene, cycle).known
             found.statements.add(cycle_statement(SAFETY))
         for column in asked:
             if column.measure in CYCLE:
