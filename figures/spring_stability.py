@@ -50,7 +50,7 @@ def ends_steadily(scene: kv.Scene) -> bool | None:
     if duration * rates[:, 1].max() > 2.0 * np.pi * SWINGS:
         return None
     long = replace(scene, run=kv.Run(duration))
-    end = kv.transient(long, at=[0.0], rtol=RTOL, certify=False).cycle
+    end = kv.transient(long, at=[0.0], rtol=RTOL, certify=False).solution.cycle
     return bool(end.amplitude == 0.0) if end.settles else None
 
 

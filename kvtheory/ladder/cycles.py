@@ -30,7 +30,10 @@ ELEMENTS = 120.0
 GAINS = 0.7
 """Share to which a finer run must reduce the error: else it is that of the limit, for a longer run."""
 STEADY = "The motion ends in steady sliding: there is no stick-slip."
-UNSURE = "runs with fewer elements end otherwise, as they may near the onset of instability: move away from it"
+UNSURE = (
+    "runs with fewer elements end otherwise, as happens near the onset of instability; choose a velocity or "
+    "stiffness farther from it"
+)
 UNSETTLED = (
     "the run shows neither a cycle, in four equal or eight similar periods, nor steady sliding; choose a "
     "longer run.duration"

@@ -129,27 +129,33 @@ def cycle(times: Array, states: States) -> Cycle:
     first, second = (math.sqrt(np.square(part).mean()) if part.size else 0.0 for part in parts)
     quiet = max(np.abs(part).max(initial=0.0) for part in parts) <= speed
     if quiet and second <= max(GROWS * first, NOISE * speed):
-        values, errors = list[float](), list[float]()
-        for name in ("sliding_velocity", "friction_force"):
-            late = found[name][times >= LATE[0] * end]
-            values += [float(late[-1])] * 2
-            errors += [DRIFTS * float(np.ptp(late) / (abs(late[-1]) or 1.0))] * 2
-        return Cycle(1.0, 0.0, math.nan, *values, (0.0, 0.0, *errors))
+        late = [
+            found[name][times >= LATE[0] * end] for name in ("sliding_velocity", "friction_force")
+        ]
+        drifts = [DRIFTS * np.ptp(each) / (abs(each[-1]) or 1.0) for each in late]
+        slide, force = (each[-1] for each in late)
+        return _found(
+            [0.0, math.nan, slide, slide, force, force], [0.0, 0.0, *np.repeat(drifts, 2)]
+        )
     turns, x = _turns(states, times, rates)
     ends, sizes = _cycles(turns, x)
     stride, limit, doubt = _limit(sizes)
     if math.isnan(limit):
         return Cycle(0.0)
     now = _measured(states, ends[-2], ends[-1])
-    before = _measured(states, ends[-2 - stride], ends[-1 - stride])
+    step = now - _measured(states, ends[-2 - stride], ends[-1 - stride])
     change = sizes[-1] - sizes[-1 - stride]
     share = (limit - sizes[-1]) / change if limit != sizes[-1] else 0.0
-    values = now + share * (now - before)
+    values = now + share * step
     # As far as the amplitude is in doubt, so is how far the others go on.
-    wrong = doubt * np.maximum(
-        1.0, abs((now - before) / change) * limit / _scale(values) if change else 1.0
-    )
-    return Cycle(1.0, *values.tolist(), tuple(wrong.tolist()))
+    beside = abs(step / change) * limit / _scale(values) if change else 1.0
+    return _found(values, doubt * np.maximum(1.0, beside) * np.ones(6))
+
+
+def _found(values: Sequence[float] | Array, errors: Sequence[float] | Array) -> Cycle:
+    """Return a cycle, or steady sliding, that is known."""
+    amplitude, period, fast, slow, strong, weak = map(float, values)
+    return Cycle(1.0, amplitude, period, fast, slow, strong, weak, tuple(map(float, errors)))
 
 
 def note(times: Array, states: States) -> str:
@@ -157,8 +163,8 @@ def note(times: Array, states: States) -> str:
 
     >>> t = np.linspace(0.0, 5.0, 500)
     >>> growing = np.sin(6.0 * t) * np.exp(0.2 * t), np.exp(0.2 * t) * np.cos(6.0 * t) * 6.0
-    >>> note(t, sampled(t, *growing, sliding_velocity=1.0 - growing[1]))[:75]
-    'The ripple along x still grows at the end of the run, by a factor of 1.23 p'
+    >>> note(t, sampled(t, *growing, sliding_velocity=1.0 - growing[1]))[:74]
+    'The ripple along x still grows at the end of the run, by a factor of 1.233'
     """
     found = states(times)
     turns, x = _turns(states, times, found["offset_rate"])
