@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.continuum.cycles import cycle
 from kvtheory.plots import BLACK, BLUE
 
 TIMES = (0.01, 0.1, 1.0)
@@ -51,7 +50,7 @@ def ends_steadily(scene: kv.Scene) -> bool | None:
     if duration * rates[:, 1].max() > 2.0 * np.pi * SWINGS:
         return None
     long = replace(scene, run=kv.Run(duration))
-    end = cycle(kv.transient(long, at=[0.0], rtol=RTOL, certify=False).solution.motion)
+    end = kv.transient(long, at=[0.0], rtol=RTOL, certify=False).solution.cycle
     return bool(end.amplitude == 0.0) if end.settles else None
 
 

@@ -233,6 +233,16 @@ def test_asymptotes_and_series_are_printed():
     assert "nan" not in shown
 
 
+def test_an_option_of_a_list_may_be_repeated():
+    for path, command in commands():
+        for option in command.params:
+            listed = isinstance(option, click.Option) and "," in (option.metavar or "")
+            assert not listed or option.multiple, (path, option.name)
+    record = printed("solve", "--quantity", "load,depth", "--quantity", "peak_pressure")
+    assert list(record)[:3] == ["load", "depth", "peak_pressure"]
+    assert printed("elements", "--at", "0 ms, 1 ms", "--at", "2 ms")["time"] == [0.0, 0.001, 0.002]
+
+
 def test_citing_names_version_and_paper():
     told = run("cite").stdout
     assert f"version = {{{kv.__version__}}}" in told

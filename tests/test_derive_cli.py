@@ -87,8 +87,8 @@ def test_a_range_is_of_one_kind_and_both_its_ends_are_known():
     ("arguments", "message"),
     [
         (["--only", "eq333"], "unknown label 'eq333'; the nearest is 'eq33'"),
-        (["--format", ""], "no format"),
-        (["--format", ","], "no format"),
+        (["--format", ""], "expected at least one name"),
+        (["--format", ","], "expected at least one name"),
         (["--format", "pfd"], "unknown format 'pfd'; the nearest is 'pdf'"),
         (["-o", "/proc/nothing/here"], "cannot write to"),
         (["-o", f"{__file__}/out"], "cannot write to"),

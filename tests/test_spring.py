@@ -9,7 +9,6 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.continuum.collocation import balances as balances_at
 from kvtheory.models.continuum.contact import motion
-from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import solve
@@ -228,7 +227,7 @@ def test_a_rigid_drive_has_no_cycle():
     with pytest.raises(kv.SceneError, match="stick_slip_period: needs drive"):
         kv.sweep(over={"drive.velocity": [0.1]}, quantities="stick_slip_period")
     with pytest.raises(ValueError, match="drive with a spring"):
-        cycle(kv.transient(rtol=1e-3, certify=False).solution.motion)
+        _ = kv.transient(rtol=1e-3, certify=False).solution.cycle
 
 
 def test_a_sweep_says_where_steady_sliding_is_stable():
@@ -266,6 +265,6 @@ def test_where_steady_sliding_is_stable_a_sudden_start_may_end_in_a_cycle(within
     late = found.sliding_velocity[found.time > 45.0]
     if swings:
         assert (late.min(), late.max()) == pytest.approx((0.36e-3, 38e-3), rel=0.05)
-        assert cycle(found.solution.motion).period == pytest.approx(5.076, rel=1e-3)
+        assert found.cycle.period == pytest.approx(5.076, rel=1e-3)
     else:
         assert late == pytest.approx(4.3e-3, rel=2e-2)

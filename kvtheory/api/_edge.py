@@ -63,7 +63,7 @@ def noted(scene: Scene, series: Any) -> Any:
     if np.isnan(length).all():
         return series
     there = scene.at(np.asarray(series.velocity))
-    notes = [layer_note(there, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
+    notes = [*series.notes, layer_note(there, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)
         notes.append(extrapolates(scene.foundation, passing.max(), 1.0))

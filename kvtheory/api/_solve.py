@@ -13,6 +13,7 @@ from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
+from kvtheory.results.cycles import CYCLE
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
@@ -23,6 +24,7 @@ from kvtheory.scene.model import Scene
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below this range rounding dominates; above it any number would do."""
 
+SPRUNG = "needs drive.stiffness, of a spring"
 COASTS = "With drive.stiffness = 0 the indenter coasts to rest, and does not slide steadily."
 
 
@@ -48,13 +50,15 @@ def solve(
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
         in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
-        load and depth.
+        load and depth. On a spring in the drive also of the cycle in which the run ends, as in `sweep`:
+        ``stick_slip_amplitude`` (0 of steady sliding), ``stick_slip_period`` (NaN of it), and
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
     rtol
         Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
-        relative to the static depth, half length and load.
+        relative to the static depth, half length and load; for a cycle to its amplitude, period and ranges.
     over_time
         Solve for a time series even without `at`, at times chosen by the model.
     progress
@@ -75,7 +79,7 @@ def solve(
         If `rtol` is out of range.
     ToleranceError
         If no model is known to be within the tolerance, with how close each came; or if steady sliding is
-        asked for and not known to be stable on the spring in the drive.
+        asked for and not known to be stable on the spring in the drive; or if the run ends before its cycle.
 
     Examples
     --------
@@ -94,20 +98,25 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
-    from kvtheory.ladder import climbing, series  # these import the models over time
+    from kvtheory.ladder import climbing, cycles, series  # these import the models over time
 
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
     problems = Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
+    of_cycle = not over_time and bool(CYCLE.keys() & (quantity or ()))
+    if of_cycle:
+        units = CYCLE
+        if scene.drive.rigid or scene.drive.coasts:
+            problems.add("`quantity`", quantity[0], SPRUNG)
     names = _names(quantity, units, over_time, problems)
     with problems.catching("`at`", at):
         times_of(scene, at)
     problems.report()
-    if over_time:
-        follow = partial(transient, progress=progress)
-        simulate = partial(elements, progress=progress)
-        rungs = series.rungs(series.Models(steady, follow, simulate, fewer_arms))
+    follow, simulate = partial(transient, progress=progress), partial(elements, progress=progress)
+    models = series.Models(steady, follow, simulate, fewer_arms)
+    if over_time or of_cycle:
+        rungs = (cycles if of_cycle else series).rungs(models)
     else:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         if scene.drive.coasts:
@@ -138,7 +147,11 @@ def _names(
         if name in units:
             continue
         if over_time and name in SPRING_UNITS:
-            what = "needs drive.stiffness, of a spring"
+            what = SPRUNG
+        elif over_time and name in CYCLE:
+            what = "belongs to the cycle in which the whole motion ends; leave out the times"
+        elif units is CYCLE and name in (STEADY_UNITS | SERIES_UNITS):
+            what = "does not belong to the cycle: ask for it apart"
         elif name in other:
             hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"

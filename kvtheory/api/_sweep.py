@@ -67,10 +67,12 @@ def sweep(
         how often the indenter takes off; ``events``, as JSON. With a spring in the drive
         ``stick_slip_settles`` (1, or 0 where the run shows neither steady sliding nor a limit cycle),
         ``stick_slip_amplitude`` (half the stroke of the indenter along x), ``stick_slip_period``, and
-        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is
-        the time series; ``NAME.steady`` is always the steady value.
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``; their errors are
+        relative to the cycle itself. With `at`, NAME is the time series; ``NAME.steady`` is always the steady
+        value.
         Elements simulate other shapes, and a parabola that `transient` cannot solve on a Prony series, within
-        seconds each: series, ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
+        seconds each, the cycle of a ball in more: series, ``NAME.end``, ``NAME.max``, ``NAME.min``,
+        ``peak_to_steady_friction`` and the cycle only.
     at, method, rtol
         As in `transient` and `steady`; with `at`, the times of the series.
     executor
@@ -167,7 +169,7 @@ def plan_of(
     if plan.transient and lacks_continuum(scene):
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
-            had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
+            had = "series, NAME.end, NAME.max, NAME.min, peak_to_steady_friction and the cycle"
             why = f"{lacks_continuum(scene)}; `elements` gives {had}"
             raise SceneError([f"`quantities` {', '.join(lacking)}: {why}"])
     for column in columns:

@@ -21,24 +21,21 @@ def chart() -> None:
 
 
 @chart.command(example="kvtheory chart failures -o failures.html")
-@click.option(
-    "--only", metavar="KEY,...", callback=console.names,
-    help="Entries to compute; default: all of them.",
-)  # fmt: skip
+@console.names_option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
 @click.option(
     "-o", "--output", type=OutputFile(".html"),
     help="Write the atlas as one self-contained FILE.html.",
 )  # fmt: skip
 @console.json_option
 @console.overwrite_option
-def failures(only: str | None, output: Path | None, as_json: bool) -> None:
+def failures(only: list[str] | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail, with wrong and right numbers."""
     found = []
     with console.progress_bar("entries") as report:  # the imports take time, too
         from kvtheory.charts.failures import ATLAS, ROLES, findings
         from kvtheory.plots.failures import save_failures, shown
 
-        keys = console.split(only) if only else list(ATLAS)
+        keys = only or list(ATLAS)
         for finding in findings(keys):
             found.append(finding)
             report(len(found) / len(keys), f"{len(found)} of {len(keys)}")
@@ -85,8 +82,8 @@ def stability(output: Path, quick: bool) -> None:
     "work-precision", example="kvtheory chart work-precision my-scene.toml --quick -o speed.png"
 )
 @console.scene_options
-@click.option(
-    "--standard", metavar="NAME,...", callback=console.names,
+@console.names_option(
+    "--standard",
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
@@ -94,7 +91,11 @@ def stability(output: Path, quick: bool) -> None:
 @picture_option("work_precision.png")
 @console.overwrite_option
 def work_precision(
-    scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
+    scene: str | None,
+    overrides: Sequence[str],
+    standard: list[str] | None,
+    quick: bool,
+    output: Path,
 ) -> None:
     """Chart the speed of all methods against their accuracy."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
@@ -105,8 +106,7 @@ def work_precision(
         from kvtheory.plots.work_precision import default_errors, save_work_precision
         from kvtheory.scene import load_scene
 
-        standards = console.split(standard) if standard else []
-        jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
+        jobs = chosen(load_scene(scene, overrides), standard or [], quick=quick)
         charts = measure(jobs, quick=quick, progress=report)
         save_work_precision(charts, output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
@@ -33,8 +32,20 @@ plot_option = click.option(
     "--plot", type=OutputFile(*PICTURES), help="Draw the result to FILE.png, .svg or .pdf."
 )
 at_option = click.option(
-    "--at", metavar='"0 ms,1 ms,..."', help="Times to report, or START:STOP:COUNT."
-)
+    "--at", metavar='"0 ms,1 ms,..."', multiple=True, callback=lambda *given: list(given[2]) or None,
+    help="Times to report, or START:STOP:COUNT; repeatable.",
+)  # fmt: skip
+
+
+def names_option(*names: str, metavar: str = "NAME,...", **how: Any) -> Callable[[Any], Any]:
+    """Declare an option of comma-separated names, repeatable: a list, or None where it is not given."""
+
+    def listed(context: click.Context, option: click.Parameter, given: tuple[str, ...]) -> Any:
+        if not all(map(split, given)):
+            raise click.BadParameter("expected at least one name", context, option)
+        return [name for each in given for name in split(each)] or None
+
+    return click.option(*names, metavar=metavar, multiple=True, callback=listed, **how)
 
 
 def result_options(command: Callable[..., Any]) -> Any:
@@ -120,14 +131,6 @@ def progress_bar(label: str) -> Iterator[Callable[..., Any]]:
 def split(text: str) -> list[str]:
     """Return the items of a comma-separated option."""
     return [item.strip() for item in text.split(",") if item.strip()]
-
-
-def names(context: click.Context, option: click.Parameter, value: Any) -> Any:
-    """Refuse an option of comma-separated names that is given and names nothing; a callback."""
-    given = context.get_parameter_source(option.name or "") is ParameterSource.COMMANDLINE
-    if given and not all(map(split, value if isinstance(value, tuple) else [value])):
-        raise click.BadParameter("expected at least one name", context, option)
-    return value
 
 
 def text(value: Any, unit: str) -> str:

@@ -38,12 +38,12 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
     default=Path("paper/derivations"), show_default=True, help="Directory to write to.",
 )  # fmt: skip
-@click.option(
-    "--format", "formats", default=None, metavar="tex,html,pdf,json,md,ipynb,bib",
+@console.names_option(
+    "--format", "formats", metavar="tex,html,pdf,json,md,ipynb,bib",
     help="Default: all; pdf where a LaTeX engine is found.",
 )  # fmt: skip
-@click.option(
-    "--only", default="", metavar="eq27,F3,...", callback=console.names,
+@console.names_option(
+    "--only", metavar="eq27,F3,...",
     help="Labels of the derivations to print, such as eq27, 27, F3 or eq26-eq48.",
 )  # fmt: skip
 @click.option("--closure", is_flag=True, help="Add all derivations that these depend on, in order.")
@@ -76,9 +76,9 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 )  # fmt: skip
 @console.overwrite_option
 def derive(
-    scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
-    shape: str | None, notation: Path | None, label_prefix: str, overrides: Sequence[str], listing: bool,
-    symbols: bool, recheck: bool, as_json: bool,
+    scene: str | None, output: Path, formats: list[str] | None, only: list[str] | None, closure: bool,
+    numbers: bool, shape: str | None, notation: Path | None, label_prefix: str, overrides: Sequence[str],
+    listing: bool, symbols: bool, recheck: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Derive the equations, check every step, and print them.
 
@@ -112,10 +112,10 @@ def derive(
         placed = click.get_current_context().get_parameter_source("output")
         if formats or shape or numbers or notation or closure or placed != ParameterSource.DEFAULT:
             raise ValueError("--recheck writes nothing; it goes with --only and --json alone")
-        _recheck(find(console.split(only), CONTENTS), as_json)
+        _recheck(find(only or [], CONTENTS), as_json)
         return
     check_prefix(label_prefix)
-    wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
+    wanted, labels = _formats(formats), find(only or [], CONTENTS)
     letters = read_notation(notation) if notation else {}
     if not (labels or shape):  # all symbols are shown
         check_letters(letters, NAMES.values())
@@ -163,14 +163,13 @@ def _recheck(labels: list[str], as_json: bool) -> None:
         click.get_current_context().exit(DISAGREES)
 
 
-def _formats(formats: str | None) -> list[str]:
+def _formats(formats: list[str] | None) -> list[str]:
     """Return the requested formats, or by default all that can be written."""
     from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
-        wanted = console.split(formats)
-        check_formats(wanted)
-        return wanted
+        check_formats(formats)
+        return formats
     if latex_engine():
         return list(FORMATS)
     click.echo("kvtheory: no PDF, as there is no LaTeX engine (pdflatex)", err=True)

@@ -99,7 +99,7 @@ def _shown(found: Any, output: Path | None) -> Iterator[None]:
     "--data", type=FILE, required=True, multiple=True,
     help="CSV of friction over velocity (V [mm/s],mu) or over time (t [ms],F_x [N/mm],z_A [mm]); repeatable.",
 )  # fmt: skip
-@click.option("--free", metavar="KEY,...", help="Quantities of the scene to be fitted.")
+@console.names_option("--free", metavar="KEY,...", help="Quantities of the scene to be fitted.")
 @click.option(
     "--models", is_flag=True, help="Weigh Kelvin-Voigt, a springpot and one to three arms instead."
 )
@@ -111,7 +111,7 @@ def fit(
     scene: "Scene",
     progress: Any,
     data: Sequence[Path],
-    free: str | None,
+    free: list[str] | None,
     *,
     models: bool,
     offset: bool,
@@ -124,7 +124,8 @@ def fit(
     """
     from kvtheory.api import fit as find
 
-    keys = console.split(free or "")
-    found = find(scene, list(data), free=keys, models=models, offset=offset, progress=progress)
+    found = find(
+        scene, list(data), free=free or [], models=models, offset=offset, progress=progress
+    )
     yield found
     click.echo(str(found))

@@ -21,22 +21,31 @@ if TYPE_CHECKING:
     "--rtol", type=float, default=1e-3, show_default=True,
     help="Largest relative error; of a series, relative to the static state.",
 )  # fmt: skip
-@click.option("--quantity", metavar="NAME,...", help="Quantities to solve for; default: all.")
+@console.names_option(
+    "--quantity",
+    help="Quantities to solve for; default: all. On a spring also of the cycle in which the run ends, "
+    "such as stick_slip_amplitude,stick_slip_period.",
+)  # fmt: skip
 @click.option("--explain", is_flag=True, help="Print which models were tried, and why.")
 @console.series_options
 def solve(
-    scene: "Scene", progress: Any, rtol: float, quantity: str | None, explain: bool, at: str | None
+    scene: "Scene",
+    progress: Any,
+    rtol: float,
+    quantity: list[str] | None,
+    explain: bool,
+    at: list[str] | None,
 ) -> Iterator[Any]:
     """Solve SCENE by the cheapest model within the tolerance.
 
-    Without --at, -o and --plot the result is steady sliding, with them the motion from rest over time.
+    Without --at, -o and --plot the result is steady sliding, or a cycle, with them the motion from rest over
+    time.
     """
     from kvtheory.api import solve as find
 
     files = click.get_current_context().params
     over_time = bool(files["output"] or files["plot"])
-    names = None if quantity is None else console.split(quantity)
-    found = find(scene, quantity=names, at=at, rtol=rtol, over_time=over_time, progress=progress)
+    found = find(scene, quantity=quantity, at=at, rtol=rtol, over_time=over_time, progress=progress)
     yield found
     if explain:
         rows = [

@@ -36,8 +36,8 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     "-o", "--output", required=True, type=OutputFile(),
     help="FILE.csv or FILE.nc; until all is done, FILE.part keeps finished blocks. The same command resumes.",
 )  # fmt: skip
-@click.option(
-    "--quantity", "quantities", multiple=True, metavar="NAME,...", callback=console.names,
+@console.names_option(
+    "--quantity", "quantities",
     help="What to write; default: all steady quantities, and with a spring whether steady sliding is "
     "stable. Of a transient: friction_force.max (.min, .end, .time_of_max), peak_to_steady_friction, "
     "settling_time, hops, events; with a spring stick_slip_settles, stick_slip_amplitude, "
@@ -58,7 +58,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 @console.plot_option
 def sweep(
     scene: str | None, overrides: Sequence[str], as_json: bool, over: Sequence[str],
-    output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
+    output: Path, quantities: list[str] | None, jobs: int | None, executor: str | None,
     block: int | None, plot: Path | None, **how: Any,
 ) -> None:  # fmt: skip
     """Solve SCENE for many values of its quantities.
@@ -73,7 +73,7 @@ def sweep(
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
-        "quantities": [name for text in quantities for name in console.split(text)] or None,
+        "quantities": quantities,
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from kvtheory.results.cycles import Cycle
 from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
@@ -132,6 +133,12 @@ class SprungTransient(Transient):
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
 
+    @property
+    def cycle(self) -> Cycle:
+        """The cycle in which the motion ends: steady sliding, or stick-slip."""
+        found: Cycle = self.solution.cycle
+        return found
+
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Simulation(TimeSeries):
@@ -153,8 +160,9 @@ class Simulation(TimeSeries):
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class SprungSimulation(Simulation):
-    """A run of the elements on a spring, with the two additional series of a `SprungTransient`."""
+    """A run of the elements on a spring, with the series and the `cycle` that a `SprungTransient` adds."""
 
     sliding_velocity: Value
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
+    cycle: Cycle | None = field(default=None, repr=False, compare=False)

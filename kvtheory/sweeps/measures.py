@@ -16,8 +16,8 @@ from kvtheory.compilation import ALIKE, Kernel
 from kvtheory.models.continuum import bulk, compiled, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.deviation import DEVIATION
+from kvtheory.models.continuum.error_estimate import MARGIN
 from kvtheory.models.continuum.evaluation import STATE
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.continuum.run import DONE, ROOM, Beginning, begin, with_more_room
@@ -30,14 +30,15 @@ from kvtheory.models.continuum.solved_scene import (
     scaled_drive,
 )
 from kvtheory.models.continuum.solver import STEP_LIMIT
+from kvtheory.models.steady.stable_sliding import ended
 from kvtheory.records import readable
+from kvtheory.results.cycles import CYCLE, cycle_statement
 from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import (
-    CYCLE,
     EVENTS,
     FAILS,
     LANDMARKS,
@@ -50,8 +51,6 @@ from kvtheory.sweeps.plan import (
 
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = "friction_force", maxima.MAGNITUDE
-CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "friction_force"}
-"""Scale of a value of the cycle, by its unit."""
 SETTLED = 0.01
 """Share of the steady friction force within which the motion counts as settled."""
 DOUBLINGS = 2
@@ -97,12 +96,11 @@ class _Motions:
         wanted |= {PEAK for c in plan.columns if c.measure == "peak_to_steady_friction"}
         self.plan, self.wanted = plan, sorted(wanted)
         names = estimate.unknown("", sprung=True).relative_error
-        self.measured = Measured(errors={name: np.zeros(size) for name in names})
+        self.measured = Measured(errors={name: np.zeros(size) for name in (*names, *CYCLE)})
         self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
         self.friction = np.full(size, np.nan)
         self.texts = np.full(size, "", object)
-        self.cycles = np.full((size, len(CYCLE)), np.nan)
-        self.landmarks = {name: np.full(size, np.nan) for name in LANDMARKS}
+        self.own = {name: np.full(size, np.nan) for name in (*LANDMARKS, *CYCLE)}
         self.found = bulk.Results(
             status=np.full(size, -1),
             other=np.full(size, -1),
@@ -207,10 +205,15 @@ class _Motions:
             found.states[index] = motion.states(solution.scaled(self.plan.times))
         found.last[index] = motion.states([motion.end])[0]
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
-        for name, value in solution.landmarks.items():
-            self.landmarks[name][index] = value
-        if not units.rigid_drive:
-            self.cycles[index] = cycle(motion)
+        own = dict(solution.landmarks)
+        if any(column.measure in CYCLE for column in self.plan.columns) and not units.rigid_drive:
+            cycle = ended(scene, solution.cycle).known
+            own |= cycle.quantities
+            for name, error in cycle.relative_errors.items():
+                self.measured.errors[name][index] = error
+            self.measured.statements.add(cycle_statement(MARGIN))
+        for name, value in own.items():
+            self.own[name][index] = value
         if self.plan.texts:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
         self.tell(index, errors.relative_error, errors.statement)
@@ -227,8 +230,8 @@ class _Motions:
         scale = QUANTITIES[name].scale if name else ""
         if measure == EVENTS:
             return self.texts
-        if measure in LANDMARKS:  # in SI
-            return self.landmarks[measure]
+        if measure in self.own:  # in SI
+            return self.own[measure]
         if measure == "series":
             values = found.states[name]
         elif measure == "end":
@@ -238,9 +241,6 @@ class _Motions:
             values = extreme["value"]
             if measure == "time_of_max":
                 values, scale = extreme["time"], "time"
-        elif measure in CYCLE:
-            values = self.cycles[:, list(CYCLE).index(measure)]
-            scale = CYCLE_SCALES.get(column.unit, "")
         elif measure == "peak_to_steady_friction":  # not defined at rest
             steady = np.where(self.friction == 0.0, np.nan, np.abs(self.friction))
             values = found.largest["value"][:, self.wanted.index(PEAK)] / steady

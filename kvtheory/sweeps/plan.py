@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
+from kvtheory.results.cycles import CYCLE
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import BEYOND, EXTRAPOLATED
@@ -39,7 +40,7 @@ FAILS = (ValueError, ArithmeticError, RuntimeError)
 VECTORISED = "exact", "asymptote"
 """Methods of steady sliding that solve a block as fast as a few scenes."""
 MEASURES = ("end", "max", "min", "time_of_max")
-OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
+OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction", *CYCLE)
 """Measures that elements can give. Times of maxima and short losses of contact need more resolution."""
 AGAINST_STEADY = ("peak_to_steady_friction", "settling_time")
 """Measures that need the steady friction force."""
@@ -63,12 +64,6 @@ REMARKS = f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND
 """What a certificate says of some scenes, for those who do not read it."""
 OF_MODEL = ".model"
 """Ends the name of a quantity whose error is that of independent elements against the layer."""
-CYCLE = {
-    "stick_slip_settles": "1", "stick_slip_amplitude": "m", "stick_slip_period": "s",
-    "sliding_velocity.cycle_max": "m/s", "sliding_velocity.cycle_min": "m/s",
-    "friction_force.cycle_max": "N/m", "friction_force.cycle_min": "N/m",
-}  # fmt: skip
-"""Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 CELL = 21
@@ -232,6 +227,7 @@ class Plan:
     def needed(self, *, steady: bool) -> list[str]:
         """Return the quantities that are needed of steady sliding, or of transients."""
         bases = {c.base for c in self.columns if c.base and (c.measure == "steady") == steady}
+        bases |= {c.name for c in self.columns if c.measure in CYCLE and not steady}
         against = any(c.measure in AGAINST_STEADY for c in self.columns)
         return sorted(bases | ({"friction_force"} if against else set()))
 

@@ -11,7 +11,9 @@ import numpy as np
 
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES
-from kvtheory.models.elements.simulation import simulate
+from kvtheory.models.elements.simulation import SAFETY, simulate
+from kvtheory.models.steady.stable_sliding import ended
+from kvtheory.results.cycles import CYCLE, cycle_statement
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.measures import SETTLED, relative
@@ -19,6 +21,8 @@ from kvtheory.sweeps.plan import FAILS, UNSETTLED, Array, Measured, Plan
 
 PER_HALF_LENGTH = 200
 """Elements in half the contact at rest: about half the paper's, in less than a second per scene."""
+OF_A_BALL = 60
+"""The same of a ball whose cycle is sought: many periods have to pass, and the work grows as the cube."""
 STEPS_APART = 2.0
 """Time steps between samples: no step is shortened then, and four elements pass."""
 MOST_SAMPLES = 1000
@@ -36,11 +40,14 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
     blank, asked = plan.blank(len(friction)), [c for c in plan.columns if c.measure != "steady"]
     found = Measured({column.name: blank[column.name] for column in asked})
     found.errors = {column.base or "friction_force": np.zeros(len(friction)) for column in asked}
+    found.errors |= {c.name: np.zeros(len(friction)) for c in asked if c.measure in CYCLE}
     sampled, times = any(c.measure in EXTREMES for c in asked), list(plan.times or ())
+    cycles = any(c.measure in CYCLE for c in asked)
     for index, scene in scenes.items():
         try:
             model = Model.of(scene, 0.0)
-            spacing = model.at_rest.half_length / PER_HALF_LENGTH
+            coarse = cycles and model.constants.surface.ball
+            spacing = model.at_rest.half_length / (OF_A_BALL if coarse else PER_HALF_LENGTH)
             at = [*times, scene.run.duration, *(_samples(scene, spacing) if sampled else ())]
             run = simulate(scene, spacing, SCHEMES[DEFAULT], at=at, time_step=None, certify=True)
         except FAILS as error:
@@ -48,7 +55,15 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
             continue
         found.statements.add(relative(run.certificate.statement + SAMPLED * sampled))
         scale = scales(model.at_rest)
+        if cycle := getattr(run, "cycle", None) if cycles else None:
+            cycle = ended(scene, cycle).known
+            found.statements.add(cycle_statement(SAFETY))
         for column in asked:
+            if column.measure in CYCLE:
+                if cycle:
+                    found.values[column.name][index] = cycle.quantities[column.name]
+                    found.errors[column.name][index] = cycle.relative_errors[column.name]
+                continue
             name = column.base or "friction_force"
             row, between = getattr(run, name), 0.0
             if column.measure in EXTREMES:

@@ -14,6 +14,7 @@ from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import (
     LOOSEST,
+    MARGIN,
     NOT_ASKED,
     NOTHING,
     TIGHTEST,
@@ -26,6 +27,7 @@ from kvtheory.models.continuum.solver import STEP_LIMIT, solve
 from kvtheory.progress import Progress
 from kvtheory.records import structured
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
+from kvtheory.results.cycles import Cycle, cycle, note, sampled
 from kvtheory.results.errors import TransientError
 from kvtheory.results.table import scales
 from kvtheory.results.transient import STOPPED
@@ -79,6 +81,8 @@ class SolvedScene:
     end: float
     start: Start = REST
     coasts: bool = False
+    other: Any = None
+    """The motion with another tolerance, with which this one is compared."""
 
     @property
     def natural_times(self) -> Array:
@@ -131,6 +135,41 @@ class SolvedScene:
         if self.coasts:
             found |= self._stop()
         return found
+
+    @cached_property
+    def cycle(self) -> Cycle:
+        """The cycle in which a motion on a spring ends, compared with that of the other motion."""
+        found, *others = map(self._cycle, filter(None, (self.motion, self.other)))
+        return found.beside(others, MARGIN)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the end of a motion on a spring is not."""
+        if self.units.rigid_drive or self.coasts:
+            return ()
+        times, found, count = self.motion.samples
+        time, found = np.array(times[:count]) * self.units.time, structured(found[:count], STATE)
+        rate, slides = (
+            found[name] / self.units.time for name in ("offset_rate", "sliding_velocity")
+        )
+        said = note(time, sampled(time, found["offset"], rate, sliding_velocity=slides))
+        return (said,) if said else ()
+
+    def _cycle(self, motion: Any) -> Cycle:
+        """Return the cycle of a motion."""
+        if self.units.rigid_drive or self.coasts:
+            raise ValueError("a cycle needs a drive with a spring: `drive.stiffness`")
+        units, (s, _, count) = self.units, motion.samples
+        scale = {
+            "offset": units.half_length, "offset_rate": units.velocity,
+            "sliding_velocity": units.velocity, "friction_force": units.friction_force,
+        }  # fmt: skip
+
+        def states(time: Array) -> dict[str, Array]:
+            found = motion.states(np.minimum(time / units.time, motion.end))
+            return {name: found[name] * own for name, own in scale.items()}
+
+        return cycle(np.array(s[:count]) * units.time, states)
 
     def _stop(self) -> dict[str, float]:
         """Return when the sliding velocity stays below a share of the first one, and the distance slid."""
@@ -185,7 +224,7 @@ def result(solution: SolvedScene, time: Array, errors: Certificate) -> Transient
     return kind(
         **solution.series(time), events=solution.events, steps=motion.counts.steps,
         evaluations=motion.counts.evaluations, compiled=motion.compiled, model="continuum",
-        certificate=errors, solution=solution, **solution.landmarks,
+        certificate=errors, solution=solution, notes=solution.notes, **solution.landmarks,
     )  # fmt: skip
 
 
@@ -326,4 +365,5 @@ def certified(
             other = solved(1, *each)
             break
     s = None if times is None else fine.scaled(time)
+    fine = replace(fine, other=other)
     return fine, time, method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)

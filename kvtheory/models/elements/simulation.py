@@ -24,6 +24,7 @@ from kvtheory.results import (
     SprungSimulation,
     units_for,
 )
+from kvtheory.results.cycles import States, cycle, note, sampled
 from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.results.transient import STOPPED
@@ -54,6 +55,8 @@ STABLE_SHARE = 0.5
 """Default step of an explicit scheme, as a share of the largest stable step."""
 COARSE = 0.25
 """Work of a run with half as many elements and steps, for the error, as a share of the main run's."""
+MOST_REPORTS = 20_000
+"""Approximate upper bound on the instants from which it is found how a motion on a spring or a drop goes."""
 ROWS = 400
 """Approximate upper bound on the instants reported if none are requested."""
 MORE_ROOM = 16.0
@@ -147,8 +150,8 @@ def simulate(
     best, halved = SCHEMES[DEFAULT], instants._replace(after=instants.after // 2)
     half = Timetable(times[::2], 2.0 * steps[::2], halved)
     marked = model.start.gap is not None or scene.drive.coasts
-    whole = _everywhere(path, fine) if marked else fine
-    runs = [(model, scheme, whole, 1.0)]
+    swings = model.sprung and not scene.drive.coasts and steps.size > 0
+    runs = [(model, scheme, fine, 1.0)]
     if certify:
         for shift in SHIFTS:
             coarse = Model.of(scene, spacing, parts=True, shift=shift, coarser=2.0)
@@ -163,14 +166,19 @@ def simulate(
         show, purpose = progress or silent, " for the error" * (k > 0)
         return lambda share, done: show(float(begun + (end - begun) * share), done + purpose)
 
-    (rows, row), *others = (
-        _run(one, path, by, table, wanted, part(k)) for k, (one, by, table, _) in enumerate(runs)
+    found = []
+    for k, (one, by, table, _) in enumerate(runs):
+        dense = _everywhere(path, table) if swings or (marked and k == 0) else table
+        kept = np.isin(dense.instants.after, table.instants.after)
+        found.append((*_run(one, path, by, dense, wanted, part(k)), kept))
+    (whole, row, _), *_ = found
+    marks = _landmarks(model, path, whole) if marked else {}
+    marks |= _ending(model, [each for each, *_ in found]) if swings else {}
+    rows, *others = (
+        {name: column[kept] for name, column in each.items()} for each, _, kept in found
     )
-    marks = _landmarks(model, path, rows) if marked else {}
-    kept = np.isin(whole.instants.after, instants.after)
-    rows = {name: column[kept] for name, column in rows.items()}
     unsure = _unsure(model, path, h)
-    certificate = _estimate(model, unsure, rows, [other for other, _ in others])
+    certificate = _estimate(model, unsure, rows, others)
     kind, names = (
         (Simulation, TRANSIENT_UNITS) if not model.sprung else (SprungSimulation, SERIES_UNITS)
     )
@@ -311,9 +319,10 @@ def _watched(model: Model, path: BaseMotion, table: Timetable) -> Timetable:
 
 
 def _everywhere(path: BaseMotion, table: Timetable) -> Timetable:
-    """Return steps with every second one reported, too."""
+    """Return steps with every second one reported, too, in a very long run fewer."""
     times, lengths, asked = table
-    more = np.setdiff1d(np.arange(0, times.size, 2), asked.after)
+    stride = 2 * math.ceil(0.5 * times.size / MOST_REPORTS)
+    more = np.setdiff1d(np.arange(0, times.size, stride), asked.after)
     rows = list(zip(*asked, strict=True))
     for n, t in zip(more.tolist(), times[more].tolist(), strict=True):
         rows.append((n, t, path.velocity(t), path.forward(t), path.displacement(t)))
@@ -341,6 +350,22 @@ def _landmarks(model: Model, path: BaseMotion, rows: Rows) -> dict[str, Any]:
         found["stopping_time"] = float(np.interp(share, [0.0, 1.0], time[last]))
         found["stopping_distance"] = abs(float(np.interp(share, [0.0, 1.0], way[last])))
     return found
+
+
+def _ending(model: Model, runs: list[Rows]) -> dict[str, Any]:
+    """Return the cycle in which the first run ends, compared with the others, and a note if it goes on."""
+    c, motions = model.constants, list[States]()
+    for rows in runs:
+        rate = rows["velocity"] - rows["sliding_velocity"]
+        x = (rows["spring_force"] - c.damping_along * rate) / c.spring_along
+        series = {name: rows[name] for name in ("sliding_velocity", "friction_force")}
+        motions.append(sampled(rows["time"], x, rate, **series))
+    cycles = [cycle(rows["time"], states) for rows, states in zip(runs, motions, strict=True)]
+    said = note(runs[0]["time"], motions[0])
+    return {
+        "cycle": cycles[0].beside(cycles[1:], SAFETY),
+        "notes": (said,) if said else (),
+    }
 
 
 def _run(

@@ -8,6 +8,7 @@ import numpy as np
 
 from kvtheory.models.steady import general_stability, stability
 from kvtheory.results import Certificate, Stability
+from kvtheory.results.cycles import Cycle
 from kvtheory.scene.capabilities import lacks_stability
 from kvtheory.scene.model import Scene
 
@@ -53,6 +54,12 @@ def lasts(scene: Scene) -> Any:
     if scene.drive.rigid:
         return True
     return None if lacks_stability(scene) else solve(scene, {"stable"}).stable
+
+
+def ended(scene: Scene, found: Cycle) -> Cycle:
+    """Return how a motion ends, unknown if in steady sliding that is unstable: its ripple is still small."""
+    unstable = found.amplitude == 0.0 and lasts(scene) is not None and not lasts(scene)
+    return Cycle(0.0) if unstable else found
 
 
 def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -1,0 +1,113 @@
+"""The cycle in which a motion on a spring ends: of any shape by elements, its error, and notes before it."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.results.cycles import CYCLE, Cycle, cycle, sampled
+from kvtheory.scene.static_state import StaticState
+from tests.transient_ball import sheet_on_spring
+
+SPRING = {"stiffness": "1 kN/m", "mass": "100 g"}
+BALL = kv.Scene(
+    kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"), drive=kv.Drive("150 mm/s", **SPRING),
+    run=kv.Run("1.2 s"),
+)  # fmt: skip
+AMPLITUDE, PERIOD = "stick_slip_amplitude", "stick_slip_period"
+
+
+def test_the_cycle_of_a_ball_is_that_of_a_sheet_of_points_and_its_errors_cover():
+    found = kv.sweep(BALL, over={"drive.velocity": [0.15]}, quantities=list(CYCLE))
+    assert found["stick_slip_settles"].tolist() == [1.0]
+    at_rest = StaticState.of(BALL)
+    s, _, slides, force = sheet_on_spring(at_rest, 1.2 / at_rest.time, 24.0, 0.005)
+    late = s * at_rest.time > 1.0
+    slides, x = slides[late] * at_rest.velocity, force[late] * at_rest.friction_force / 1e3
+    ups = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:]))
+    expected = {
+        AMPLITUDE: 0.5 * np.ptp(x),
+        PERIOD: np.diff(s[late][ups]).mean() * at_rest.time,
+        "sliding_velocity.cycle_max": slides.max(),
+        "sliding_velocity.cycle_min": slides.min(),
+    }
+    for name, value in expected.items():
+        scale = np.ptp(slides) if name.startswith("sliding") else value
+        off = abs(found[name][0] - value) / scale
+        assert off < min(found.certificate.relative_error[name] + 3e-3, 8e-3), name
+
+
+def test_elements_and_the_continuum_end_in_the_same_cycle():
+    drive = kv.Drive("150 mm/s", stiffness="1 MN/m^2", mass="0.1 kg/mm")
+    scene = kv.Scene(drive=drive, run=kv.Run("0.8 s"))
+    truth = kv.transient(scene, at=[0.8], rtol=1e-5).cycle
+    found = kv.elements(scene, per_length="60 /mm", at=[0.8]).cycle
+    assert truth.settles == found.settles == 1.0
+    assert truth.smallest_slide < 0.2 * drive.velocity
+    ranges = np.ptp(truth.values[2:4]), np.ptp(truth.values[4:])
+    scale = np.array([truth.amplitude, truth.period, *np.repeat(ranges, 2)])
+    off = abs(found.values - truth.values) / scale
+    assert np.all(off <= np.add(found.errors, truth.errors))
+    assert off[:2].max() < 5e-3
+
+
+@pytest.mark.parametrize("follow", ["transient", "elements"])
+def test_a_note_says_by_how_much_the_ripple_changes_in_a_period(follow):
+    line = kv.Scene(drive=kv.Drive("60 mm/s", stiffness="1 MN/m^2", mass="0.1 kg/mm"))
+    scene = replace(line if follow == "transient" else BALL, run=kv.Run("0.5 s"))
+    scene = scene.replace({"drive.velocity": 0.06})
+    rate, frequency = kv.stability(scene, quantity="rates").rates[0]
+    how = {"rtol": 1e-4, "certify": False} if follow == "transient" else {"per_length": "30 /mm"}
+    (told,) = getattr(kv, follow)(scene, at=[0.5], **how).notes
+    factor, period = re.search(
+        r"shrinks .* by a factor of (\S+) per period of (\S+) s", told
+    ).groups()
+    assert float(period) == pytest.approx(2.0 * math.pi / abs(frequency), rel=1e-2)
+    assert float(factor) == pytest.approx(math.exp(rate * float(period)), rel=2e-2)
+
+
+def test_solve_gives_the_cycle_or_says_why_not():
+    steady = kv.solve(BALL.replace({"drive.velocity": 0.04}), quantity=[AMPLITUDE, PERIOD])
+    assert steady.model == "elements"
+    assert (steady.stick_slip_amplitude, math.isnan(steady.stick_slip_period)) == (0.0, True)
+    assert any("no stick-slip" in note for note in steady.notes)
+    with pytest.raises(
+        kv.ToleranceError, match=r"neither a cycle, .* choose a longer run.duration"
+    ):
+        kv.solve(replace(BALL, run=kv.Run("0.1 s")), quantity=AMPLITUDE)
+    with pytest.raises(kv.SceneError, match=r"stick_slip_amplitude.*needs drive.stiffness"):
+        kv.solve(quantity=AMPLITUDE)
+    with pytest.raises(kv.SceneError, match="leave out the times"):
+        kv.solve(BALL, quantity=AMPLITUDE, at="1 ms")
+    with pytest.raises(kv.SceneError, match="does not belong to the cycle"):
+        kv.solve(BALL, quantity=[AMPLITUDE, "load"])
+
+
+def ripple(t, growth):
+    """Return a ripple that grows, as a motion."""
+    grown, turns = 2e-5 * np.exp(growth * t), 30.0
+    x, rate = (
+        grown * np.sin(turns * t),
+        grown * (turns * np.cos(turns * t) + growth * np.sin(turns * t)),
+    )
+    return sampled(t, x, rate, sliding_velocity=10.0 - rate, friction_force=x)
+
+
+def test_a_ripple_that_still_grows_is_not_steady_sliding_however_small_it_is():
+    t = np.linspace(0.0, 10.0, 5000)
+    assert cycle(t, ripple(t, -0.2)).amplitude == 0.0
+    assert cycle(t, ripple(t, 0.2)).settles == 0.0
+
+
+def test_a_cycle_that_another_solution_does_not_end_in_is_none():
+    steady = Cycle(1.0, 0.0, math.nan, 1.0, 1.0, 1.0, 1.0, (0.0,) * 6)
+    assert steady.beside([steady], 4.0).settles == 1.0
+    assert steady.beside([Cycle(0.0)], 4.0).known.settles == 0.0
+    swings = Cycle(1.0, 2.0, 3.0, 1.0, 0.0, 1.0, 0.0, (0.0,) * 6)
+    found = swings.beside([steady], 4.0)
+    assert max(found.relative_errors.values()) == math.inf
+    assert (found.known.settles, max(found.known.relative_errors.values())) == (0.0, 0.0)
+    assert swings.beside([replace(swings, amplitude=2.1)], 4.0).errors[0] == pytest.approx(0.2)
