@@ -90,30 +90,56 @@ def stability(output: Path, quick: bool) -> None:
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
-@click.option("--quick", is_flag=True, help="Fewer settings and repeats: about 15 s per scene.")
+@click.option("--quick", is_flag=True, help="Fewer settings and repeats.")
+@click.option(
+    "--add", type=click.Path(exists=True, dir_okay=False, path_type=Path), metavar="MINE.csv",
+    help="Draw runs of another simulator too: columns method, seconds, error.",
+)  # fmt: skip
 @picture_option("work_precision.png")
 @console.overwrite_option
 def work_precision(
-    scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
-) -> None:
-    """Chart the speed of all methods against their accuracy."""
+    scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool,
+    add: Path | None, output: Path,
+) -> None:  # fmt: skip
+    """Chart the speed of all methods against their accuracy.
+
+    The cheapest settings of all methods are run first; then the time that is left is printed. The error of
+    a run that is added is the largest error of the depth over the run, over the static depth; of a fixed
+    indenter, that of the friction force over its largest.
+    """
     os.environ.update(dict.fromkeys(THREADS, "1"))
     if standard and (scene or overrides):
         raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
     with console.progress_bar("methods") as report:
-        from kvtheory.charts.collection import chosen, measure
-        from kvtheory.plots.work_precision import default_errors, save_work_precision
+        from kvtheory.charts.added import read_runs, with_runs
+        from kvtheory.charts.collection import ALL, chosen, measure
+        from kvtheory.plots.work_precision import (
+            LOOKS,
+            MARKS,
+            default_errors,
+            save_work_precision,
+        )
         from kvtheory.scene import load_scene
 
         standards = console.split(standard) if standard else []
+        if add and (len(standards) > 1 or ALL in standards):
+            raise ValueError("--add is for one scene: give SCENE, or --standard with one name")
+        runs = read_runs(add, LOOKS, len(MARKS)) if add else {}
         jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
-        charts = measure(jobs, quick=quick, progress=report)
+        charts = measure(jobs, quick=quick, progress=report, announce=_say_time)
+        if runs:
+            charts[-1] = with_runs(charts[-1], runs, default_errors(charts[-1:])[0])
         save_work_precision(charts, output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")
     for one in charts:
         (error,) = default_errors([one])
         references, what = " and ".join(one.reference), error.split(",")[0]
         click.echo(f"{one.name}: {references} agree on {what} to {one.floor[error]:.1e}")
+
+
+def _say_time(seconds: float) -> None:
+    """Print how long a chart will take."""
+    click.echo(f"the cheapest settings are done; the others take about {seconds:.2g} s", err=True)
 
 
 @main.command(example="kvtheory explore my-scene.toml -o explorer.html")
