@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
 def picture_option(default: str) -> Any:
     """Return the option `-o` of a chart, whose data are written too."""
     return click.option(
-        "-o", "--output", type=OutputFile(*PICTURES, beside=True, inside=default), default=default,
+        "-o", "--output", type=OutputFile(*PICTURES, beside=".json", inside=default), default=default,
         show_default=True,
         help="Picture, or a directory for it; its data go to FILE.json beside it.",
     )  # fmt: skip
@@ -140,6 +141,54 @@ def work_precision(
 def _say_time(seconds: float) -> None:
     """Print how long a chart will take."""
     click.echo(f"the cheapest settings are done; the others take about {seconds:.2g} s", err=True)
+
+
+PAPER = {
+    "fig3": "Draw Fig. 3: the onset of sliding, for both models.",
+    "fig4": "Draw Fig. 4: the pressure over position and time.",
+    "fig5": "Draw Fig. 5: steady sliding over velocity, for three tau.",
+    "fig6": "Draw Fig. 6: the master curves of friction.",
+    "table2": "Draw Table 2: critical velocity and friction.",
+}
+"""The figures of the paper that are drawn for any scene."""
+
+
+def paper_command(name: str) -> None:
+    """Add the command that draws a figure of the paper."""
+    whose = (
+        "The two models of the paper are SCENE with a fixed indenter at its static depth, and under its "
+        "static load; without SCENE, Table 1."
+    )
+
+    @chart.command(
+        name, help=f"{PAPER[name]}\n\n{whose}",
+        example=f"kvtheory chart {name} my-scene.toml --style mine.mplstyle -o {name}.pdf",
+    )  # fmt: skip
+    @console.scene_options
+    @click.option(
+        "--style", type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        metavar="FILE.mplstyle", help="Style sheet of matplotlib: fonts, colours C0 to C4, sizes.",
+    )  # fmt: skip
+    @click.option(
+        "-o", "--output", type=OutputFile(*PICTURES, beside=".csv", inside=f"{name}.png"),
+        default=f"{name}.png", show_default=True,
+        help="Picture, or a directory for it; its data go to FILE.csv beside it.",
+    )  # fmt: skip
+    @console.overwrite_option
+    def draw(scene: str | None, overrides: Sequence[str], style: Path | None, output: Path) -> None:
+        with console.progress_bar(name):
+            from kvtheory.plots.files import read_style, save_figure
+            from kvtheory.scene import load_scene
+
+            own = read_style(style) if style else {}
+            figure = import_module(f"kvtheory.plots.paper.{name}")
+            data = figure.compute(load_scene(scene, overrides) if scene or overrides else None)
+            save_figure(data, figure.draw, [output], table := output.with_suffix(".csv"), own)
+        click.echo(f"{output}\n{table}")
+
+
+for _name in PAPER:
+    paper_command(_name)
 
 
 @main.command(example="kvtheory explore my-scene.toml -o explorer.html")
