@@ -8,7 +8,7 @@ WORKERS ?= auto
 # Hundreds of modules are compiled once, and not in each of the many processes of the tests.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
+.PHONY: paper docs test test-one test-lowest test-processors package lint format benchmark clean
 
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
@@ -30,6 +30,10 @@ test test-lowest test-processors: export OPENBLAS_NUM_THREADS := 1
 # The figures and pages that the tests make are those of the site, as long as the code is the same.
 test: $(VENV)/.installed-test
 	KVTHEORY_SITE=docs/generated $(BIN)/python -m pytest -n auto --dist loadscope
+
+# One file of tests, or FILE=tests/test_x.py::test_y, with no more than it needs; a few files need all of `test`.
+test-one: $(VENV)/.installed-one
+	$(BIN)/python -m pytest -q $(or $(FILE),$(error give a file: make test-one FILE=tests/test_exact.py))
 
 # What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them. Their Numba keeps its own
 # kernels: two versions with one cache would each compile everything anew.
@@ -90,12 +94,13 @@ $(BIN)/uv pip install --quiet --python $(1)/bin/python --constraint $(2) --edita
 endef
 
 # Each holds those before it.
+$(VENV)/.installed-one: EXTRAS = test-one
 $(VENV)/.installed: EXTRAS = fast,data,benchmark
 $(VENV)/.installed-test: EXTRAS = fast,data,benchmark,test
-$(VENV)/.installed-test: HELD = $(VENV)/.installed
+$(VENV)/.installed-test: HELD = $(VENV)/.installed $(VENV)/.installed-one
 $(VENV)/.installed-docs: EXTRAS = fast,data,benchmark,test,docs
-$(VENV)/.installed-docs: HELD = $(VENV)/.installed $(VENV)/.installed-test
-$(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-docs: pyproject.toml constraints.txt | $(BIN)/python
+$(VENV)/.installed-docs: HELD = $(VENV)/.installed $(VENV)/.installed-one $(VENV)/.installed-test
+$(VENV)/.installed-one $(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-docs: pyproject.toml constraints.txt | $(BIN)/python
 	$(call installed,$(VENV),constraints.txt)
 	@touch $(HELD) $@
 

@@ -6,7 +6,6 @@ The script writes the quick version; `kvtheory chart work-precision` makes other
 import math
 import os
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -19,7 +18,7 @@ from figures.paper_scheme import compiled_loop, suits
 from kvtheory.charts.collection import measure
 from kvtheory.charts.methods import DENSITIES, transient_methods
 from kvtheory.charts.problems import Curves, Problem, standard_scene
-from kvtheory.charts.work_precision import Chart, Clock, Method, make_chart
+from kvtheory.charts.work_precision import Chart, Clock, Method
 from kvtheory.models.continuum.prony import trajectory
 from kvtheory.models.elements import row
 from kvtheory.plots.work_precision import default_errors, draw_work_precision
@@ -59,7 +58,7 @@ def compute() -> Data:
     )  # fmt: skip
     methods = [*transient_methods().values(), *([peer] if loop else [])]
     problems = [Problem(name, standard_scene(name), quick=True) for name in SCENES]
-    charts = measure([partial(make_chart, each, methods) for each in problems], quick=True)
+    charts = measure([(each, methods) for each in problems], quick=True)
     rows: list[tuple[Any, ...]] = []
     for chart, error in zip(charts, default_errors(charts), strict=True):
         for series in chart.series:

@@ -302,3 +302,16 @@ def test_the_sums_over_strips_are_as_wrong_as_the_worse_of_both(worst, monkeypat
     errors = kv.steady(scene, method="quadrature").certificate.relative_error
     assert 1e-8 <= errors["friction_force"] < 2e-8
     assert 1e-8 <= errors["load"] < 2e-8
+
+
+def test_of_a_revolved_profile_only_the_side_x_above_0_counts():
+    """A measured profile is never quite even; the body that it makes is."""
+    rest = kv.Foundation(1e10, 0.1), kv.Fixed(1e-4), kv.Drive(0.01)
+    lopsided = lambda x: 50 * x**2 + 900 * x**3, lambda x: 100 * x + 2700 * x**2
+    even = lambda x: 50 * x**2 + 900 * abs(x) ** 3, lambda x: 100 * x + 2700 * x * abs(x)
+    found, right = (
+        kv.steady(kv.Scene(kv.Revolved(kv.Profile(*each, reach=5e-3)), *rest))
+        for each in (lopsided, even)
+    )
+    assert found.friction_coefficient == pytest.approx(right.friction_coefficient, rel=1e-12)
+    assert found.load == pytest.approx(right.load, rel=1e-12)

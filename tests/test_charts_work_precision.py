@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.charts import methods, naive
+from kvtheory.charts.added import with_runs
 from kvtheory.charts.collection import (
     SteadyProblem,
     brentq_over_quad,
@@ -32,12 +34,13 @@ from kvtheory.charts.work_precision import (
     REASONS,
     Clock,
     Effort,
+    Measurement,
     Method,
     Point,
     TimedOutError,
     make_chart,
 )
-from kvtheory.plots.work_precision import LOOKS, draw_work_precision
+from kvtheory.plots.work_precision import LOOKS, MARKS, draw_work_precision
 from kvtheory.scene import template
 from tests import work_precision_reference as stored
 from tests.commands import refused, run
@@ -242,13 +245,93 @@ def test_picture_shows_what_was_measured():
 
 def test_command(tmp_path, monkeypatch):
     monkeypatch.setattr("kvtheory.charts.collection.QUICK", Effort(1, 0.3, 0.5, 6))
-    given = "--quick", "--set", "run.duration=20 ms", "-o", str(tmp_path)
+    mine = tmp_path / "mine.csv"
+    mine.write_text(
+        'method,seconds,error\n"my loop, RK4",4.5,2e-4\n"my loop, RK4",0.4,1e-3\nnone,1,0\n'
+    )
+    given = "--quick", "--set", "run.duration=20 ms", "--add", str(mine), "-o", str(tmp_path)
     done = run("chart", "work-precision", *given)
+    assert re.search(r"the others take about \S+ s$", done.stderr, re.MULTILINE)
     assert (tmp_path / "work_precision.png").read_bytes().startswith(b"\x89PNG")
     data = json.loads((tmp_path / "work_precision.json").read_text())
     assert [chart["name"] for chart in data["charts"]] == ["this scene, steady", "this scene"]
     assert data["environment"]["processors"] >= 1
     assert "agree on depth to" in done.output
+    own = {each["method"]: each["points"] for each in data["charts"][1]["series"][-2:]}
+    assert [point["seconds"] for point in own["my loop, RK4"]] == [0.4, 4.5]
+    assert own["none"][0]["errors"] == {"depth, maximum": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", 'no column method; expected "method,seconds,error" with commas between'),
+        ("method;seconds;error\na;1;2\n", "no column method"),
+        ("method,seconds,error\n", "has 0 methods; expected 1 to 8"),
+        ("method,seconds,error\na,1\n", "line 2: 2 cells below 3 names"),
+        ('method,seconds,error\n\na,"1,5",0\n', 'line 3: seconds "1,5": expected a number above 0'),
+        ("method,seconds,error\na,1,-1\n", 'line 2: error "-1": expected a number of at least 0'),
+        ("method,seconds,error\na,0,1\n", 'seconds "0": expected a number above 0'),
+        ("method,seconds,error\nexact,1,1\n", 'method "exact": expected a name that no method'),
+        ("method,seconds,error\n" + "".join(f"{k},1,1\n" for k in range(9)), "has 9 methods"),
+    ],
+)
+def test_runs_that_cannot_be_added_are_refused_before_anything_is_measured(tmp_path, text, why):
+    path = tmp_path / "mine.csv"
+    path.write_text(text)
+    words = "chart", "work-precision", "--quick", "--add", path, "-o", tmp_path / "x.png"
+    refused(words, [f'--add "{path}"', why])
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_runs_of_several_scenes_cannot_be_added(tmp_path):
+    path = tmp_path / "mine.csv"
+    path.write_text("method,seconds,error\na,1,1\n")
+    refused(
+        ("chart", "work-precision", "--add", path, "--standard", "all"), ["--add is for one scene"]
+    )
+
+
+def test_added_methods_have_marks_of_their_own():
+    chart = make_chart(problem("table-1"), [METHODS["slow manifold"]], effort=BRIEF)
+    runs = {f"mine {k}": [(1.0 + k, 1e-3)] for k in range(len(MARKS))}
+    chart = with_runs(chart, runs, "depth, maximum")
+    lines = draw_work_precision([chart], ["depth, maximum"]).axes[0].get_lines()
+    looks = {line.get_label(): (line.get_color(), line.get_marker()) for line in lines}
+    found = [looks[name] for name in runs]
+    assert len({*found, *LOOKS.values()}) == len(found) + len(LOOKS)
+
+
+@pytest.mark.parametrize("longest", [0.4, 20.0])
+def test_the_time_of_a_chart_is_forecast_within_a_factor_of_two(longest):
+    """From times that were measured once; the last settings are not known to the forecast."""
+    measured = {
+        "two states, RK45": [0.0091, 0.0095, 0.02, 0.036, 0.069],
+        "two states, DOP853": [0.019, 0.012, 0.026, 0.048, 0.069],
+        "two states, BDF": [0.0099, 0.028, 0.07, 0.099, 0.24],
+        "two states, LSODA": [0.0065, 0.0042, 0.0094, 0.011, 0.017],
+        "continuum, interpreted": [0.0021, 0.006, 0.0038, 0.0052, 0.0076, 0.011],
+        "elements, explicit-euler": [0.18, 0.18, 0.2],
+        "elements, semi-implicit": [0.057, 0.07, 0.1],
+        "method of lines": [0.6, 5.0, 31.0],
+    }
+    effort = Effort(3, longest, 3.0, 2)
+    one = Measurement(problem("table-1"), [METHODS[name] for name in measured], effort)
+    true, repeated = 0.0, []
+    for series in one.series:
+        ended = False
+        for k, (point, seconds) in enumerate(
+            zip(series.points, measured[series.method], strict=True)
+        ):
+            point.first = 0.0 if ended else min(seconds, longest)
+            true += point.first if k >= one.begun else 0.0
+            repeated += [seconds] if seconds < longest else []
+            ended = ended or seconds >= longest
+            if k >= one.begun:
+                point.first = 0.0
+    once, short = sum(repeated), sum(t for t in repeated if t <= 0.25 * longest)
+    true += once + min(2.0 * short, max(3.0 - once, 0.0))
+    assert 0.5 < one.forecast() / true < 2.0
 
 
 @pytest.mark.parametrize("command", [("explore",), ("chart", "work-precision", "--quick")])
@@ -293,11 +376,19 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
     assert len(chosen(kv.Scene(), ["all"], quick=True)) == len(STANDARD) + 3
     reports = []
 
-    def job(effort, progress):
-        progress(0.5, "half")
+    def half(one, knob, clock):
+        return Curves(*one.reference().solution), 1
 
-    measure([job, job], quick=True, progress=lambda *report: reports.append(report))
-    assert reports == [(0.25, "half"), (0.75, "half")]
+    method, told = Method("half", "-", (0.0,), "evaluations", half), []
+    jobs = [(problem("table-1"), [method])] * 2
+    measure(jobs, quick=True, progress=lambda *x: reports.append(x), announce=told.append)
+    shares = [share for share, _ in reports]
+    assert shares == sorted(shares)
+    assert shares[:3] == pytest.approx([0.0, 0.15, 0.3])
+    assert shares[-1] < 1.0
+    assert [words for _, words in reports] == [*["half"] * 2, *["half", *["repeats"] * 3] * 2]
+    assert len(told) == 1
+    assert told[0] > 0.0
 
 
 def test_a_run_that_is_not_finite_has_not_converged():

@@ -55,6 +55,7 @@ SLOW = {
     "plots.failures.draw_stability": lambda *_: Figure(),
     "charts.collection.measure": lambda *_, **__: (),
     "plots.work_precision.save_work_precision": lambda *_: None,
+    "plots.files.save_figure": lambda *_: None,
 }
 """What takes long, and what stands for it."""
 
@@ -76,6 +77,7 @@ def test_help_ends_with_an_example_that_runs(name, place, monkeypatch):
     (place / "mine.csv").write_bytes((place.parent / "data.csv").read_bytes())
     (place / "run.csv").write_bytes((place.parent / "data.csv").read_bytes())
     (place / "dma.csv").write_bytes((DMA / "time_user_raw.csv").read_bytes())
+    (place / "mine.mplstyle").write_text("font.size: 9")
     (place / "mu.csv").write_text(
         "V [m/s],mu\n1e-3,0.0010\n1e-2,0.0099\n0.1,0.0857\n1,0.0662\n3,0.0390\n"
     )

@@ -57,10 +57,14 @@ def test_a_notebook_runs_and_keeps_no_output(path, offscreen):
 
 CODE = re.compile(
     r"<!-- python\n(?P<hidden>.*?)-->"
-    r"|^```(?:\{code-cell\} )?(?P<kind>python|console|toml)\n(?P<shown>.*?)^```",
+    r"|^```(?:\{code-cell\} )?(?P<kind>python|console|toml|yaml)\n(?P<shown>.*?)^```",
     re.MULTILINE | re.DOTALL,
 )
 """Code of a page; what is hidden in a comment prepares what the reader has: data, a cluster."""
+PROMPTS = {"console": r"\$ ", "yaml": " *- run: "}
+"""What stands before a command, on a console and in a job of a CI service."""
+OTHERS = "python", "pip", "pytest", "my-simulator"
+"""Programs that are not run."""
 PAGES = {
     path.relative_to(DOCS).as_posix(): text
     for path in sorted(DOCS.rglob("*.md"))
@@ -95,10 +99,9 @@ def test_the_code_of_a_page_runs_in_order(name, tmp_path, monkeypatch, offscreen
         if piece["kind"] == "toml":
             scene.write_text("\n".join({**TABLE1, **sections(piece["shown"])}.values()), "utf-8")
             kv.load_scene(scene)
-        elif piece["kind"] == "console":
-            for command in re.findall(
-                r"^\$ (.*)", piece["shown"].replace("\\\n", ""), re.MULTILINE
-            ):
+        elif piece["kind"] in PROMPTS:
+            prompt, shown = PROMPTS[piece["kind"]], piece["shown"].replace("\\\n", "")
+            for command in re.findall(rf"^{prompt}(.*)", shown, re.MULTILINE):
                 run_command(command)
         elif code := piece["hidden"] or piece["shown"]:
             exec(compile(code, f"{name}, line {line}", "exec"), names)
@@ -110,7 +113,7 @@ def run_command(command):
     """Run a line of the console as it stands; it has to end well."""
     program, *arguments = shlex.split(command)
     arguments, _, target = (" ".join(map(shlex.quote, arguments))).partition(" '>' ")
-    assert program in ("kvtheory", "python"), command
+    assert program in ("kvtheory", *OTHERS), command
     if program == "kvtheory":
         done = CliRunner().invoke(main, shlex.split(arguments))
         assert done.exit_code == 0, (command, done.output)

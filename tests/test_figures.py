@@ -3,7 +3,9 @@
 import csv
 import importlib
 import math
+import runpy
 import sys
+from pathlib import Path
 
 import generators
 import matplotlib as mpl
@@ -18,8 +20,9 @@ from figures.__main__ import FIGURES
 from kvtheory.charts import collection, stability
 from kvtheory.charts.work_precision import Effort
 from kvtheory.plots import STYLE, plot_asymptote_errors, plot_steady
+from kvtheory.plots.paper import fig5, fig6, table2
 from kvtheory.scene.static_state import StaticState
-from tests.commands import python
+from tests.commands import python, refused, run
 
 BRIEF = (
     (onset_maps, "NUMBERS", onset_maps.NUMBERS[::4]),
@@ -37,7 +40,7 @@ KINDS = {"fig3": list(drawing.FORMATS), "stability_map": (), "work_precision": (
 @pytest.fixture(scope="module")
 def made(site):
     """Every figure, drawn once: its data, its axes and its files, which the site takes over."""
-    result, formats = {}, drawing.FORMATS
+    result = {}
     with pytest.MonkeyPatch.context() as patch:
         for brief in BRIEF:
             patch.setattr(*brief)
@@ -48,8 +51,7 @@ def made(site):
                 drawn = script.draw(data)
             if name in gallery.DRAWN:
                 drawn.set_layout_engine("none")  # the site does not show it: nothing need fit
-            kinds = {kind: formats[kind] for kind in KINDS.get(name, ["png"])}
-            patch.setattr(drawing, "FORMATS", kinds)
+            patch.setattr(drawing, "FORMATS", KINDS.get(name, ["png"]))
             paths = drawing.produce(
                 name, lambda data=data: data, lambda _, drawn=drawn: drawn, site / "pictures"
             )
@@ -251,6 +253,100 @@ def test_a_script_runs_alone(tmp_path):
     assert str(tmp_path / "table2.png") in python("-m", "figures.table2", "-o", tmp_path)
 
 
+def test_a_script_runs_by_its_path(tmp_path, monkeypatch):
+    """The path of a script holds its folder, where `figures` is a module that finds the package."""
+    folder = Path(drawing.__file__).parent
+    path = [each for each in sys.path if Path(each).resolve() != folder.parent]
+    monkeypatch.setattr(sys, "path", [str(folder), *path])
+    monkeypatch.delitem(sys.modules, "figures")
+    monkeypatch.setattr(sys, "argv", ["fig6.py", "-o", str(tmp_path)])
+    monkeypatch.setattr(drawing, "FORMATS", ("png",))
+    runpy.run_path(str(folder / "table2.py"), run_name="__main__")
+    assert {each.name for each in tmp_path.iterdir()} == {"table2.png", "table2.csv"}
+
+
+OTHER = kv.Scene(
+    kv.Parabola("5 mm"),
+    kv.Foundation(2e9, "2 ms"),
+    kv.Suspended("1 kg/mm", "30 MN/m^2"),
+    kv.Drive(0.3),
+)
+
+
+def test_a_scene_has_its_place_on_the_master_curves_of_fig6():
+    data = fig6.compute(OTHER)
+    for support, (x, y) in data.own.items():
+        curve = np.exp(np.interp(np.log(x), np.log(fig6.NUMBERS), np.log(data.curves[support])))
+        assert y == pytest.approx(curve, rel=1e-3)
+    assert data.own["dead-weight"][0] == pytest.approx(0.3 * 2e-3 * np.cbrt(2e9 / (5e-3 * 9806.65)))
+    assert set(data.columns["y of the scene, fixed [1]"]) == {data.own["fixed"][1]}
+
+
+def test_fig5_and_table2_are_those_of_the_scene():
+    data = fig5.compute(OTHER)
+    assert sorted(set(data.columns["retardation_time [s]"])) == [2e-4, 2e-3, 2e-2]
+    state = data.curves["dead-weight", 1.0]
+    assert state.load == pytest.approx(np.full_like(data.velocities, 9806.65))
+    peak = np.argmax(state.friction_coefficient)
+    assert 50 < peak < 150  # the velocities are around the maximum
+    low = table2.compute(OTHER).columns["fixed"][1]
+    assert low == pytest.approx(2e-3 * 1e-3 / 5e-3)
+
+
+def test_a_figure_in_ones_own_style_with_its_data(tmp_path):
+    style, picture = tmp_path / "mine.mplstyle", tmp_path / "t.png"
+    style.write_text("figure.figsize: 6, 3\nsavefig.dpi: 50\nfont.family: serif\n")
+    words = "chart", "table2", "--style", str(style), "-o", str(picture)
+    for _ in range(2):  # it may be replaced
+        assert run(*words).stdout.split() == [str(picture), str(tmp_path / "t.csv")]
+    assert mpl.image.imread(picture).shape[:2] == (150, 300)
+    assert (tmp_path / "t.csv").read_text().startswith("quantity,fixed,dead-weight\n")
+    (tmp_path / "t.csv").write_text("a,b\n1,2\n")
+    refused(words, ["t.csv", "is not what this command writes"])
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("font.sizes: 9", "font.sizes"),
+        ("font.size: large-ish", "font.size"),
+        ("font.size", "Missing colon in file"),
+        ("font.size: 9\nfont.size: 8", "Duplicate key in file"),
+        ("figure.figsize: 0.5, 0.5", "Try making figure larger"),
+    ],
+)
+def test_a_style_that_cannot_be_read_is_refused(tmp_path, text, why):
+    style = tmp_path / "mine.mplstyle"
+    style.write_text(text)
+    words = "chart", "fig6", "--style", style, "-o", tmp_path / "x.png"
+    message = refused(words, ["--style", why])
+    assert message.count("\n") == 1
+    assert list(tmp_path.iterdir()) == [style]
+
+
+@pytest.mark.parametrize(
+    ("name", "own", "why"),
+    [
+        (
+            "fig5",
+            ["indenter.shape=sphere", "support.mass=1 kg"],
+            "holds for the parabola only",
+        ),
+        (
+            "fig3",
+            ["indenter.shape=sphere", "support.mass=1 kg"],
+            "holds for the parabola only",
+        ),
+        ("fig6", ["drive.velocity=0 m/s"], "no place on a logarithmic axis"),
+        ("table2", ['drive.velocity=["0.1 m/s", "1 m/s"]'], "for one scene"),
+    ],
+)
+def test_a_scene_without_such_a_figure_is_refused(tmp_path, name, own, why):
+    sets = [word for each in own for word in ("--set", each)]
+    refused(("chart", name, *sets, "-o", tmp_path / "x.png"), [why])
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("missing", [True, False])
 def test_where_numba_is_missing_it_is_said_before_the_wait(monkeypatch, capsys, missing):
     monkeypatch.setattr(every, "FIGURES", ())
@@ -340,13 +436,13 @@ def test_on_rubber_sliding_starts_without_the_first_peak_of_kelvin_voigt(made):
     for support, found in data.starts.items():
         plain, *others = found.values()
         assert plain.normal_force[0] == plain.normal_force.max() > 3.5e4
-        for run in others:
-            assert run.friction_force[0] == pytest.approx(0.0, abs=1e-9)
-            assert run.normal_force[0] < 0.3 * plain.normal_force[0]
-            assert run.friction_force.max() < 0.6 * plain.friction_force[0]
-        for name, run in found.items():
+        for each in others:
+            assert each.friction_force[0] == pytest.approx(0.0, abs=1e-9)
+            assert each.normal_force[0] < 0.3 * plain.normal_force[0]
+            assert each.friction_force.max() < 0.6 * plain.friction_force[0]
+        for name, each in found.items():
             friction = data.ends[support][name].friction_force
-            assert run.friction_force[-1] == pytest.approx(float(friction), rel=2e-3)
+            assert each.friction_force[-1] == pytest.approx(float(friction), rel=2e-3)
     kinds = importlib.import_module("figures.rubber_start").foundations().values()
     assert [each.slow_damping for each in kinds] == pytest.approx([1e9, 1e9, 1e9])
     assert len(drawn.axes) == 6

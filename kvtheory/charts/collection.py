@@ -1,10 +1,9 @@
 """The work-precision chart of steady sliding under a dead weight, and the choice of the charts to make."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal, localcontext
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from scipy.optimize import brentq
 from kvtheory.api import elements, steady
 from kvtheory.charts.methods import DENSITIES, transient_methods
 from kvtheory.charts.problems import STANDARD, Problem, standard_scene
-from kvtheory.charts.work_precision import FULL, QUICK, Chart, Clock, Method, Reference, make_chart
+from kvtheory.charts.work_precision import FULL, QUICK, Chart, Clock, Measurement, Method, Reference
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.progress import Progress, silent
 from kvtheory.scene import Drive
@@ -183,8 +182,8 @@ def _elements(problem: SteadyProblem, density: float, clock: Clock) -> tuple[Any
     return (found.depth[-1], mu), found.element_updates
 
 
-Job = Callable[..., Chart]
-"""Makes one chart, with an `effort`, and reports its `progress`."""
+Job = tuple[Any, Iterable[Method]]
+"""A problem, and the methods of its chart."""
 ALL = "all"
 VELOCITIES = {"table-1": 0.1, "low-velocity": 1e-3, "high-velocity": 10.0}
 """Velocity (m/s) in steady sliding of the standard scenes that otherwise equal Table 1."""
@@ -206,19 +205,34 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
             sliding = Scene(drive=Drive(velocity=VELOCITIES[name]))
         if sliding:
             steady = SteadyProblem(f"{name}, steady", sliding)
-            jobs.append(partial(make_chart, steady, steady_methods()))
+            jobs.append((steady, steady_methods()))
         transient = Problem(name, standard_scene(name) if standard else scene, quick)
-        jobs.append(partial(make_chart, transient, transient_methods().values()))
+        jobs.append((transient, transient_methods().values()))
     return jobs
 
 
-def measure(jobs: Sequence[Job], *, quick: bool, progress: Progress = silent) -> list[Chart]:
-    """Make the charts one after the other, so that nothing disturbs the timings."""
-    charts = []
-    for done, job in enumerate(jobs):
+def measure(
+    jobs: Sequence[Job], *, quick: bool, progress: Progress = silent,
+    announce: Callable[[float], object] = lambda seconds: None,
+) -> list[Chart]:  # fmt: skip
+    """Make the charts one after the other, so that nothing disturbs the timings.
 
-        def report(share: float, words: str, done: int = done) -> None:
-            progress((done + share) / len(jobs), words)
-
-        charts.append(job(effort=QUICK if quick else FULL, progress=report))
+    `announce` is given the time (s) that is left, when the cheapest settings of all have been run.
+    """
+    effort = QUICK if quick else FULL
+    measured = [Measurement(problem, methods, effort) for problem, methods in jobs]
+    for done, each in enumerate(measured):
+        each.begin(_part(progress, 0.3 * done / len(jobs), 0.3 / len(jobs)))
+    times = [each.forecast() for each in measured]
+    announce(sum(times))
+    charts, before = [], 0.3
+    for each, seconds in zip(measured, times, strict=True):
+        share = 0.7 * seconds / sum(times)
+        charts.append(each.finish(_part(progress, before, share)))
+        before += share
     return charts
+
+
+def _part(progress: Progress, start: float, whole: float) -> Progress:
+    """Return the progress function of a part of the work."""
+    return lambda share, words: progress(start + whole * share, words)

@@ -8,7 +8,7 @@ and the quartiles. Settings that fail are kept, with the reason.
 import math
 import random
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
@@ -20,8 +20,12 @@ from kvtheory.progress import Progress, silent
 from kvtheory.results.errors import DivergenceError
 from kvtheory.results.presented import record
 
-MISSED, WRONG = "missed event", "wrong but reported success"
-REASONS = "unstable", "not converged", "timed out", "refused", MISSED, WRONG
+MISSED, WRONG, TIMED_OUT = "missed event", "wrong but reported success", "timed out"
+REASONS = "unstable", "not converged", TIMED_OUT, "refused", MISSED, WRONG
+CHEAPEST = 3
+"""Settings of each method, before every nth is taken, by whose times the whole chart is forecast."""
+GROWTH = 0.1
+"""Power of the tolerance with which a run takes longer: explicit methods of high order, stiff ones of low."""
 
 
 class TimedOutError(Exception):
@@ -29,7 +33,7 @@ class TimedOutError(Exception):
 
 
 REASON_OF: dict[type[BaseException], str] = {
-    TimedOutError: "timed out", DivergenceError: "unstable",
+    TimedOutError: TIMED_OUT, DivergenceError: "unstable",
     ArithmeticError: "not converged", ValueError: "refused",
 }  # fmt: skip
 """Why a run failed, by its exception."""
@@ -148,67 +152,125 @@ class Chart:
         return found
 
 
-def make_chart(
-    problem: Any, methods: Iterable[Method], *, effort: Effort = FULL,
-    progress: Progress = silent,
-) -> Chart:  # fmt: skip
-    """Measure every method that suits the problem.
+class Measurement:
+    """The methods that suit a problem, measured in two steps: the cheapest settings, then the others.
 
     A problem has a `name` and a `reference()`; it can `assess(found, reference, tolerance)`, which gives the
     errors of a solution, and why it is wrong, if so, for a method with a tolerance.
     """
-    right = problem.reference()
-    chosen = [method for method in methods if method.suits(problem)]
-    series: list[Series] = []
-    jobs: list[tuple[Point, Callable[[], Any]]] = []
-    for done, method in enumerate(chosen, 1):
-        points = [Point(value) for value in method.values[:: effort.every]]
-        first = _attempt(problem, method, right, points, effort)
-        series.append(Series(method.name, method.kind, method.knob, method.work, points, first))
-        for point in points:
-            if point.errors:
-                jobs.append((point, partial(method.solve, problem, point.knob, Clock())))
-        progress(0.7 * done / len(chosen), method.name)
-    _repeat(jobs, effort)
-    for method, one in zip(chosen, series, strict=True):
-        for point in one.points:
-            point.times = [seconds / method.scenes for seconds in point.times]
-            point.first /= method.scenes
-    progress(1.0, "")
-    return Chart(problem.name, series, right.agreement, right.methods)
 
+    def __init__(self, problem: Any, methods: Iterable[Method], effort: Effort = FULL) -> None:
+        self.problem, self.effort = problem, effort
+        self.methods = [method for method in methods if method.suits(problem)]
+        self.series = [
+            Series(m.name, m.kind, m.knob, m.work, [Point(x) for x in m.values[:: effort.every]])
+            for m in self.methods
+        ]
 
-def _attempt(
-    problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
-) -> float:
-    """Run each setting once, until one times out; return the time of a first call, which compiles."""
-    rated = method.kind == "numerical" and method.knob == "rtol"
-    clock = Clock(effort.longest)
-    # Overflow is reported below, by its error or its reason.
-    with np.errstate(all="ignore"):
-        with suppress(TimedOutError, ArithmeticError, ValueError):
-            method.solve(problem, points[0].knob, clock)
-        first = clock.elapsed
-        for before, point in zip([None, *points], points, strict=False):
-            if before and before.reason == "timed out":
-                point.reason = "timed out"
+    def begin(self, progress: Progress) -> None:
+        """Solve the reference; call each method, which may compile, and run its cheapest settings."""
+        self.right = self.problem.reference()
+        for method, one in self._each(progress):
+            clock = Clock(self.effort.longest)
+            with np.errstate(all="ignore"), suppress(TimedOutError, ArithmeticError, ValueError):
+                method.solve(self.problem, one.points[0].knob, clock)
+            one.first = clock.elapsed
+            self._attempt(method, one.points, 0, self.begun)
+
+    @property
+    def begun(self) -> int:
+        """How many settings of each method `begin` runs."""
+        return -(-CHEAPEST // self.effort.every)
+
+    def forecast(self) -> float:
+        """Return the time (s) that `finish` will take, from the times of the cheapest settings."""
+        effort, left, repeated = self.effort, 0.0, []
+        for one in self.series:
+            expected = expected_times(one, self.begun, effort.longest)
+            left += sum(expected[self.begun :])
+            pairs = zip(one.points, expected, strict=True)
+            repeated += [t for p, t in pairs if 0.0 < t < effort.longest and not p.reason]
+        once = sum(repeated)
+        again = (effort.repeats - 1) * sum(t for t in repeated if t <= effort.longest / 4.0)
+        return left + once + min(again, max(effort.whole - once, 0.0))
+
+    def finish(self, progress: Progress) -> Chart:
+        """Run the other settings, and repeat all that succeeded."""
+        jobs: list[tuple[Point, Callable[[], Any]]] = []
+        for method, one in self._each(lambda share, words: progress(0.7 * share, words)):
+            self._attempt(method, one.points, self.begun, len(one.points))
+            for point in one.points:
+                if point.errors:
+                    jobs.append((point, partial(method.solve, self.problem, point.knob, Clock())))
+        _repeat(jobs, self.effort, lambda share, words: progress(0.7 + 0.3 * share, words))
+        for method, one in zip(self.methods, self.series, strict=True):
+            for point in one.points:
+                point.times = [seconds / method.scenes for seconds in point.times]
+                point.first /= method.scenes
+        return Chart(self.problem.name, self.series, self.right.agreement, self.right.methods)
+
+    def _each(self, progress: Progress) -> Iterator[tuple[Method, Series]]:
+        for done, (method, one) in enumerate(zip(self.methods, self.series, strict=True)):
+            progress(done / len(self.methods), method.name)
+            yield method, one
+
+    def _attempt(self, method: Method, points: list[Point], start: int, stop: int) -> None:
+        """Run each setting once, until one times out."""
+        rated = method.kind == "numerical" and method.knob == "rtol"
+        for k in range(len(points))[start:stop]:
+            point, clock = points[k], Clock(self.effort.longest)
+            if k > 0 and points[k - 1].reason == TIMED_OUT:
+                point.reason = TIMED_OUT
                 continue
-            clock = Clock(effort.longest)
             try:
-                found, point.work = method.solve(problem, point.knob, clock)
-                tolerance = point.knob if rated else None
-                point.errors, point.reason = problem.assess(found, right, tolerance)
+                with np.errstate(all="ignore"):  # overflow is reported by its error or its reason
+                    found, point.work = method.solve(self.problem, point.knob, clock)
+                    tolerance = point.knob if rated else None
+                    point.errors, point.reason = self.problem.assess(found, self.right, tolerance)
             except tuple(REASON_OF) as error:
                 kinds = (kind for kind in type(error).mro() if kind in REASON_OF)
                 point.reason, point.message = REASON_OF[next(kinds)], str(error)
             point.first = clock.elapsed
-    return first
 
 
-def _repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None:
+def expected_times(series: Series, known: int, longest: float) -> list[float]:
+    """Return the time of a run of each setting from those of the first `known` ones.
+
+    That of a tolerance grows as its power `GROWTH`, that of elements linearly with the square of their
+    number. A run ends after `longest`, and settings beyond it are not tried.
+    """
+    knobs, times = [p.knob for p in series.points], [p.first for p in series.points[:known]]
+    first, last = times[0], times[-1]
+    for x in knobs[known:]:
+        if last >= longest or series.points[known - 1].reason == TIMED_OUT:
+            times.append(0.0)
+            continue
+        if x < knobs[0]:
+            last = times[known - 1] * (knobs[known - 1] / x) ** GROWTH
+        else:
+            slope = (times[known - 1] - first) / (knobs[known - 1] ** 2 - knobs[0] ** 2)
+            last = first + max(slope, 0.0) * (x * x - knobs[0] ** 2)
+        times.append(min(last, longest))
+    return times
+
+
+def make_chart(
+    problem: Any, methods: Iterable[Method], *, effort: Effort = FULL,
+    progress: Progress = silent,
+) -> Chart:  # fmt: skip
+    """Measure every method that suits the problem."""
+    measurement = Measurement(problem, methods, effort)
+    measurement.begin(silent)
+    return measurement.finish(progress)
+
+
+def _repeat(
+    jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort, progress: Progress
+) -> None:
     """Time the jobs repeatedly in random order, as far as the effort allows."""
     order, whole = random.Random(0), Clock()
-    for _ in range(effort.repeats):
+    for done in range(effort.repeats):
+        progress(done / effort.repeats, "repeats")
         order.shuffle(jobs)
         for point, run in jobs:
             # One repeat of a long run is enough.

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ def failures(only: list[str] | None, output: Path | None, as_json: bool) -> None
 def picture_option(default: str) -> Any:
     """Return the option `-o` of a chart, whose data are written too."""
     return click.option(
-        "-o", "--output", type=OutputFile(*PICTURES, beside=True, inside=default), default=default,
+        "-o", "--output", type=OutputFile(*PICTURES, beside=".json", inside=default), default=default,
         show_default=True,
         help="Picture, or a directory for it; its data go to FILE.json beside it.",
     )  # fmt: skip
@@ -87,33 +88,104 @@ def stability(output: Path, quick: bool) -> None:
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
-@click.option("--quick", is_flag=True, help="Fewer settings and repeats: about 15 s per scene.")
+@click.option("--quick", is_flag=True, help="Fewer settings and repeats.")
+@click.option(
+    "--add", type=click.Path(exists=True, dir_okay=False, path_type=Path), metavar="MINE.csv",
+    help="Draw runs of another simulator too: columns method, seconds, error.",
+)  # fmt: skip
 @picture_option("work_precision.png")
 @console.overwrite_option
 def work_precision(
-    scene: str | None,
-    overrides: Sequence[str],
-    standard: list[str] | None,
-    quick: bool,
-    output: Path,
-) -> None:
-    """Chart the speed of all methods against their accuracy."""
+    scene: str | None, overrides: Sequence[str], standard: list[str] | None, quick: bool,
+    add: Path | None, output: Path,
+) -> None:  # fmt: skip
+    """Chart the speed of all methods against their accuracy.
+
+    The cheapest settings of all methods are run first; then the time that is left is printed. The error of
+    a run that is added is the largest error of the depth over the run, over the static depth; of a fixed
+    indenter, that of the friction force over its largest.
+    """
     os.environ.update(dict.fromkeys(THREADS, "1"))
     if standard and (scene or overrides):
         raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
     with console.progress_bar("methods") as report:
-        from kvtheory.charts.collection import chosen, measure
-        from kvtheory.plots.work_precision import default_errors, save_work_precision
+        from kvtheory.charts.added import read_runs, with_runs
+        from kvtheory.charts.collection import ALL, chosen, measure
+        from kvtheory.plots.work_precision import (
+            LOOKS,
+            MARKS,
+            default_errors,
+            save_work_precision,
+        )
         from kvtheory.scene import load_scene
 
-        jobs = chosen(load_scene(scene, overrides), standard or [], quick=quick)
-        charts = measure(jobs, quick=quick, progress=report)
+        standards = standard or []
+        if add and (len(standards) > 1 or ALL in standards):
+            raise ValueError("--add is for one scene: give SCENE, or --standard with one name")
+        runs = read_runs(add, LOOKS, len(MARKS)) if add else {}
+        jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
+        charts = measure(jobs, quick=quick, progress=report, announce=_say_time)
+        if runs:
+            charts[-1] = with_runs(charts[-1], runs, default_errors(charts[-1:])[0])
         save_work_precision(charts, output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")
     for one in charts:
         (error,) = default_errors([one])
         references, what = " and ".join(one.reference), error.split(",")[0]
         click.echo(f"{one.name}: {references} agree on {what} to {one.floor[error]:.1e}")
+
+
+def _say_time(seconds: float) -> None:
+    """Print how long a chart will take."""
+    click.echo(f"the cheapest settings are done; the others take about {seconds:.2g} s", err=True)
+
+
+PAPER = {
+    "fig3": "Draw Fig. 3: the onset of sliding, for both models.",
+    "fig4": "Draw Fig. 4: the pressure over position and time.",
+    "fig5": "Draw Fig. 5: steady sliding over velocity, for three tau.",
+    "fig6": "Draw Fig. 6: the master curves of friction.",
+    "table2": "Draw Table 2: critical velocity and friction.",
+}
+"""The figures of the paper that are drawn for any scene."""
+
+
+def paper_command(name: str) -> None:
+    """Add the command that draws a figure of the paper."""
+    whose = (
+        "The two models of the paper are SCENE with a fixed indenter at its static depth, and under its "
+        "static load; without SCENE, Table 1."
+    )
+
+    @chart.command(
+        name, help=f"{PAPER[name]}\n\n{whose}",
+        example=f"kvtheory chart {name} my-scene.toml --style mine.mplstyle -o {name}.pdf",
+    )  # fmt: skip
+    @console.scene_options
+    @click.option(
+        "--style", type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        metavar="FILE.mplstyle", help="Style sheet of matplotlib: fonts, colours C0 to C4, sizes.",
+    )  # fmt: skip
+    @click.option(
+        "-o", "--output", type=OutputFile(*PICTURES, beside=".csv", inside=f"{name}.png"),
+        default=f"{name}.png", show_default=True,
+        help="Picture, or a directory for it; its data go to FILE.csv beside it.",
+    )  # fmt: skip
+    @console.overwrite_option
+    def draw(scene: str | None, overrides: Sequence[str], style: Path | None, output: Path) -> None:
+        with console.progress_bar(name):
+            from kvtheory.plots.files import read_style, save_figure
+            from kvtheory.scene import load_scene
+
+            own = read_style(style) if style else {}
+            figure = import_module(f"kvtheory.plots.paper.{name}")
+            data = figure.compute(load_scene(scene, overrides) if scene or overrides else None)
+            save_figure(data, figure.draw, [output], table := output.with_suffix(".csv"), own)
+        click.echo(f"{output}\n{table}")
+
+
+for _name in PAPER:
+    paper_command(_name)
 
 
 @main.command(example="kvtheory explore my-scene.toml -o explorer.html")

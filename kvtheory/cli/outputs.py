@@ -15,7 +15,14 @@ from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path
 __all__ = ["PICTURES", "SERIES_SUFFIXES", "OutputFile", "check_output", "check_outputs"]
 
 BEGINNINGS = {
-    ".csv": (b"time [s],velocity [m/s],",),
+    ".csv": (
+        b"time [s],velocity [m/s],",
+        b"support,time [s],",
+        b'time [s],"leading_edge, fixed [m]"',
+        b"support,method,retardation_time [s]",
+        b"V tau (R delta)^(-1/2) or ",
+        b"quantity,fixed,dead-weight",
+    ),
     ".nc": (b"CDF\x01", b"CDF\x02"),
     ".png": (b"\x89PNG",),
     ".svg": (b"<?xml", b"<svg"),
@@ -42,10 +49,10 @@ OVERWRITE = "kvtheory.overwrite"
 class OutputFile(click.Path):
     """The name of a file to write, with one of the `suffixes`; without any, the command checks the name.
 
-    A chart has its data `beside` it, in FILE.json. In a directory the file has the name `inside`.
+    A chart has its data `beside` it, with this suffix. In a directory the file has the name `inside`.
     """
 
-    def __init__(self, *suffixes: str, beside: bool = False, inside: str = "") -> None:
+    def __init__(self, *suffixes: str, beside: str = "", inside: str = "") -> None:
         super().__init__(path_type=Path)
         self.suffixes, self.beside, self.inside = suffixes, beside, inside
 
@@ -68,7 +75,7 @@ def check_outputs(context: click.Context) -> None:
                 continue
             check_output(option, path, kind.suffixes)
             if kind.beside:
-                check_output(option, path.with_suffix(".json"), [".json"])
+                check_output(option, path.with_suffix(kind.beside), [kind.beside])
 
 
 def _given(context: click.Context, parameter: click.Parameter) -> Sequence[Any]:

@@ -1,23 +1,31 @@
 """Output files: pictures by suffix, charts with their data beside them, self-contained HTML pages."""
 
+import csv
 import io
 import json
+import logging
+import math
 import os
 import platform
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 
 from kvtheory.export import PICTURES, check_path, replace_file, replace_files
 from kvtheory.plots.style import STYLE
 
 PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
 """The packages whose versions are recorded with a chart."""
+METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+"""No dates, so that the same figure is the same file."""
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
@@ -34,6 +42,61 @@ def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> 
         path: lambda part: save_picture(draw, part),
         path.with_suffix(".json"): lambda part: save_page(text + "\n", part),
     })  # fmt: skip
+
+
+def save_figure(
+    data: Any, draw: Callable[[Any], Any], pictures: Sequence[Path], table: Path,
+    style: Mapping[str, Any] = STYLE,
+) -> None:  # fmt: skip
+    """Draw a figure and write it in the formats of the suffixes, and the columns of its data as CSV.
+
+    All files are written, or none. A size in the style replaces that of the figure. Where matplotlib warns,
+    of axes without room or of letters that a font lacks, `ValueError` is raised.
+    """
+    with mpl.rc_context({**STYLE, **style}), warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        try:
+            drawn = draw(data)
+            if "figure.figsize" in style:
+                drawn.set_size_inches(style["figure.figsize"])
+            if layout := drawn.get_layout_engine():
+                layout.execute(drawn)
+            drawn.set_layout_engine(
+                None
+            )  # laid out once, or each format would draw everything twice
+            writers: dict[Path, Callable[[Path], Any]] = {
+                path: partial(drawn.savefig, metadata=METADATA.get(path.suffix.lower()))
+                for path in pictures
+            }
+            replace_files({**writers, table: lambda part: _write_csv(part, data.columns)})
+        except UserWarning as warning:
+            raise ValueError(f"`style`: {warning}") from None
+
+
+def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        for row in zip(*(np.asarray(each).tolist() for each in columns.values()), strict=True):
+            missing = (isinstance(cell, float) and math.isnan(cell) for cell in row)
+            writer.writerow("" if no else cell for no, cell in zip(missing, row, strict=True))
+
+
+def read_style(path: Path) -> dict[str, Any]:
+    """Return the settings of a style sheet of matplotlib, or raise `ValueError` with what it cannot read."""
+    messages: list[str] = []
+    handler, log = logging.Handler(), logging.getLogger("matplotlib")
+    handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
+    log.addHandler(handler)
+    try:
+        found = mpl.rc_params_from_file(path, fail_on_error=True, use_default_template=False)
+    except (ValueError, KeyError, UnicodeDecodeError) as error:
+        messages.append(str(error))
+    finally:
+        log.removeHandler(handler)
+    if messages:
+        raise ValueError(f'`style` "{path}": {" ".join(messages[0].split())}')
+    return dict(found)
 
 
 def environment() -> dict[str, str | int]:

@@ -4,6 +4,7 @@ import io
 import re
 from typing import Any
 
+from cycler import cycler
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -15,6 +16,7 @@ BLACK, BLUE, RED, GREEN, PURPLE = "#000000", "#0072b2", "#d55e00", "#009e73", "#
 STYLE: Any = {
     "axes.grid": True,
     "axes.labelsize": 9,
+    "axes.prop_cycle": cycler(color=(BLUE, RED, BLACK, GREEN, PURPLE)),
     "axes.spines.right": False,
     "axes.spines.top": False,
     "axes.titlesize": 10,

@@ -31,6 +31,8 @@ LOOKS = {
     "elements, edge-corrected": (GREEN, "o"), "elements in C, paper": (BLACK, "s"),
 }  # fmt: skip
 """Colour and marker of each method, which no other has."""
+OWN, MARKS = "#e6007e", ("*", "P", "X", "p", "h", "<", ">", "d")
+"""Colour and markers of the methods that a user adds."""
 SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “success”"}
 """Short forms of the reasons that are too long for the rail."""
 
@@ -40,10 +42,11 @@ def plot_work_precision(
 ) -> list[Any]:
     """Draw time, or `work`, over one of the errors on `ax`, failures on `rail`, and return the lines."""
     floor = chart.floor[error]
-    artists = []
+    artists, marks = [], iter(MARKS)
     for series in chart.series:
-        colour, marker = LOOKS[series.method]
-        style: Any = {"color": colour, "marker": marker, "markersize": 4.5}
+        own = series.method not in LOOKS
+        colour, marker = (OWN, next(marks)) if own else LOOKS[series.method]
+        style: Any = {"color": colour, "marker": marker, "markersize": 9.0 if own else 4.5}
         x, y, good = [], [], []
         for p in series.points:
             cost = float(p.work) if work else p.seconds

@@ -10,6 +10,7 @@ is a class with these, its name `shape` and its `words`, and an entry of `SHAPES
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from operator import attrgetter
 from typing import Any, ClassVar
 
@@ -192,6 +193,22 @@ class Profile(Shape):
         before, after = (self.slope_function(beside(x, to)) for to in (-math.inf, math.inf))
         return 0.5 * (before + after)
 
+    def mirrored(self) -> "Profile":
+        """Return the profile with the shape of x > 0 on both sides."""
+        right = [kink for kink in self.kinks if kink >= 0.0]
+        return Profile(
+            partial(_even, self.height_function), partial(_odd, self.slope_function), self.reach,
+            (*right, *(-kink for kink in right if kink)),
+        )  # fmt: skip
+
+
+def _even(function: Callable[[float], float], x: float) -> float:
+    return function(abs(x))
+
+
+def _odd(function: Callable[[float], float], x: float) -> float:
+    return math.copysign(1.0, x) * function(abs(x))
+
 
 def beside(x: float, to: float) -> float:
     """Return the next float from x towards `to`; from 0, the smallest that no processor flushes to 0."""
@@ -248,7 +265,7 @@ class Sphere(Shape):
 class Revolved(Shape):
     """Any profile h(rho) revolved about the vertical axis: a true sphere, a cone, a blunt punch.
 
-    In Python only; the profile is one of the shapes of this module.
+    In Python only; the profile is one of the shapes of this module, of which x = rho >= 0 counts.
 
     >>> cone = Revolved(Wedge(inclination=0.1))
     >>> round(float(cone.height(-0.03, 0.04)), 12), cone.stretch
@@ -265,6 +282,8 @@ class Revolved(Shape):
         if not (isinstance(self.profile, Shape) and self.profile.per_width):
             message = "expected a shape h(x) of a line contact"
             raise mistake("indenter.profile", self.profile, message)
+        if isinstance(self.profile, Profile):  # the middle plane has both sides
+            object.__setattr__(self, "profile", self.profile.mirrored())
         self.mark([self.profile])
 
     convex = property(

@@ -1,0 +1,37 @@
+"""The two models of the paper, of any scene."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from kvtheory.scene import DeadWeight, Fixed, Scene
+from kvtheory.scene.capabilities import lacks_one_scene, lacks_paper_model, require
+from kvtheory.scene.static_state import StaticState
+
+SUPPORTS = {"fixed": "FI model (fixed indenter)", "dead-weight": "MI model (dead weight)"}
+Columns = Mapping[str, Any]
+"""The data of a figure: columns by their heads."""
+
+
+def models(scene: Scene | None) -> dict[str, Scene]:
+    """Return a scene with a fixed indenter at its static depth, and under its static load; or Table 1.
+
+    >>> [each.support.kind for each in models(Scene.table1("suspended")).values()]
+    ['fixed', 'dead-weight']
+    """
+    if scene is None:
+        return {support: Scene.table1(support) for support in SUPPORTS}
+    rest, own = StaticState.of(scene), scene.support
+    supports = {"fixed": Fixed(depth=rest.depth), "dead-weight": DeadWeight(load=rest.load)}
+    return {
+        kind: replace(scene, support=own if own.kind == kind else other)
+        for kind, other in supports.items()
+    }
+
+
+def sliding(scene: Scene | None) -> dict[str, Scene]:
+    """Return the models where their steady sliding is that of the paper: a parabola on Kelvin-Voigt."""
+    if scene is not None:
+        require(lacks_one_scene, scene, "a figure of the paper")
+        require(lacks_paper_model, scene, "steady sliding as in the paper")
+    return models(scene)
