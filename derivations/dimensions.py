@@ -94,7 +94,7 @@ def of_unit(unit: str) -> Dimension:
 
 
 def _times(one: Dimension, other: Dimension, power: sp.Expr | int = 1) -> Dimension:
-    return tuple(sp.expand(a + power * b) for a, b in zip(one, other, strict=True))
+    return tuple(sp.expand(a + power * b) if b else a for a, b in zip(one, other, strict=True))
 
 
 class _Walk:
@@ -102,9 +102,15 @@ class _Walk:
 
     def __init__(self, label: str, section: str) -> None:
         self.new, self.own = letters(label, section), OWN.get(label, {})
+        self._known: dict[sp.Expr, Dimension | None] = {}
 
-    def of(self, expr: sp.Expr) -> Dimension | None:  # noqa: PLR0911, PLR0912 one branch for each kind
+    def of(self, expr: sp.Expr) -> Dimension | None:
         """Return the dimension; None for zero and infinity, which have every one."""
+        if expr not in self._known:
+            self._known[expr] = self._of(expr)
+        return self._known[expr]
+
+    def _of(self, expr: sp.Expr) -> Dimension | None:  # noqa: PLR0911, PLR0912 one branch for each kind
         if expr.is_number and not expr.has(AppliedUndef, sp.Integral):
             return None if expr in (0, sp.oo, -sp.oo) else NONE
         if expr.is_Symbol or isinstance(expr, AppliedUndef | sp.Indexed):
@@ -186,10 +192,10 @@ _DOTS = re.compile(r"d(?=d*ot)")
 
 def faults(derivation: Derivation, sources: Mapping[str, Derivation]) -> list[str]:
     """Describe the relations whose dimensions differ or are not known; `sources` are records by label."""
-    found = []
+    found, walks = [], cache(_Walk)
     for step in derivation.steps if derivation.label not in EXEMPT else ():
         origin = sources.get(step.source, derivation)
-        walk = _Walk(origin.label, origin.section)
+        walk = walks(origin.label, origin.section)
         try:
             if step.claim and isinstance(step.claim.lhs, sp.Tuple):
                 for sides in zip(step.claim.lhs, step.claim.rhs, strict=True):

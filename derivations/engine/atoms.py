@@ -9,6 +9,7 @@ Dots and primes are not part of a symbol: they denote derivatives.
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 GREEK = (
     r"\\(?:var(?:epsilon|theta|pi|rho|sigma|phi)|alpha|beta|gamma|delta|epsilon|zeta|theta|eta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma"
@@ -40,6 +41,12 @@ class Atom:
 
 def atoms(latex: str) -> Iterator[Atom]:
     """Find the symbols, from left to right."""
+    return iter(_atoms(latex))
+
+
+@lru_cache(maxsize=32768)
+def _atoms(latex: str) -> tuple[Atom, ...]:
+    found = []
     for token in _TOKEN.finditer(latex):
         if letter := token["letter"]:
             accent = f"{token['accent'].strip()} " if token["accent"] else ""
@@ -47,9 +54,11 @@ def atoms(latex: str) -> Iterator[Atom]:
             bare = letter if letter.startswith(r"\math") else letter.strip("{}")
             symbol = f"{accent}{bare}{star}{_index(token['index'] or '')}"
             dots = (token["dots"] or "").strip()
-            yield Atom(symbol, dots, token["primes"], *token.span())
+            found.append(Atom(symbol, dots, token["primes"], *token.span()))
+    return tuple(found)
 
 
+@lru_cache
 def _index(index: str) -> str:
     """Write one character or command without braces."""
     return re.sub(rf"_\{{({_LETTER}|[0-9])\}}$", r"_\1", index)

@@ -20,7 +20,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.codegen.cfunctions import log1p
 
-from .forms import above_line, derivative, expanded, factors, put, reduced, sign_of_terms
+from .forms import derivative, expanded, factors, put, reduced, sign_of_fraction, sign_of_terms
 from .identity import letters_of
 from .points import signs
 
@@ -305,13 +305,18 @@ def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
 
 def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr]:
     """Yield the expression with a name for something positive that it contains as it stands."""
-    written = {positive: name, expanded(positive): name, expanded(-positive): -name}
     for form in _written(expr):
-        changed = form
-        for gap, value in written.items():
-            changed = changed.subs(gap, value)
+        changed = _renamed(form, positive, name)
         if changed != form:
             yield changed
+
+
+@lru_cache(maxsize=4096)
+def _renamed(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> sp.Expr:
+    written = {positive: name, expanded(positive): name, expanded(-positive): -name}
+    for gap, value in written.items():
+        expr = expr.subs(gap, value)
+    return expr
 
 
 def _written(expr: sp.Expr) -> Iterator[sp.Expr]:
@@ -321,6 +326,7 @@ def _written(expr: sp.Expr) -> Iterator[sp.Expr]:
     yield sp.Mul(*factors(expr))
 
 
+@lru_cache(maxsize=8192)
 def _solved(
     expr: sp.Expr, positive: sp.Expr, rest: tuple[sp.Expr, ...], name: sp.Dummy
 ) -> tuple[sp.Expr, tuple[sp.Expr, ...]]:
@@ -348,9 +354,7 @@ def linear(expr: sp.Expr, symbol: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
 @lru_cache(maxsize=8192)
 def _sign_of_fraction(expr: sp.Expr) -> int:
     """Return the sign that the terms above and below the line have, 0 where they differ."""
-    if len(signs(expr)) == 2:
-        return 0
-    return sign_of_terms(above_line(expr)[0]) * sign_of_terms(above_line(expr)[1])
+    return 0 if len(signs(expr)) == 2 else sign_of_fraction(expr)
 
 
 @lru_cache(maxsize=8192)

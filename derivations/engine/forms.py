@@ -179,14 +179,6 @@ def reduced(expr: sp.Expr) -> sp.Expr:
 
 
 @lru_cache(maxsize=8192)
-def above_line(expr: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """Return what stands above and below the line of one fraction, multiplied out."""
-    names = Polynomials.of(expr)
-    top, bottom = names.fraction(expr)
-    return names.expression(top), names.expression(bottom)
-
-
-@lru_cache(maxsize=8192)
 def factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
     """Return the factors of numerator and denominator, with their powers; what is positive stays whole.
 
@@ -209,6 +201,7 @@ def _is_root_of_sum(expr: sp.Expr) -> bool:
     return bool(rooted and expr.base.has(sp.Add))
 
 
+@lru_cache(maxsize=1024)
 def _factored_below(power: sp.Pow) -> sp.Expr:
     """Factor what is below a root, unless the sign of its terms is seen as they stand."""
     whole = sp.together(power.base)
@@ -231,10 +224,9 @@ def _collect_factors(
         return sp.S.One
     number = sp.S.One
     for part, times in zip(names.fraction(expr), (power, -power), strict=True):
-        whole = names.expression(part)
-        if (sign := sign_of_terms(whole)) and whole.is_Add:
+        if len(part) > 1 and (sign := _sign_of_polynomial(part, names)):
             number *= sign**times
-            powers[sign * whole, times > 0] += abs(times)
+            powers[sign * names.expression(part), times > 0] += abs(times)
             continue
         content, found = part.factor_list()
         number *= sp.Rational(int(content.numerator), int(content.denominator)) ** times
@@ -268,6 +260,33 @@ def sign_of_terms(expr: sp.Expr, *, strict: bool = True) -> int:
     return -1 if expr.is_negative or (not strict and expr.is_nonpositive) else 0
 
 
+def sign_of_fraction(expr: sp.Expr) -> int:
+    """Return the sign that the terms above and below the line of one fraction have, 0 where they differ."""
+    names = Polynomials.of(expr)
+    return math.prod(_sign_of_polynomial(part, names) for part in names.fraction(expr))
+
+
+def _sign_of_polynomial(polynomial: PolyElement, names: Polynomials) -> int:
+    """Return the sign that follows from that of the terms, as `sign_of_terms` does."""
+    seen, strict = set(), False
+    for powers, factor in polynomial.terms():
+        parts = [
+            (each, sp.Integer(2 - power % 2))
+            for each, power in zip(names.generators, powers, strict=True)
+            if power
+        ]
+        sign = 1 if factor > 0 else -1
+        seen.add(math.prod((_sign_of_power(*part, False) for part in parts), start=sign))
+        if len(seen) > 1 or 0 in seen:
+            break
+        strict = strict or all(_sign_of_power(*part, True) for part in parts)
+    else:
+        return seen.pop() if strict else 0
+    # Terms with roots or with numbers such as π may still join.
+    return 0 if names.independent else sign_of_terms(names.expression(polynomial))
+
+
+@lru_cache(maxsize=8192)
 def _sign_of_power(base: sp.Expr, exponent: sp.Rational, strict: bool) -> int:
     """Return the sign of a power, whose base must not vanish if the exponent is negative."""
     sign = sign_of_terms(base, strict=strict or bool(exponent.is_negative))

@@ -125,9 +125,11 @@ class Polynomials:
     def __init__(self, keys: tuple[_Key, ...]) -> None:
         self._ring = _ring(len(keys))
         self._places = dict(zip(keys, self._ring.gens, strict=True))
-        self._generators = [base**exponent for base, exponent in keys]
+        self.generators = [base**exponent for base, exponent in keys]
         # A root in a root comes after the one that contains it.
         self._roots = sorted(filter(_is_root, keys), key=lambda key: -key[0].count_ops())
+        self.independent = not self._roots and all(map(letters_of, self.generators))
+        """Whether no generator is known to follow from others."""
 
     @classmethod
     def of(cls, expr: sp.Expr) -> "Polynomials":
@@ -166,7 +168,7 @@ class Polynomials:
         """Return a polynomial as an expression."""
         return sp.Add(*(
             sp.Mul(sp.Rational(int(factor.numerator), int(factor.denominator)),
-                   *(each**power for each, power in zip(self._generators, powers, strict=True) if power))
+                   *(each**power for each, power in zip(self.generators, powers, strict=True) if power))
             for powers, factor in polynomial.terms()
         ))  # fmt: skip
 

@@ -20,6 +20,7 @@ one order are one root; dots and primes are derivatives.
 
 import re
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from math import gcd
 from typing import Any, NamedTuple
 
@@ -85,6 +86,7 @@ def _is_negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
 
 
+@lru_cache(maxsize=16384)
 def _rank(factor: sp.Expr) -> tuple[Any, ...]:
     """Return the place of a factor in a product."""
     base = factor.as_base_exp()[0] if factor.is_Pow else factor
