@@ -33,6 +33,7 @@ FIRST = (
     ),
     *("test_cli", "test_compare", "test_fit", "test_energy", "test_planted", "test_explorer"),
     *("test_sweep_executors", "test_prony_reference", "test_charts_stability", "test_asperities"),
+    *("test_start", "test_cycles"),
 )
 """Scopes in the order in which they begin, then all others."""
 COMPILING = "test_compiled_kernels"

@@ -102,11 +102,12 @@ def test_a_ripple_that_still_grows_is_not_steady_sliding_however_small_it_is():
     assert cycle(t, ripple(t, 0.2)).settles == 0.0
 
 
-def test_a_cycle_that_another_solution_does_not_end_in_is_none():
+def test_a_cycle_in_which_no_other_solution_ends_is_not_known():
     steady = Cycle(1.0, 0.0, math.nan, 1.0, 1.0, 1.0, 1.0, (0.0,) * 6)
     assert steady.beside([steady], 4.0).settles == 1.0
     assert steady.beside([Cycle(0.0)], 4.0).known.settles == 0.0
     swings = Cycle(1.0, 2.0, 3.0, 1.0, 0.0, 1.0, 0.0, (0.0,) * 6)
+    assert max(swings.beside([], 4.0).relative_errors.values()) == math.inf
     found = swings.beside([steady], 4.0)
     assert max(found.relative_errors.values()) == math.inf
     assert (found.known.settles, max(found.known.relative_errors.values())) == (0.0, 0.0)

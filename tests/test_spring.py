@@ -202,6 +202,7 @@ def test_a_run_that_is_too_short_does_not_settle():
     found = kv.sweep(short, over={"drive.velocity": ["91 mm/s"]}, quantities=NAMES, rtol=1e-4)
     assert found["stick_slip_settles"].tolist() == [0.0]
     assert np.isnan(found["stick_slip_amplitude"]).all()
+    assert "no cycle is known" in found.certificate.statement
 
 
 def test_near_the_limit_of_stability_the_limit_is_told_long_before_it_is_reached():

@@ -48,9 +48,8 @@ class Rule(NamedTuple):
 
 COLUMNS, ROWS = {False: 100, True: 26}, 8
 """Elements per static half length of a line contact and of a ball; rows per half width of a ball."""
-WINDOW, IMPACT = 1.7, 0.2
-"""Half width of the simulated region, in static half lengths; the power of the energy at the start, over that
-at rest, with which it grows."""
+WINDOW = 1.7
+"""Half width of the simulated region, in half lengths at rest, or at the depth that an impact reaches."""
 PASSED = 1.618
 """Elements that pass in a step; no whole number, so that entries are not in phase with steps."""
 FEWEST_STEPS, LONGEST_RUN = 300, 1500
@@ -398,7 +397,8 @@ def _begin(
     """Return the state just after t = 0, how far a contact reaches, and the elements that it meets."""
     static = StaticState.of(scene)
     begun = scene.start.of(motion, static.depth)
-    wider, (low, high) = _widens(scene, begun), motion.extremes(0.0, end)
+    deepest = static.depth if scene.start.at_rest else static.impact(begun)[1]
+    wider, (low, high) = math.sqrt(deepest / static.depth), motion.extremes(0.0, end)
     reach = WINDOW * static.half_length * wider
     outside = reach + _swing(scene, begun, motion, end)
     place = -high - outside, -low + outside
@@ -415,20 +415,6 @@ def _swing(scene: Scene, begun: StartState, motion: Any, end: float) -> float:
         lasts = min(end, math.sqrt(scene.drive_mass / k_x)) if k_x else end
         swing += lasts * (abs(begun.along_rate) + motion.highest_speed)
     return swing
-
-
-def _widens(scene: Scene, begun: StartState) -> float:
-    """Return how much longer than at rest a contact may become after a start."""
-    static = StaticState.of(scene)
-    if scene.held or scene.start.at_rest:
-        return 1.0
-    off = abs(begun.depth - static.depth)
-    energy = 0.5 * scene.support.mass * begun.rate**2
-    energy += (static.load + scene.support.spring * off) * off
-    energy += static.load * max(begun.depth, 0.0) ** 2 / static.depth
-    return max(
-        1.0, math.sqrt(max(begun.depth, 0.0) / static.depth), (energy / static.energy) ** IMPACT
-    )
 
 
 def changes(theory: Theory, rules: Sequence[Rule], times: Array) -> list[dict[str, Array]]:

@@ -64,7 +64,7 @@ class Cycle(Recorded):
     `amplitude` is half the travel of the indenter along x; steady sliding has none, and no `period`. The
     others are the extremes of the sliding velocity and of the friction force. `errors` has one for each
     value, relative to the amplitude, the period, and the range of the velocity or force (of steady sliding
-    its size).
+    its size); infinite where they are not known.
     """
 
     settles: float
@@ -101,12 +101,10 @@ class Cycle(Recorded):
     def beside(self, others: Sequence["Cycle"], safety: float) -> "Cycle":
         """Return the cycle with `safety` times the largest difference to others added to its errors.
 
-        They are infinite if another one ends otherwise.
+        They are infinite without another one, or if one ends otherwise.
         """
-        if not others:
-            return self
         ways = {(each.settles, each.amplitude == 0.0) for each in (self, *others)}
-        if len(ways) > 1:
+        if not others or len(ways) > 1:
             return replace(self, errors=(math.inf,) * 6)
         apart = np.max([abs(self.values - each.values) for each in others], axis=0)
         errors = self.errors + safety * apart / _scale(self.values)

@@ -8,6 +8,11 @@ import numpy as np
 
 from kvtheory.scene.capabilities import lacks_one_scene, lacks_quadratic, require
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
+from kvtheory.scene.start import StartState
+
+IMPACT = 0.4
+"""Power of the energy of an impact, over that stored at rest, with which the depth grows that it reaches, and
+that energy over W_0 delta_0: of a parabola; of a ball both are a third."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +122,26 @@ class StaticState:
     energy = property(
         lambda self: self.load * self.depth, doc="W_0 delta_0, in J/m (J for a ball)."
     )
+
+    def impact(self, begun: StartState) -> tuple[float, float]:
+        """Return the speed and the depth to expect after a start that is not at rest.
+
+        The indenter has the energy of its motion, of its weight and spring, and of the foundation under it. A
+        fixed one stays where it is.
+
+        >>> speed, depth = StaticState.of(Scene()).impact(StartState(-5e-3, 0.0, 0.0))
+        >>> round(speed, 3), round(depth * 1e3, 3)  # m/s, from sqrt(2 g (5 mm + delta_0)), and mm
+        (0.322, 1.366)
+        """
+        if self.fixed:
+            return 0.0, self.depth
+        mass = self.inertia_number * self.load * self.time**2 / self.depth
+        spring, off = self.support_number * self.load / self.depth, begun.depth - self.depth
+        energy = 0.5 * (mass * begun.rate**2 + spring * off**2) + self.load * abs(off)
+        deep, stored = max(begun.depth, 0.0) / self.depth, IMPACT * self.energy
+        energy += stored * deep ** (1.0 / IMPACT)
+        deepest = self.depth * max(1.0, deep, (energy / stored) ** IMPACT)
+        return math.sqrt(2.0 * energy / mass), deepest
 
     def named(self) -> dict[str, float]:
         """Return the values that exist by plain names, as ``"static_depth"`` and ``"drive_number"``."""

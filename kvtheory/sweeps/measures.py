@@ -42,6 +42,7 @@ from kvtheory.sweeps.plan import (
     EVENTS,
     FAILS,
     LANDMARKS,
+    NO_CYCLE,
     UNSETTLED,
     Array,
     Column,
@@ -211,7 +212,7 @@ class _Motions:
             own |= cycle.quantities
             for name, error in cycle.relative_errors.items():
                 self.measured.errors[name][index] = error
-            self.measured.statements.add(cycle_statement(MARGIN))
+            self.measured.statements |= {cycle_statement(MARGIN), *[NO_CYCLE] * (not cycle.settles)}
         for name, value in own.items():
             self.own[name][index] = value
         if self.plan.texts:

@@ -60,7 +60,13 @@ UNSETTLED = (
     "in some scenes friction had not settled within 1 % when the run ended: settling_time is missing there, "
     "and peak_to_steady_friction is that of the run"
 )
-REMARKS = f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND}", UNSETTLED
+NO_CYCLE = (
+    "in some scenes no cycle is known, as the run ended too soon, or elements are too coarse near the onset "
+    "of instability: stick_slip_settles is 0 there, and the other values of the cycle are missing"
+)
+REMARKS = (
+    f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND}", UNSETTLED, NO_CYCLE,
+)  # fmt: skip
 """What a certificate says of some scenes, for those who do not read it."""
 OF_MODEL = ".model"
 """Ends the name of a quantity whose error is that of independent elements against the layer."""

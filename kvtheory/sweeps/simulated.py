@@ -17,7 +17,7 @@ from kvtheory.results.cycles import CYCLE, cycle_statement
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.measures import SETTLED, relative
-from kvtheory.sweeps.plan import FAILS, UNSETTLED, Array, Measured, Plan
+from kvtheory.sweeps.plan import FAILS, NO_CYCLE, UNSETTLED, Array, Measured, Plan
 
 PER_HALF_LENGTH = 200
 """Elements in half the contact at rest: about half the paper's, in less than a second per scene."""
@@ -57,7 +57,7 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
         scale = scales(model.at_rest)
         if cycle := getattr(run, "cycle", None) if cycles else None:
             cycle = ended(scene, cycle).known
-            found.statements.add(cycle_statement(SAFETY))
+            found.statements |= {cycle_statement(SAFETY), *[NO_CYCLE] * (not cycle.settles)}
         for column in asked:
             if column.measure in CYCLE:
                 if cycle:

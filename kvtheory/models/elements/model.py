@@ -36,9 +36,6 @@ CREEP = 1e-12
 DEPTH_RTOL = 1e-12
 """The iteration for a depth ends when a step is below this share of it: the next one would be of the order of
 rounding errors."""
-IMPACT = 0.4
-"""Power of the energy of an impact, over that at rest, with which the depth grows that it reaches: that of a
-parabola; of a ball it is a third."""
 NO_SPRING = 1e-6
 """Share of the load below which a spring does not change the time of a fall."""
 STALLED = 0.9
@@ -140,18 +137,9 @@ class Model:
         return self.start.of(path, self.constants.depth)
 
     def impact(self, path: BaseMotion) -> tuple[float, float]:
-        """Return the speed of the indenter to expect after a start that is not at rest, and the depth.
-
-        It has the energy of its motion, of its weight and spring, and of the foundation under it.
-        """
-        c, (depth, rate, _) = self.constants, self.begun(path)
-        if self.start.at_rest or math.isinf(c.mass):
-            return 0.0, c.depth
-        off = depth - c.depth
-        energy = 0.5 * (c.mass * rate * rate + c.spring * off * off) + c.weight * abs(off)
-        energy += contact(c, depth).force * depth if depth > 0.0 else 0.0
-        deeper = c.depth * (energy / self.at_rest.energy) ** IMPACT
-        return math.sqrt(2.0 * energy / c.mass), max(c.depth, depth, deeper)
+        """Return the speed of the indenter to expect after a start that is not at rest, and the depth."""
+        begun = self.begun(path)
+        return (0.0, self.constants.depth) if self.start.at_rest else self.at_rest.impact(begun)
 
     def landing(self, path: BaseMotion) -> float:
         """Return the time (s) at which an indenter lands that starts above the ground, or infinity."""
