@@ -53,19 +53,8 @@ CREEPING = "D(t)", "J(t)", "creep compliance"
 KINDS = {"D(t)": "E", "J(t)": "G", "storage modulus": None, "loss modulus": None, "complex modulus": None,
          "relaxation modulus": None, "creep compliance": None}  # fmt: skip
 """Whether names mean E or G: by default their letter, and G for a viscosity."""
-RADIANS = (
-    "rad/s",
-    "rad/sec",
-    "1/s",
-    "s^-1",
-    "s⁻¹",
-    "rad s^-1",
-    "rad*s^-1",
-    "rad·s⁻¹",
-    "rad s⁻¹",
-    "rads^-1",
-    "rad/S",
-)
+RADIANS = ("rad/s", "rad/sec", "rad/S", "1/s", "s^-1", "s⁻¹", "rad s^-1", "rad*s^-1", "rads^-1",
+           "rad·s⁻¹", "rad s⁻¹")  # fmt: skip
 FREQUENCIES = {
     "frequency": {
         "Hz": 2.0 * math.pi, "hz": 2.0 * math.pi, "HZ": 2.0 * math.pi, "kHz": 2e3 * math.pi,
@@ -189,7 +178,7 @@ def _require_one_temperature(table: Table, x: Array, modulus: Array) -> None:
         if own.any() and np.median(change) > REPEATED:
             what = f"its {int(table.parts[-1]) + 1} tables hold other moduli at the same frequencies or times"
             message = (
-                f"{what}, and neither a column nor the head of each table names the temperature"
+                f"{what}, and neither a column nor the head of each table tells the temperature"
             )
             raise ValueError(f"{table.source}: {message}; expected a column T [degC]")
 
@@ -306,9 +295,8 @@ def _tangent(table: Table, name: str) -> Array:
             what = f'has the unit "{column.unit}"' if column.unit else "has no unit"
             raise table.error(name, f"{what}; expected deg or rad")
         phase = plausible(table, name, column.values) * ANGLES[column.unit]
-        table.require(
-            name, (phase >= 0.0) & (phase < 0.5 * math.pi), "is not from 0 to below 90 degrees"
-        )
+        inside = (phase >= 0.0) & (phase < 0.5 * math.pi)
+        table.require(name, inside, "is not from 0 to below 90 degrees")
         return np.asarray(np.tan(phase))
     loss = plausible(table, name, table.number(name))
     table.require(name, loss >= 0.0, "is negative")

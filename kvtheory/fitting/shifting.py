@@ -125,9 +125,8 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     T, log_shift = T[order], log_shift[order]
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
-        raise table.error(
-            "temperature", f"{celsius(T[twice[0]])} degC occurs twice", int(order[twice[0]])
-        )
+        message = f"{celsius(T[twice[0]])} degC occurs twice"
+        raise table.error("temperature", message, int(order[twice[0]]))
     if np.abs(log_shift).min() > 1e-6:
         message = "holds no temperature with a_T = 1, the reference"
         raise ValueError(f"{table.source}: {message}")
@@ -166,13 +165,8 @@ def shifted(
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         shifts = factors[1][place]
-        given, other = (
-            sum(
-                pair.off(way * step).squares
-                for pair, step in zip(pairs, np.diff(shifts), strict=True)
-            )
-            for way in (1.0, -1.0)
-        )
+        taken = list(zip(pairs, np.diff(shifts), strict=True))
+        given, other = (sum(pair.off(way * s).squares for pair, s in taken) for way in (1.0, -1.0))
         if given > BETTER * other:
             message = "the sweeps fall onto each other with their negatives, and not with these"
             hint = "expected log10 a_T, which falls as the temperature rises, with f a_T on the master curve"

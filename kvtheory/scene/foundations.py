@@ -358,9 +358,8 @@ class _Relaxed(Part):
         if T is not None and self.wlf is not None:
             pole = self.reference_temperature - self.wlf.c_2
             if np.any(pole >= T):
-                message = (
-                    f"expected above T_ref - C_2 = {np.max(pole):g} K, the pole of the WLF law"
-                )
+                message = f"expected above T_ref - C_2 = {np.max(pole):g} K"
+                message += ", the pole of the WLF law"
                 raise mistake(key, shown, message)
         a_T = self.shift_factor
         for part, name in times:
@@ -473,9 +472,7 @@ def _range(over: Any) -> tuple[float, float]:
         raise ValueError(f"`over` = {over!r}: expected the shortest and the longest time")
     shortest, longest = (convert(each, spec) for each in over)
     if not shortest < longest:
-        raise ValueError(
-            f"`over` = {over!r}: expected the shortest time first, and then a longer one"
-        )
+        raise ValueError(f"`over` = {over!r}: expected the shortest time first, then a longer one")
     return shortest, longest
 
 
