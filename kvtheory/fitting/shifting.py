@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import curve_fit, minimize_scalar, nnls
 
+from kvtheory.fitting.least_squares import student
 from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli, grid
@@ -365,7 +366,8 @@ def law_of(master: Shifted) -> Law | None:
         )  # fmt: skip
         off = (Law(name, tuple(found)).log_shift(T, reference) - log_shift) / sigma
         misfit = usual * math.sqrt(float(off @ off) / free) if free else math.nan
-        errors = tuple(np.sqrt(np.diag(covariance)).tolist())
+        wide = student(free) / SIGMAS if free else 1.0  # so that twice the errors hold 95 %
+        errors = tuple((wide * np.sqrt(np.diag(covariance))).tolist())
         laws.append(Law(name, tuple(found.tolist()), errors, misfit))
     if len(laws) > 1 and laws[1].constants[1] > MOST_C_2:  # a straight line in T
         del laws[1]
