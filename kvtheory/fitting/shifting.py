@@ -49,7 +49,10 @@ LEAST_OVERLAP = 2
 BETTER = 4.0
 """Ratio of sums of squares from which a vertical shift, or a reversal of shift factors, is not by chance."""
 LEAST_C_2, MOST_C_2 = 1.0, 1e4
-"""Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant."""
+"""Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant: beyond, the
+law is a straight line in T."""
+THROUGH = 1e-3
+"""Distance of a shift factor, over its error, from a law that has as many constants as there are factors."""
 SAME = 1.5
 """Difference in K up to which a temperature of a file of shift factors is that of a sweep."""
 SHIFTS = Reader(
@@ -355,8 +358,7 @@ def law_of(master: Shifted) -> Law | None:
     if T.size > 1:  # from the law made linear in its constants
         x, pole = T - reference, max(float((reference - T).max()), 0.0) + LEAST_C_2
         c_1, c_2 = np.linalg.lstsq(np.column_stack([-x, -log_shift]), x * log_shift)[0]
-        if T.size > 2 or (c_1 > 0.0 and c_2 > pole):
-            tried.append(("wlf", [max(c_1, 1.0), max(c_2, pole + 10.0)], (1e-3, pole)))
+        tried.append(("wlf", [max(c_1, 1.0), max(c_2, pole + 10.0)], (1e-3, pole)))
     laws = []
     for name, guess, low in tried:
         free = T.size - len(guess)
@@ -365,11 +367,12 @@ def law_of(master: Shifted) -> Law | None:
             T, log_shift, guess, sigma, bounds=(low, np.inf), x_scale=guess, absolute_sigma=not free,
         )  # fmt: skip
         off = (Law(name, tuple(found)).log_shift(T, reference) - log_shift) / sigma
+        if not free and np.abs(off).max() > THROUGH:  # its constants would have to be negative
+            continue
         misfit = usual * math.sqrt(float(off @ off) / free) if free else math.nan
         wide = student(free) / SIGMAS if free else 1.0  # so that twice the errors hold 95 %
         errors = tuple((wide * np.sqrt(np.diag(covariance))).tolist())
         laws.append(Law(name, tuple(found.tolist()), errors, misfit))
-    if len(laws) > 1 and laws[1].constants[1] > MOST_C_2:  # a straight line in T
-        del laws[1]
-    best: Law = min(laws, key=lambda law: usual if math.isnan(law.misfit) else law.misfit)
-    return None if best.misfit >= float(np.std(master.log_shift)) else best
+    laws = [law for law in laws if law.constants[-1] < MOST_C_2 or law.name != "wlf"]
+    best = min(laws, key=lambda law: usual if math.isnan(law.misfit) else law.misfit, default=None)
+    return None if best is None or best.misfit >= float(np.std(master.log_shift)) else best
