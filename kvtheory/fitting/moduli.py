@@ -81,9 +81,7 @@ FEWEST = 4
 
 def _parts(found: Any) -> dict[str, list[str]]:
     """Return the names that a table has of each of the four from which dynamic moduli follow."""
-    return {
-        part: own for part, names in DYNAMIC.items() if (own := [n for n in names if n in found])
-    }
+    return {p: own for p, names in DYNAMIC.items() if (own := [n for n in names if n in found])}
 
 
 def _needed(found: set[str]) -> bool:
@@ -149,9 +147,7 @@ def read(data: Any, modulus: str | None = None) -> Measured:
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
             what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
             where = "" if one else f" at {celsius(temperature[each].mean())} degC"
-            message = (
-                f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
-            )
+            message = f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} needed"
             raise ValueError(f"{table.source}: holds {message}")
         if creeping:
             creep = own[0].copy(), own[1].copy()
@@ -177,9 +173,7 @@ def _require_one_temperature(table: Table, x: Array, modulus: Array) -> None:
         change = np.abs(np.log(modulus[own]) - np.interp(x[own], at, values))
         if own.any() and np.median(change) > REPEATED:
             what = f"its {int(table.parts[-1]) + 1} tables hold other moduli at the same frequencies or times"
-            message = (
-                f"{what}, and neither a column nor the head of each table tells the temperature"
-            )
+            message = f"{what}, and neither a column nor the head of each one names the temperature"
             raise ValueError(f"{table.source}: {message}; expected a column T [degC]")
 
 

@@ -276,9 +276,7 @@ class Reader:
             values, own = _numbers(path, lines, each, found, self.partial)
             notes += own
             read.append((found, values))
-        kinds = {
-            tuple(sorted((name, unit) for name, _, unit in found.values())) for found, _ in read
-        }
+        kinds = {tuple(sorted((n, unit) for n, _, unit in found.values())) for found, _ in read}
         if len(kinds) > 1:
             message = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
             raise ValueError(f"{path}: its tables differ in their columns or units: {message}")
