@@ -217,7 +217,7 @@ def test_models_are_weighed_and_no_more_is_taken_than_needed():
 
 def test_weights_of_models_follow_akaike_and_add_up_to_one():
     """Of data that several models fit about as well."""
-    found = kv.fit(TABLE1, table(TABLE1, 0.05, 0, np.geomspace(1e-3, 1.0, 14)), models=True)
+    found = kv.fit(TABLE1, table(TABLE1, 0.02, 0, np.geomspace(1e-5, 1e-3, 14)), models=True)
     best, *others = sorted(found.models, key=lambda model: model.aicc)
     assert best.aicc == 0.0
     assert best.weight < 0.9
@@ -595,13 +595,12 @@ def test_the_command_prints_and_writes_a_scene_that_loads(tmp_path):
     assert found["not_identifiable"] == []
     assert kv.load_scene(out).foundation.stiffness == found["parameters"][VOIGT[0]]["value"]
     assert picture.stat().st_size > 10_000
-    again = printed(*command, ",".join(VOIGT), "--data", data, "-o", out, "--plot", picture)
-    assert kv.load_scene(out).foundation.stiffness == again["parameters"][VOIGT[0]]["value"]
+    shown = run(*command, ",".join(VOIGT), "--data", data, "-o", out, "--plot", picture).stdout
+    assert "standard error" in shown
+    assert "50 rows, misfit 0.0" in shown
+    assert f"{kv.load_scene(out).foundation.stiffness:.5g}" in shown
     second = tmp_path / "second.toml"
     second.write_bytes(data.read_bytes())
     refused([*command, VOIGT[0], "--data", second, "-o", second], ["is what this command reads"])
     assert second.read_bytes() == data.read_bytes()
-    shown = run(*command, ",".join(VOIGT)).stdout
-    assert "standard error" in shown
-    assert "25 rows, misfit 0.0" in shown
     refused([*command, "foundation.tau"], ["--free foundation.tau"])

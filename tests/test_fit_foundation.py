@@ -604,6 +604,10 @@ def test_as_many_constants_as_shift_factors_are_taken_where_the_simpler_law_miss
     )
     assert two.name == "arrhenius"
     assert "none is left to test it" in two.test
+    turned = SimpleNamespace(
+        temperatures=T[:2], log_shift=-log_shift[:2], errors=errors[:2], reference=T_ref
+    )
+    assert shifting.law_of(turned) is None
     assert two.errors[0] / two.constants[0] == pytest.approx(np.hypot(0.1, 0.007) / 2.155, rel=1e-3)
 
 

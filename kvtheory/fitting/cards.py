@@ -62,13 +62,13 @@ def read(path: Path) -> tuple[Series, float, Thermal | None, list[str]]:
     g, time = np.array(card.shear).T
     if not ((g > 0.0).all() and g.sum() < 1.0 and (time > 0.0).all() and card.E > 0.0):
         message = (
-            "expected relative moduli above 0 with a sum below 1, and times and modulus above 0"
+            "expected relative moduli above 0, of a sum below 1, and times and modulus above 0"
         )
         raise ValueError(f"{path}: {message}")
     notes, thermal = [], None
     if card.bulk and not np.allclose([pair[0] for pair in card.bulk], g, rtol=1e-3):
         notes.append(
-            "The bulk modulus of the card relaxes otherwise than the shear modulus, which is used."
+            "The bulk modulus of the card relaxes otherwise than the shear modulus that is used."
         )
     if card.law == "WLF":
         if len(card.constants) != 3:
@@ -152,24 +152,17 @@ def _ansys(lines: list[str]) -> Card:
 
 
 def written(
-    suffix: str,
-    relaxed: float,
-    arms: Sequence[tuple[float, float]],
-    poisson_ratio: float,
-    source: str,
-    thermal: Thermal | None = None,
-    left_out: str = "",
-) -> str:
+    suffix: str, relaxed: float, arms: Sequence[tuple[float, float]], poisson_ratio: float, source: str,
+    thermal: Thermal | None = None, left_out: str = "",
+) -> str:  # fmt: skip
     """Return the card of a series, in Pa and s, with WLF's law or a comment on the law that is left out."""
     instant = relaxed + sum(E for E, _ in arms)
     pairs = [(f"{E / instant:.9g}", f"{tau:.9g}") for E, tau in arms]
     mark = "**" if suffix == SUFFIXES[0] else "!"
     head = [f"{mark} Prony series fitted to {source}; units: Pa, s, degC"]
     head += [f"{mark} {left_out}"] if left_out else []
-    wlf = ""
-    if thermal:
-        row = (thermal.reference - ZERO_CELSIUS, *thermal.constants)
-        wlf = ", ".join(f"{each:.9g}" for each in row)
+    row = (thermal.reference - ZERO_CELSIUS, *thermal.constants) if thermal else ()
+    wlf = ", ".join(f"{each:.9g}" for each in row)
     if suffix == SUFFIXES[0]:
         rows = [f"{g}, {g}, {tau}" for g, tau in pairs]
         lines = [

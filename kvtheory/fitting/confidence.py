@@ -90,18 +90,19 @@ def _limits(
     points = found.minima[place]
     active = np.full(2 * pairs, True)
     if problem.costly:
-        last, last_r = points.copy(), problem.residuals(found.minima)[place]
-        last_J = problem.slopes(found.minima)[place]
+        last, (r, J) = points.copy(), problem.sloped(found.minima)
+        last_r, last_J = r[place], J[place]
     for _ in range(NEWTON):
         at = np.flatnonzero(active)
         if not at.size:
             break
-        i, r = own[at], problem.residuals(points[at])
+        i = own[at]
         if problem.costly:
+            r = problem.residuals(points[at])
             J = updated(last_J[at], r - last_r[at], points[at] - last[at])
             last[at], last_r[at], last_J[at] = points[at], r, J
         else:
-            J = problem.slopes(points[at])
+            r, J = problem.sloped(points[at])
         rows = np.arange(at.size)
         H, g = np.einsum("sni,snj->sij", J, J), np.einsum("sni,sn->si", J, r)
         stuck = ((points[at] <= low) & (g > 0.0)) | ((points[at] >= high) & (g < 0.0))

@@ -200,14 +200,15 @@ def _inconsistent(data: Moduli, series: Series, least: float, sweeps: Any) -> li
     if r.shape[1] < 2 * WINDOW:
         return []
     steps = r[:, 1:-1] - 0.5 * (r[:, :-2] + r[:, 2:])
-    scatter = np.median(np.abs(steps), axis=1) / 0.6745 / math.sqrt(1.5)
-    if least < max(SYSTEMATIC * rms(scatter), VISIBLE):
+    scatter = rms(np.median(np.abs(steps), axis=1) / 0.6745 / math.sqrt(1.5))
+    seen = max(SYSTEMATIC * scatter, VISIBLE)
+    if least < seen:
         return []
     if len(sweeps) > 1:
         sizes = np.array([each.moduli.target.size for each in sweeps])
         own = np.array([best(each.moduli.thinned)[1] for each in sweeps])
         alone = math.sqrt(float(np.average(own**2, weights=sizes)))
-        if alone < max(SYSTEMATIC * rms(scatter), VISIBLE):
+        if alone < seen:
             return [
                 f"The sweeps do not fall onto one curve: no series has a misfit below {least:.2%} with these "
                 f"shifts, and each sweep by itself has one of {alone:.2%} or more. Moduli may shift "
@@ -215,18 +216,16 @@ def _inconsistent(data: Moduli, series: Series, least: float, sweeps: Any) -> li
             ]
     mean = np.apply_along_axis(np.convolve, 1, r, np.full(WINDOW, 1.0 / WINDOW), "same")
     row, at = np.unravel_index(np.abs(mean).argmax(), mean.shape)
-    off = np.abs(mean[row]) > 0.5 * abs(mean[row, at])
-    low, high = at, at
-    while low > 0 and off[low - 1]:
-        low -= 1
-    while high < off.size - 1 and off[high + 1]:
-        high += 1
+    small = np.flatnonzero(np.abs(mean[row]) <= 0.5 * abs(mean[row, at]))
+    below, above = small[small < at], small[small > at]
+    low = below[-1] + 1 if below.size else 0
+    high = above[0] - 1 if above.size else -1
     ends = data.x[[low, high]] / (2.0 * math.pi if data.dynamic else 1.0)
     unit = "Hz" if data.dynamic else "s"
     which = ("storage", "loss")[row] if data.dynamic else "relaxation"
     rule = "Kramers-Kronig's relations" if data.dynamic else "decreasing convex relaxation"
     return [
         f"The data do not obey {rule}: no series with arms above 0 has a misfit below {least:.2%} (dual "
-        f"bound), and the scatter is {rms(scatter):.2%}. The {which} modulus is off most from "
+        f"bound), and the scatter is {scatter:.2%}. The {which} modulus is off most from "
         f"{ends[0]:.3g} to {ends[1]:.3g} {unit}, by {-mean[row, at]:+.1%}."
     ]

@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
-from kvtheory.fitting.least_squares import Fit, descend, slopes, student
+from kvtheory.fitting.least_squares import Fit, descend, sloped, student
 from kvtheory.fitting.records import FRICTION, Data, largest_speed, speeds
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
@@ -191,9 +191,9 @@ class Problem:
         """Return the residuals of unknowns in rows, times the weights."""
         return np.concatenate(self.columns(points), axis=1) * self.weights
 
-    def slopes(self, points: Array, *, central: bool = False) -> Array:
-        """Return the derivatives of the residuals by the unknowns, along the last axis."""
-        return slopes(self.residuals, points, step=self.step, central=central)
+    def sloped(self, points: Array, *, central: bool = False) -> tuple[Array, Array]:
+        """Return the residuals, and their derivatives by the unknowns, along the last axis."""
+        return sloped(self.residuals, points, step=self.step, central=central)
 
     def weighed(self, point: Array) -> "Problem":
         """Return the problem in which each column has the weight of its scatter at a point."""
@@ -347,12 +347,11 @@ def solve(
             break
         points, score = descended(problem, points, rounds[-1][1])
     point = points[0]
-    r = problem.residuals(point[None])[0]
     if (np.concatenate(problem.columns(point[None]), axis=1) == FAILED).all():
         message = f"theory has no answer for any value of {', '.join(problem.keys)} that was tried"
         raise ValueError(f"{problem.data[0].source}: {message}; check the scene")
-    J = problem.slopes(point[None], central=True)[0]
-    return problem, Fit(point, r, J, problem.count(point), points)
+    r, J = problem.sloped(point[None], central=True)
+    return problem, Fit(point, r[0], J[0], problem.count(point), points)
 
 
 def _starts(unit: Array, score: Array, count: int) -> list[int]:

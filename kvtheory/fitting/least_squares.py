@@ -32,15 +32,16 @@ CONFIDENCE = 0.95
 """Probability with which an interval holds the true value."""
 
 
-def slopes(
+def sloped(
     residuals: Residuals, points: Array, *, step: float = STEP, central: bool = False
-) -> Array:
-    """Return the derivatives of the residuals by the unknowns, along the last axis, at points in rows."""
+) -> tuple[Array, Array]:
+    """Return the residuals at points in rows, and their derivatives by the unknowns, along the last axis."""
     count, size = points.shape
-    moves = step * (np.concatenate([np.eye(size), -np.eye(size)]) if central else np.eye(size))
-    moved = residuals((points[:, None] + moves).reshape(-1, size)).reshape(count, len(moves), -1)
-    other = moved[:, size:] if central else residuals(points)[:, None]
-    return (moved[:, :size] - other).swapaxes(1, 2) / ((2.0 if central else 1.0) * step)
+    moves = step * np.concatenate([np.zeros((1, size)), np.eye(size), -np.eye(size) * central])
+    moved = residuals((points[:, None] + moves[: size * (1 + central) + 1]).reshape(-1, size))
+    r, ahead, behind = np.split(moved.reshape(count, -1, moved.shape[1]), [1, size + 1], axis=1)
+    rise = (ahead - (behind if central else r)) / ((2.0 if central else 1.0) * step)
+    return r[:, 0], rise.swapaxes(1, 2)
 
 
 def updated(slopes: Array, change: Array, move: Array) -> Array:
@@ -64,15 +65,13 @@ def descend(
     def loss(r: Array) -> Array:
         return np.asarray((2.0 * (np.hypot(1.0, r) - 1.0) if robust else r * r).sum(axis=-1))
 
-    points, r, J = points.copy(), residuals(points), slopes(residuals, points, step=step)
+    points, (r, J) = points.copy(), sloped(residuals, points, step=step)
     cost, damping = loss(r), np.full(len(points), FIRST_DAMPING)
     active = cost > 0.0
     for count in range(steps):
         if not active.any():
             break
         at = np.flatnonzero(active)
-        if count and not costly:
-            J[at] = slopes(residuals, points[at], step=step)
         weight = 1.0 / np.hypot(1.0, r[at]) if robust else np.ones_like(r[at])
         curve = np.einsum("sni,sn,snj->sij", J[at], weight, J[at])
         slope = np.einsum("sni,sn->si", J[at], weight * r[at])
@@ -89,14 +88,17 @@ def descend(
         at, tried, move = at[hopeful], tried[hopeful], move[hopeful]
         if not at.size:
             break
-        new = residuals(tried)
         if costly:
-            J[at] = updated(J[at], new - r[at], move)
+            new = residuals(tried)
+            J[at] = ahead = updated(J[at], new - r[at], move)
+        else:
+            new, ahead = sloped(residuals, tried, step=step)
         total = loss(new)
         better = total < cost[at]
         gain = np.where(better, 1.0 - total / cost[at], 1.0)
         won = at[better]
-        points[won], r[won], cost[won] = tried[better], new[better], total[better]
+        points[won], r[won], J[won] = tried[better], new[better], ahead[better]
+        cost[won] = total[better]
         damping[at] *= np.where(better, 0.2, 5.0)
         active[at] = (gain > SETTLED) & (damping[at] < MOST_DAMPING)
     return points, cost

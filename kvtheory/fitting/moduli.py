@@ -53,19 +53,8 @@ CREEPING = "D(t)", "J(t)", "creep compliance"
 KINDS = {"D(t)": "E", "J(t)": "G", "storage modulus": None, "loss modulus": None, "complex modulus": None,
          "relaxation modulus": None, "creep compliance": None}  # fmt: skip
 """Whether names mean E or G: by default their letter, and G for a viscosity."""
-RADIANS = (
-    "rad/s",
-    "rad/sec",
-    "1/s",
-    "s^-1",
-    "s⁻¹",
-    "rad s^-1",
-    "rad*s^-1",
-    "rad·s⁻¹",
-    "rad s⁻¹",
-    "rads^-1",
-    "rad/S",
-)
+RADIANS = ("rad/s", "rad/sec", "rad/S", "1/s", "s^-1", "s⁻¹", "rad s^-1", "rad*s^-1", "rads^-1",
+           "rad·s⁻¹", "rad s⁻¹")  # fmt: skip
 FREQUENCIES = {
     "frequency": {
         "Hz": 2.0 * math.pi, "hz": 2.0 * math.pi, "HZ": 2.0 * math.pi, "kHz": 2e3 * math.pi,
@@ -92,9 +81,7 @@ FEWEST = 4
 
 def _parts(found: Any) -> dict[str, list[str]]:
     """Return the names that a table has of each of the four from which dynamic moduli follow."""
-    return {
-        part: own for part, names in DYNAMIC.items() if (own := [n for n in names if n in found])
-    }
+    return {p: own for p, names in DYNAMIC.items() if (own := [n for n in names if n in found])}
 
 
 def _needed(found: set[str]) -> bool:
@@ -160,9 +147,7 @@ def read(data: Any, modulus: str | None = None) -> Measured:
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
             what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
             where = "" if one else f" at {celsius(temperature[each].mean())} degC"
-            message = (
-                f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
-            )
+            message = f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} needed"
             raise ValueError(f"{table.source}: holds {message}")
         if creeping:
             creep = own[0].copy(), own[1].copy()
@@ -188,9 +173,7 @@ def _require_one_temperature(table: Table, x: Array, modulus: Array) -> None:
         change = np.abs(np.log(modulus[own]) - np.interp(x[own], at, values))
         if own.any() and np.median(change) > REPEATED:
             what = f"its {int(table.parts[-1]) + 1} tables hold other moduli at the same frequencies or times"
-            message = (
-                f"{what}, and neither a column nor the head of each table names the temperature"
-            )
+            message = f"{what}, and neither a column nor the head of each one names the temperature"
             raise ValueError(f"{table.source}: {message}; expected a column T [degC]")
 
 
@@ -306,9 +289,8 @@ def _tangent(table: Table, name: str) -> Array:
             what = f'has the unit "{column.unit}"' if column.unit else "has no unit"
             raise table.error(name, f"{what}; expected deg or rad")
         phase = plausible(table, name, column.values) * ANGLES[column.unit]
-        table.require(
-            name, (phase >= 0.0) & (phase < 0.5 * math.pi), "is not from 0 to below 90 degrees"
-        )
+        inside = (phase >= 0.0) & (phase < 0.5 * math.pi)
+        table.require(name, inside, "is not from 0 to below 90 degrees")
         return np.asarray(np.tan(phase))
     loss = plausible(table, name, table.number(name))
     table.require(name, loss >= 0.0, "is negative")

@@ -198,9 +198,7 @@ def _columns(
                 table.require(name, values == values[0], message)
             conditions[key] = float(values[0]) if over_time else values
         elif name == "foundation.temperature" and np.ptp(table.si(name, "K")[0]) <= SAME_CLIMATE:
-            notes.append(
-                "The temperature does not vary and is not used: the scene has no law of it."
-            )
+            notes.append("The temperature does not vary and is unused: the scene has no law of it.")
         elif name == "foundation.temperature":
             message = "needs a scene with foundation.wlf or foundation.activation_energy"
             raise table.error(name, f"{message}, and foundation.reference_temperature")
@@ -266,12 +264,8 @@ def _over_time(table: Table, data: Data, scene: Scene) -> Data:
         at, given = np.array(drive.points).T
         off = np.median(np.abs(V - np.where(time < 0.0, V, np.interp(time, at, given))))
         if off > SAME_DRIVE * np.abs(V).max():
-            message = (
-                "is not the drive of the scene; name this file as drive.file there, or leave out"
-            )
-            raise table.error(
-                "drive.velocity", f"{message} the time, for steady sliding row by row"
-            )
+            message = "is not the drive of the scene; name this file as drive.file, or leave out"
+            raise table.error("drive.velocity", f"{message} the time, for steady sliding by rows")
     notes, first = list(data.notes), int(np.searchsorted(time, 0.0))
     if first == time.size:
         raise table.error("time", "is before t = 0, where sliding begins, throughout")

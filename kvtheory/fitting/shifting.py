@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import curve_fit, minimize_scalar, nnls
 
+from kvtheory.fitting.least_squares import student
 from kvtheory.fitting.moduli import Sweep
 from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli, grid
@@ -48,7 +49,10 @@ LEAST_OVERLAP = 2
 BETTER = 4.0
 """Ratio of sums of squares from which a vertical shift, or a reversal of shift factors, is not by chance."""
 LEAST_C_2, MOST_C_2 = 1.0, 1e4
-"""Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant."""
+"""Least distance in K of the WLF pole from the temperatures, and the largest C_2 that is meant: beyond, the
+law is a straight line in T."""
+THROUGH = 1e-3
+"""Distance of a shift factor, over its error, from a law that has as many constants as there are factors."""
 SAME = 1.5
 """Difference in K up to which a temperature of a file of shift factors is that of a sweep."""
 SHIFTS = Reader(
@@ -125,9 +129,8 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     T, log_shift = T[order], log_shift[order]
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
-        raise table.error(
-            "temperature", f"{celsius(T[twice[0]])} degC occurs twice", int(order[twice[0]])
-        )
+        message = f"{celsius(T[twice[0]])} degC occurs twice"
+        raise table.error("temperature", message, int(order[twice[0]]))
     if np.abs(log_shift).min() > 1e-6:
         message = "holds no temperature with a_T = 1, the reference"
         raise ValueError(f"{table.source}: {message}")
@@ -166,13 +169,8 @@ def shifted(
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         shifts = factors[1][place]
-        given, other = (
-            sum(
-                pair.off(way * step).squares
-                for pair, step in zip(pairs, np.diff(shifts), strict=True)
-            )
-            for way in (1.0, -1.0)
-        )
+        taken = list(zip(pairs, np.diff(shifts), strict=True))
+        given, other = (sum(pair.off(way * s).squares for pair, s in taken) for way in (1.0, -1.0))
         if given > BETTER * other:
             message = "the sweeps fall onto each other with their negatives, and not with these"
             hint = "expected log10 a_T, which falls as the temperature rises, with f a_T on the master curve"
@@ -360,8 +358,7 @@ def law_of(master: Shifted) -> Law | None:
     if T.size > 1:  # from the law made linear in its constants
         x, pole = T - reference, max(float((reference - T).max()), 0.0) + LEAST_C_2
         c_1, c_2 = np.linalg.lstsq(np.column_stack([-x, -log_shift]), x * log_shift)[0]
-        if T.size > 2 or (c_1 > 0.0 and c_2 > pole):
-            tried.append(("wlf", [max(c_1, 1.0), max(c_2, pole + 10.0)], (1e-3, pole)))
+        tried.append(("wlf", [max(c_1, 1.0), max(c_2, pole + 10.0)], (1e-3, pole)))
     laws = []
     for name, guess, low in tried:
         free = T.size - len(guess)
@@ -370,10 +367,12 @@ def law_of(master: Shifted) -> Law | None:
             T, log_shift, guess, sigma, bounds=(low, np.inf), x_scale=guess, absolute_sigma=not free,
         )  # fmt: skip
         off = (Law(name, tuple(found)).log_shift(T, reference) - log_shift) / sigma
+        if not free and np.abs(off).max() > THROUGH:  # its constants would have to be negative
+            continue
         misfit = usual * math.sqrt(float(off @ off) / free) if free else math.nan
-        errors = tuple(np.sqrt(np.diag(covariance)).tolist())
+        wide = student(free) / SIGMAS if free else 1.0  # so that twice the errors hold 95 %
+        errors = tuple((wide * np.sqrt(np.diag(covariance))).tolist())
         laws.append(Law(name, tuple(found.tolist()), errors, misfit))
-    if len(laws) > 1 and laws[1].constants[1] > MOST_C_2:  # a straight line in T
-        del laws[1]
-    best: Law = min(laws, key=lambda law: usual if math.isnan(law.misfit) else law.misfit)
-    return None if best.misfit >= float(np.std(master.log_shift)) else best
+    laws = [law for law in laws if law.constants[-1] < MOST_C_2 or law.name != "wlf"]
+    best = min(laws, key=lambda law: usual if math.isnan(law.misfit) else law.misfit, default=None)
+    return None if best is None or best.misfit >= float(np.std(master.log_shift)) else best

@@ -109,9 +109,8 @@ class Table:
         """Return an error about a column, and a row of it."""
         line = self.header if row is None else self.lines[row]
         line = f"line {line}, " if line else ""
-        return ValueError(
-            f'{self.source}: {line}column "{shown(self.columns[quantity].head)}": {message}'
-        )
+        head = shown(self.columns[quantity].head)
+        return ValueError(f'{self.source}: {line}column "{head}": {message}')
 
     def si(self, quantity: str, *units: str) -> tuple[Array, str]:
         """Return a column in the first of some SI units that fits its own, and that unit."""
@@ -192,9 +191,7 @@ class Reader:
     @cached_property
     def known(self) -> dict[str, tuple[str, str]]:
         """Quantity and spelling of each name, as it is compared."""
-        pairs = (
-            (name, each) for name, every in self.spellings.items() for each in every.split(", ")
-        )
+        pairs = ((name, each) for name, row in self.spellings.items() for each in row.split(", "))
         return {_key(each): (name, each) for name, each in pairs}
 
     def meant(self, head: str) -> str | None:
@@ -259,9 +256,7 @@ class Reader:
         lines = [line for name, rows in used.items() for line in (*[name] * (len(used) > 1), *rows)]
         source = str(path)
         if len(used) > 1:
-            source += (
-                f" (lines of the sheets {', '.join(used)} one after the other, with their names)"
-            )
+            source += f" (lines of the sheets {', '.join(used)} one after the other, with names)"
         table = self._of_lines(lines, source)
         others = ", ".join(name for name in every if name not in used)
         notes = (f"Of the file, these sheets are not used: {others}.",) if others else ()
@@ -281,9 +276,7 @@ class Reader:
             values, own = _numbers(path, lines, each, found, self.partial)
             notes += own
             read.append((found, values))
-        kinds = {
-            tuple(sorted((name, unit) for name, _, unit in found.values())) for found, _ in read
-        }
+        kinds = {tuple(sorted((n, unit) for n, _, unit in found.values())) for found, _ in read}
         if len(kinds) > 1:
             message = " and ".join(", ".join(map(" ".join, kind)) for kind in sorted(kinds))
             raise ValueError(f"{path}: its tables differ in their columns or units: {message}")
@@ -431,7 +424,7 @@ class Reader:
         message = f"has only {', '.join(found)}" if found else "has no column that is known"
         unknown = [head for head in heads if head and not self._quantity(head)[0]]
         hints = [
-            f'"{shown(head)}" may be "{near}"' for head in unknown if (near := self.meant(head))
+            f'"{shown(each)}" may be "{near}"' for each in unknown if (near := self.meant(each))
         ]
         hints += [
             f'"{shown(head)}" is a logarithm, expected the values themselves'
@@ -455,9 +448,7 @@ def _numbers(
     names, decimal = [name for name, _, _ in found.values()], own.decimal
     texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in own.rows]
     mixed = decimal == "," and any("," in lines[k] and "." in lines[k] for k in own.rows)
-    marks = (
-        {mark for k in own.rows for mark in ",." if mark in lines[k]} if decimal == "," else set()
-    )
+    marks = {m for k in own.rows for m in ",." if m in lines[k]} if decimal == "," else set()
     if not mixed and len(marks) < 2 and own.separator not in SPACES:
         count = len(own.heads) - own.shift
         if all(text.count(own.separator) < count for text in texts):
@@ -475,9 +466,7 @@ def _numbers(
         if len(cells) > len(own.heads):
             message = f"line {k + 1} has {len(cells)} cells, the header has {len(own.heads)}"
             message += f", separated by {NAMED.get(own.separator, 'spaces')}"
-            message += "; are there decimal commas? Then separate by semicolons" * (
-                own.separator == ","
-            )
+            message += "; are there decimal commas? Then use semicolons" * (own.separator == ",")
             raise ValueError(f"{path}: {message}")
         row = []
         for i, (name, head, _) in found.items():

@@ -243,29 +243,21 @@ class _Relaxed(Part):
 
     def _read_factors(self) -> tuple[tuple[float, float], ...]:
         """Return the measured shift factors by temperature (K), or raise."""
-        listed = isinstance(self.shift_factors, Sequence) and not isinstance(
-            self.shift_factors, str
-        )
-        if not listed or not self.shift_factors or not all(map(_is_pair, self.shift_factors)):
+        given, T_ref = self.shift_factors, self.reference_temperature
+        listed = isinstance(given, Sequence) and not isinstance(given, str)
+        if not listed or not given or not all(map(_is_pair, given)):
             raise ValueError(f"expected {FACTORS}")
-        pairs = sorted((to_si(T, "K"), to_si(log, "1")) for T, log in self.shift_factors)
+        pairs = sorted((to_si(T, "K"), to_si(log, "1")) for T, log in given)
         T, log = np.array(pairs).T
-        if self.reference_temperature is None or (
-            self.wlf is None and self.activation_energy is None
-        ):
-            raise ValueError(
-                "needs foundation.reference_temperature and a law, wlf or activation_energy"
-            )
+        if T_ref is None or (self.wlf is None and self.activation_energy is None):
+            message = "needs foundation.reference_temperature and a law, wlf or activation_energy"
+            raise ValueError(message)
         if not np.isfinite(pairs).all() or T[0] <= 0.0 or (np.diff(T) <= 0.0).any():
             raise ValueError(f"expected finite, different temperatures above 0 K; {FACTORS}")
-        place = np.abs(T - np.min(self.reference_temperature)).argmin()
-        if (
-            abs(T[place] - np.min(self.reference_temperature)) > SAME_TEMPERATURE
-            or log[place] != 0.0
-        ):
-            raise ValueError(
-                f"expected log10 a_T = 0 at foundation.reference_temperature; {FACTORS}"
-            )
+        place = np.abs(T - np.min(T_ref)).argmin()
+        if abs(T[place] - np.min(T_ref)) > SAME_TEMPERATURE or log[place] != 0.0:
+            message = "expected log10 a_T = 0 at foundation.reference_temperature"
+            raise ValueError(f"{message}; {FACTORS}")
         return tuple(pairs)
 
     def _read_way(self, problems: Problems) -> None:
@@ -373,9 +365,8 @@ class _Relaxed(Part):
         if T is not None and self.wlf is not None:
             pole = self.reference_temperature - self.wlf.c_2
             if np.any(pole >= T):
-                message = (
-                    f"expected above T_ref - C_2 = {np.max(pole):g} K, the pole of the WLF law"
-                )
+                message = f"expected above T_ref - C_2 = {np.max(pole):g} K"
+                message += ", the pole of the WLF law"
                 raise mistake(key, shown, message)
         a_T = self.shift_factor
         for part, name in times:
@@ -488,9 +479,7 @@ def _range(over: Any) -> tuple[float, float]:
         raise ValueError(f"`over` = {over!r}: expected the shortest and the longest time")
     shortest, longest = (convert(each, spec) for each in over)
     if not shortest < longest:
-        raise ValueError(
-            f"`over` = {over!r}: expected the shortest time first, and then a longer one"
-        )
+        raise ValueError(f"`over` = {over!r}: expected the shortest time first, then a longer one")
     return shortest, longest
 
 
