@@ -76,19 +76,24 @@ class Grid(NamedTuple):
         """Return the influence of its cells in sliding at a velocity."""
         n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
         H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
-        if self.width is None:
-            found = compliance.of_line(rounded(n + 1), per_cell, shift, H, nu)
-        else:
+
+        def elastic(per_cell: int, shift: float) -> Array:
+            if self.width is None:
+                return compliance.of_line(rounded(n + 1), per_cell, shift, H, nu)
             sizes = rounded(n + 1), rounded(2 * m + 1)
-            found = compliance.of_cell(*sizes, per_cell, shift, H, nu, self.width)
+            return compliance.of_cell(*sizes, per_cell, shift, H, nu, self.width)
+
+        found, decay = elastic(per_cell, shift), 0.0
         loss = np.zeros_like(found)
         if velocity != 0.0:
             travelled = abs(velocity) * body.creep.times / self.length
             found, loss = memory.influence(
                 found, body.creep, travelled, per_cell, shift, H, nu, self.width
             )
+            if body.creep.glassy == 0.0:
+                decay = math.copysign(math.exp(-1.0 / travelled[0]), velocity)
         forward = slice(None, None, -1 if velocity < 0.0 else None)
-        return Influence(found[forward], loss[forward], n, m)
+        return Influence(found[forward], loss[forward], n, m, elastic(1, 0.0), decay)
 
     def adapted(self, contact: Contact, finer: int) -> tuple["Grid", Contact]:
         """Return a grid with cells `finer` times shorter around a contact, and the contact on it."""
