@@ -4,7 +4,8 @@ The displacement is the convolution of the pressure with the influence of a cell
 symmetric. Across, a ball is symmetric: only cells at y > 0 are unknown, each with its mirror image.
 Newton's method on the set of cells in contact (semi-smooth, or primal-dual active set): the equations of
 the cells in contact are solved, cells with p < 0 leave, cells with a negative gap enter, until the set
-stays. On Kelvin-Voigt, where a cell that enters by itself takes a large pressure, all leave before any enters.
+stays. On Kelvin-Voigt, where a cell that enters by itself has a large pressure, all leave before any
+enters.
 
 The depth is either given or one more unknown, with the balance of forces
 
@@ -31,7 +32,8 @@ DIRECT, LARGEST = 500, 3500
 STEPS = 40
 """Steps of GMRES between restarts; 10 to 40 in all are usual."""
 LEAST = 0.1
-"""Compliance of a wave below that of the shortest of a grid: where a half-space ends, others come out below 0."""
+"""Least compliance of a wave in the preconditioner, half that of the shortest: where a half-space ends, there
+are some below 0."""
 TIGHT = 1e-10
 """Relative residual of GMRES: friction at low velocity is a small difference of pressures."""
 MOST_SETS = 500
@@ -189,7 +191,7 @@ class Influence:
         return None if failed else self._spread(active, found[:-1], found[-1])
 
     def _freed(self, cells: Array) -> Array:
-        """Return what is averaged by the memory to give these values, in rows that begin with what is first."""
+        """Return what the memory averages to these values along each row of cells in contact."""
         if not self.memory:
             return cells
         before, decay = np.zeros_like(cells), abs(self.memory)
