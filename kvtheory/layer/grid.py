@@ -20,6 +20,8 @@ IN_PHASE = 0.5
 SLOW = 0.2
 """Cells travelled in a retardation time below which friction under a parabola, circle or ball is its limit at
 low velocity: what edges add, which jump from cell to cell, is larger than what the limit lacks."""
+SLOWEST_DECAY = 1e-12
+"""Decay of the memory in a cell below which the preconditioner takes no less."""
 HALVINGS = 0.5 ** np.arange(1, 100)
 
 
@@ -99,9 +101,10 @@ class Grid(NamedTuple):
                 found, body.creep, travelled, per_cell, shift, H, nu, self.width
             )
             if body.creep.glassy == 0.0:
-                decay = math.copysign(math.exp(-1.0 / travelled[0]), velocity)
+                decay = math.copysign(math.exp(-max(1.0 / travelled[0], SLOWEST_DECAY)), velocity)
         forward = slice(None, None, -1 if velocity < 0.0 else None)
-        return Influence(found[forward], loss[forward], n, m, elastic(1, 0.0), decay)
+        still = elastic(1, 0.0) if decay else found
+        return Influence(found[forward], loss[forward], n, m, still, decay)
 
     def adapted(self, contact: Contact, finer: int) -> tuple["Grid", Contact]:
         """Return a grid with cells `finer` times shorter around a contact, and the contact on it."""
