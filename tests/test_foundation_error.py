@@ -92,7 +92,7 @@ def test_solve_climbs_to_the_layer_where_the_foundation_is_not_enough():
 
 
 def test_solve_says_what_the_layer_does_not_know():
-    with pytest.raises(kv.ToleranceError, match=r"try a tolerance from 2.0e-02; .*within"):
+    with pytest.raises(kv.ToleranceError, match=r"try a tolerance from 1.0e-02; .*within"):
         kv.solve(BALL, rtol=1e-3)
     with pytest.raises(kv.ToleranceError, match="dissipated_in_contact on the layer is not known"):
         kv.solve(LINE, quantity="dissipated_in_contact", rtol=0.5)

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.layer import compliance, memory
+from kvtheory.layer import compliance, contact, memory
 from kvtheory.layer.body import Body, Support
 from kvtheory.layer.sliding import errors_of, first_grid, levels, slide, slide_at
 from kvtheory.results.errors import ToleranceError
@@ -301,6 +301,43 @@ def test_friction_keeps_its_digits_at_any_low_velocity(shape, H):
         coarse = next(levels(shape, rubber(H, 0.49), V, Support(depth=1e-4)))
         friction = coarse.values(shape, rubber(H, 0.49), V)["friction_coefficient"]
         assert friction == pytest.approx(0.08 * V / R, rel=0.08)
+
+
+@pytest.mark.parametrize(
+    ("H", "nu", "arms", "l"),
+    [
+        (1.8e-3, 0.5, 0.4, 7e-5),
+        (4.4e-4, 0.49, None, 7e-5),
+        (1.2e-2, 0.3, 3.5, 5e-4),
+    ],
+)
+def test_a_line_at_very_low_velocity_is_within_its_error(H, nu, arms, l):
+    """To first order mu = V tau/R, and what is missing is of the order of l/a (F4, F28)."""
+    if arms is None:
+        body, tau = Body.kelvin_voigt(1e6, H, nu, 0.02), 0.02
+    else:
+        body, tau = rubber(H, nu, [(arms * 1e6, 0.02)]), 0.02 * arms
+    V = l * math.sqrt(2e-4 * R) / float(body.creep.times.max())
+    found = slide(Parabola(radius=R), body, V, Support(depth=1e-4))
+    limit = found.load * V * tau / R
+    assert abs(found.friction_force - limit) <= found.errors["friction_force"] + l * limit
+    assert found.errors["friction_force"] <= 1e-3 * limit
+    back = slide(Parabola(radius=R), body, -V, Support(depth=1e-4))
+    assert back.friction_force == pytest.approx(-found.friction_force, rel=1e-9)
+
+
+@pytest.mark.parametrize(("H", "V", "load"), [(math.inf, 1.0, 0.5), (1e-3, -1.0, 0.2)])
+def test_a_ball_on_a_damper_is_solved_without_large_matrices(monkeypatch, H, V, load):
+    """On these grids a direct solution would take the matrix of more than a thousand cells."""
+    monkeypatch.setattr(contact, "LARGEST", contact.DIRECT)
+    body = Body.kelvin_voigt(1e6, H, 0.49, 0.02)
+    known = []
+    for found in levels(Sphere(radius=R), body, V, Support(load=load)):
+        known.append(found.values(Sphere(radius=R), body, V)["friction_force"])
+        if np.count_nonzero(found.contact.active) > 1000:
+            break
+    assert np.sign(known[-1]) == np.sign(V)
+    assert known[-2] == pytest.approx(known[-1], rel=2e-3)
 
 
 def test_dimensionality_reduction_is_not_for_sliding():

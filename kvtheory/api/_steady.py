@@ -83,7 +83,7 @@ def steady(
     QuadratureError
         If a quadrature or a root finder does not reach its tolerance.
     ToleranceError
-        If the finest cells of ``"layer"`` leave an error above 0.1 %, of a ball 2 %.
+        If the finest cells of ``"layer"`` leave an error above 0.1 %, of a ball 1 %.
 
     Examples
     --------

@@ -12,7 +12,7 @@ from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Certificate, PressureField, SteadyState, units_for
 from kvtheory.scene.model import Scene
 
-RTOL = {True: 1e-3, False: 2e-2}
+RTOL = {True: 1e-3, False: 1e-2}
 """Largest relative error of depth, load and friction: of a line, of a ball."""
 AT_REST = 1e-2
 """The same of the contact at rest, of which only the length is used."""

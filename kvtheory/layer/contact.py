@@ -4,7 +4,8 @@ The displacement is the convolution of the pressure with the influence of a cell
 symmetric. Across, a ball is symmetric: only cells at y > 0 are unknown, each with its mirror image.
 Newton's method on the set of cells in contact (semi-smooth, or primal-dual active set): the equations of
 the cells in contact are solved, cells with p < 0 leave, cells with a negative gap enter, until the set
-stays.
+stays. On Kelvin-Voigt, where a cell that enters by itself has a large pressure, all leave before any
+enters.
 
 The depth is either given or one more unknown, with the balance of forces
 
@@ -30,6 +31,9 @@ DIRECT, LARGEST = 500, 3500
 """Cells in contact up to which a direct solution is faster, and up to which it is tried where GMRES fails."""
 STEPS = 40
 """Steps of GMRES between restarts; 10 to 40 in all are usual."""
+LEAST = 0.1
+"""Least compliance of a wave in the preconditioner, half that of the shortest: where a half-space ends, there
+are some below 0."""
 TIGHT = 1e-10
 """Relative residual of GMRES: friction at low velocity is a small difference of pressures."""
 MOST_SETS = 500
@@ -74,9 +78,15 @@ class Influence:
 
     A line has one cell across (m = 1) and no mirror image: its influence has one column. So has the loss,
     the slope of the influence by memory.
+
+    GMRES starts from a nearly inverse operator: that of the influence over all cells, or, with `memory`, the
+    signed decay from cell to cell of an average over what was met, that of the elastic influence, after each
+    cell but the first of a row in contact has been freed from the average.
     """
 
-    def __init__(self, influence: Array, loss: Array, n: int, m: int) -> None:
+    def __init__(
+        self, influence: Array, loss: Array, n: int, m: int, elastic: Array, memory: float = 0.0
+    ) -> None:
         middle = len(influence) // 2
         self.shape, self.folded = (n, m), influence.shape[1] > 1
         self.length = next_fast_len(2 * n - 1, real=True)
@@ -84,10 +94,16 @@ class Influence:
         self.whole, self.loss = influence[near], loss[near]
         padded = self._padded(self.whole)
         self.transformed = rfft(padded, axis=0)
-        self.fading = np.exp(-np.arange(n) / n)[:, None]
-        padded[:n] *= self.fading
-        padded[self.length - n + 1 :] /= self.fading[:0:-1]
-        self.inverse = 1.0 / rfft(padded, axis=0)
+        self.memory = memory
+        if memory:
+            middle, self.fading = len(elastic) // 2, np.ones((n, 1))
+            padded = self._padded(elastic[middle - n + 1 : middle + n])
+            self.inverse = 1.0 / np.maximum(rfft(padded, axis=0).real, LEAST)
+        else:
+            self.fading = np.exp(-np.arange(n) / n)[:, None]
+            padded[:n] *= self.fading
+            padded[self.length - n + 1 :] /= self.fading[:0:-1]
+            self.inverse = 1.0 / rfft(padded, axis=0)
 
     def _padded(self, whole: Array) -> Array:
         n, m = self.shape
@@ -149,7 +165,8 @@ class Influence:
 
         def pressed(cells: Array) -> Array:
             spread[active] = cells
-            return (self._convolved(spread * self.fading, self.inverse) / self.fading)[active]
+            freed = np.where(active, self._freed(spread), 0.0)
+            return (self._convolved(freed * self.fading, self.inverse) / self.fading)[active]
 
         uniform = pressed(np.ones(size))
         scale = balance.sum(uniform, 1.0)
@@ -173,6 +190,17 @@ class Influence:
         )
         return None if failed else self._spread(active, found[:-1], found[-1])
 
+    def _freed(self, cells: Array) -> Array:
+        """Return what the memory averages to these values along each row of cells in contact."""
+        if not self.memory:
+            return cells
+        before, decay = np.zeros_like(cells), abs(self.memory)
+        if self.memory > 0.0:
+            before[1:] = cells[:-1]
+        else:
+            before[:-1] = cells[1:]
+        return (cells - decay * before) / (1.0 - decay)
+
     def _spread(self, active: Flags, cells: Array, depth: float) -> "Contact":
         pressure = np.zeros(self.shape)
         pressure[active] = cells
@@ -192,12 +220,15 @@ def unilateral(influence: Influence, height: Array, balance: Balance, start: Con
             active = height == height.min()
         found = influence.solve(active, surface, balance, found)
         gap = influence.displacement(found.pressure) - found.depth + height
-        wrong = np.where(active, found.pressure, gap) < 0.0
+        pulled, below = active & (found.pressure < 0.0), ~active & (gap < 0.0)
+        wrong = pulled | below
         count = int(np.count_nonzero(wrong))
         if count == 0:
             return found
         chances = CHANCES if count < fewest else chances - 1
         fewest = min(fewest, count)
+        if influence.memory and pulled.any():
+            wrong = pulled
         if chances < 0:
             wrong.flat[np.flatnonzero(wrong)[:-1]] = False
         active = active ^ wrong

@@ -168,7 +168,7 @@ def _at(axes: list[Array], entries: Array, *point: Any) -> Array:
         i = np.clip(np.searchsorted(axis, x, side="right") - 1, 0, axis.size - 2)
         share = np.clip((x - axis[i]) / (axis[i + 1] - axis[i]), 0.0, 1.0)
         corners.append(((i, 1.0 - share), (i + 1, share)))
-    return sum(  # type: ignore[return-value]
+    return sum(
         math.prod(weight for _, weight in corner)[..., None] * entries[tuple(i for i, _ in corner)]
         for corner in product(*corners)
     )

@@ -88,6 +88,8 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
         finest = found
         if len(known) >= LEVELS:
             errors = errors_of(known, found.grid.length)
+            for name in ("friction_force", "friction_coefficient"):
+                errors[name] += found.lag * abs(known[-1][name])
         wrong = _unconverged(known, errors, velocity, rtol)
     if wrong:
         message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
