@@ -390,6 +390,14 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
     assert len(told) == 1
     assert told[0] > 0.0
 
+    def slow(one, knob, clock):
+        raise TimedOutError
+
+    jobs = [(problem("table-1"), [Method("slow", "-", (0.0,), "evaluations", slow)])]
+    (chart,) = measure(jobs, quick=True, announce=told.append)
+    assert chart.series[0].points[0].reason == "timed out"
+    assert told[1] == 0.0
+
 
 def test_a_run_that_is_not_finite_has_not_converged():
     one = problem("table-1")

@@ -21,7 +21,7 @@ from kvtheory.scene.foundations import (
 )
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import quantities
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import ZERO_CELSIUS, in_celsius
 
 LAYER = quantities(GeneralizedMaxwell)
 DIGITS = 6
@@ -171,7 +171,7 @@ def fit_foundation(
         ),
         shift_errors=None if master is None else tuple(map(_rounded, master.errors.tolist())),
         shift_law=None if law is None else (
-            f"{law.text} at {found.reference - ZERO_CELSIUS:.4g} degC"
+            f"{law.text} at {in_celsius(found.reference):.4g} degC"
             + (f", log10 a_T to {law.misfit:.2g}" if law.errors else "")
         ),
         reference_temperature=None if law is None else thermal["reference_temperature"],

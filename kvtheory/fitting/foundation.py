@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from kvtheory.fitting import cards, creep, moduli, shifting
 from kvtheory.fitting.shifting import USUAL, Law, Shifted
 from kvtheory.fitting.spectrum import FINEST, Moduli, Series, arms_of, best, clustered, refined, rms
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import in_celsius
 
 CONFIDENCE = 0.95
 """Probability with which the scatter of the data alone makes the sum of squares as large as is allowed."""
@@ -171,7 +171,7 @@ def _with_plateau(data: Moduli, series: Series, source: str) -> Series:
 
 def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     notes = []
-    vague = [f"{T - ZERO_CELSIUS:.4g}" for T in master.temperatures[master.errors > VAGUE]]
+    vague = [f"{in_celsius(T):.4g}" for T in master.temperatures[master.errors > VAGUE]]
     if vague:
         message = "The sweeps overlap too little, or are too flat, to tell their shift factors"
         notes.append(f"{message} to {VAGUE} decades at {', '.join(vague)} degC.")
@@ -181,7 +181,7 @@ def _about_shifts(master: Shifted, law: Law | None) -> list[str]:
     off = np.abs(law.log_shift(master.temperatures, master.reference) - master.log_shift)
     worst = int(np.argmax(off / np.hypot(USUAL, master.errors)))
     if off[worst] > MISSED * math.hypot(USUAL, master.errors[worst]):
-        name, T = law.text.split(":")[0], master.temperatures[worst] - ZERO_CELSIUS
+        name, T = law.text.split(":")[0], in_celsius(master.temperatures[worst])
         notes.append(f"{name} misses the shift factor at {T:.4g} degC by {off[worst]:.2g} decades.")
     return notes
 

@@ -10,7 +10,7 @@ from kvtheory.fitting.creep import relaxing
 from kvtheory.fitting.records import plausible
 from kvtheory.fitting.spectrum import Array, Moduli
 from kvtheory.scene.columns import SPELLINGS, Reader, Table
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import ZERO_CELSIUS, in_celsius
 
 NAMES = {
     "frequency": "f, freq, freq., frequency, test frequency, Frequenz, Messfrequenz",
@@ -157,7 +157,7 @@ def read(data: Any, modulus: str | None = None) -> Measured:
             notes.append(f"{each.size - own.shape[1]} rows occur twice and count once.")
         if own.shape[1] < FEWEST or own[0, 0] == own[0, -1]:
             what, one = "frequencies" if dynamic else "times", len(temperature) == each.size
-            where = "" if one else f" at {temperature[each].mean() - ZERO_CELSIUS:.4g} degC"
+            where = "" if one else f" at {in_celsius(temperature[each].mean()):.4g} degC"
             message = (
                 f"{own.shape[1]} rows{where}; at least {FEWEST} at different {what} are needed"
             )

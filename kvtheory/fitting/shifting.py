@@ -22,7 +22,7 @@ from kvtheory.fitting.records import LARGEST, plausible
 from kvtheory.fitting.spectrum import Array, Moduli, grid
 from kvtheory.scene.columns import Reader
 from kvtheory.scene.foundations import GAS_CONSTANT, log_shift
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import in_celsius
 
 STEPS = 200
 """Shifts at which the interpolated sweeps are compared for the first guess."""
@@ -116,7 +116,7 @@ def read_factors(data: Any) -> tuple[Array, Array]:
     twice = np.flatnonzero(np.diff(T) == 0.0)
     if twice.size:
         raise table.error(
-            "temperature", f"{T[twice[0]] - ZERO_CELSIUS:g} degC occurs twice", int(order[twice[0]])
+            "temperature", f"{in_celsius(T[twice[0]]):.4g} degC occurs twice", int(order[twice[0]])
         )
     if np.abs(log_shift).min() > 1e-6:
         message = "holds no temperature with a_T = 1, the reference"
@@ -152,7 +152,7 @@ def shifted(
         far = np.abs(factors[0][place] - T)
         if far.max() > SAME:
             worst = int(far.argmax())
-            message = f"the file of shift factors has none for {T[worst] - ZERO_CELSIUS:.4g} degC"
+            message = f"the file of shift factors has none for {in_celsius(T[worst]):.4g} degC"
             raise ValueError(f"`shift_factors`: {message}")
         reference = float(factors[0][np.abs(factors[1]).argmin()])
         shifts = factors[1][place]

@@ -12,7 +12,7 @@ from kvtheory.plots.style import BLACK, BLUE, LABELS, RED, Picture
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.results.fits import FoundationFit, FrictionFit
 from kvtheory.results.presented import with_unit
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import ZERO_CELSIUS, in_celsius
 
 WIDTH, HEIGHT = 7.2, 2.6
 """Of a picture with two panels in a row, and of each row, in inches."""
@@ -67,7 +67,7 @@ def _sweeps(ax: Any, fit: FoundationFit) -> None:
     for name, mark in zip(names, MARKS, strict=False):
         ax.plot([], [], mark, color=BLACK, markersize=2.5, label=name)
     ax.legend()
-    low, high = (round(sweeps[i].temperature - ZERO_CELSIUS, 1) + 0.0 for i in (0, -1))
+    low, high = (round(in_celsius(sweeps[i].temperature), 1) for i in (0, -1))
     title = f"measured at {low:g} to {high:g} °C (light)"
     ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title=title)
 
@@ -84,7 +84,7 @@ def _curves(ax: Any, fit: FoundationFit) -> None:
     master = fit.data["shifted"]
     title = "data and fit"
     if master is not None:
-        title = f"master curve at {master.reference - ZERO_CELSIUS:.4g} °C"
+        title = f"master curve at {in_celsius(master.reference):.4g} °C"
     ax.legend()
     ax.set(xlabel=label, ylabel=f"modulus [{unit}]", title=title)
 
@@ -210,5 +210,5 @@ def _condition(fit: FrictionFit, key: str, value: float) -> str:
     """Return a condition of a curve with its unit."""
     unit = fit.scene.replaceable[key].unit
     if unit == "K":
-        return f"{value - ZERO_CELSIUS:.4g} °C"
+        return f"{in_celsius(value):.4g} °C"
     return with_unit(value, unit) if unit in SHOWN_UNITS else f"{value:.4g} {unit}"

@@ -12,7 +12,7 @@ from kvtheory.results.presented import Exported, Recorded, aligned
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import GeneralizedMaxwell
 from kvtheory.scene.model import Scene
-from kvtheory.scene.units import ZERO_CELSIUS
+from kvtheory.scene.units import in_celsius
 
 WIDTH = 100
 
@@ -116,7 +116,9 @@ class FoundationFit(_Fit):
         law, T = self.data["law"], self.reference_temperature
         if law is None or law.name == "wlf" or T is None:
             return ""
-        return f"Without the law of temperature: the arms hold at {T - ZERO_CELSIUS:.4g} degC. {law.text}"
+        return (
+            f"Without the law of temperature: the arms hold at {in_celsius(T):.4g} degC. {law.text}"
+        )
 
     @property
     def remarks(self) -> list[str]:
@@ -144,7 +146,7 @@ class FoundationFit(_Fit):
         rows = [(f"{E:.6g}", f"{tau:.6g}") for E, tau in self.arms]
         relaxed = self.stiffness if self.modulus is None else self.modulus
         T = self.reference_temperature
-        at = "" if T is None else f" at {T - ZERO_CELSIUS:.4g} degC"
+        at = "" if T is None else f" at {in_celsius(T):.4g} degC"
         first = f"Prony series{at}, relaxed {relaxed:.6g} {unit}"
         return "\n".join([first, *aligned(heads, rows), *self.remarks])
 

@@ -53,6 +53,15 @@ _KILOGRAMS = {"kg": 0, "g": -3}
 _PASCALS = {"GPa": 9, "MPa": 6, "kPa": 3, "Pa": 0}
 
 
+def in_celsius(temperature: float) -> float:
+    """Return a temperature (K) in degC, rounded to be shown.
+
+    >>> in_celsius(273.15 - 1e-13), in_celsius(296.15)
+    (0.0, 23.0)
+    """
+    return round(float(temperature) - ZERO_CELSIUS, 6) + 0.0
+
+
 def _ratios(above: dict[str, int], below: dict[str, int], power: int) -> dict[str, int]:
     written = f"^{power}" if power > 1 else ""
     return {

@@ -25,7 +25,7 @@ SHARES: dict[float, dict[str, Any]] = {
 }
 """The retardation time of the scene over each, and their lines."""
 VELOCITIES = np.geomspace(1e-4, 10.0, 201)
-"""Velocities (m/s) of Table 1; of another scene they are larger by the power of ten of its velocity a_0/tau."""
+"""Velocities (m/s) of Table 1; of another scene, a power of ten times these, by its a_0/tau."""
 EVERY = 20
 """The quadrature is evaluated at every twentieth velocity."""
 
@@ -53,7 +53,8 @@ def compute(scene: Scene | None = None) -> Data:
             curves[support, share] = steady(each, over=over)
             sparse = {**over, "drive.velocity": velocities[::EVERY]}
             points[support, share] = steady(each, over=sparse, method="quadrature")
-    return Data(own.time, velocities, curves, points, _columns(own.time, velocities, curves, points))
+    columns = _columns(own.time, velocities, curves, points)
+    return Data(own.time, velocities, curves, points, columns)
 
 
 def draw(data: Data) -> Figure:
@@ -76,7 +77,8 @@ def draw(data: Data) -> Figure:
     ax = axes[0, 0]
     depths = np.array([each.depth for each in data.curves.values()]) * LABELS["depth"][1]
     low, high = depths.min(), depths.max()
-    ax.set_ylim(10.0 ** np.floor(np.log10(low / 3.0)), 10.0 ** np.ceil(np.log10(high)))  # the legend
+    decades = np.floor(np.log10(low / 3.0)), np.ceil(np.log10(high))  # with space for the legend
+    ax.set_ylim(*(10.0**each for each in decades))
     handles, labels = ax.get_legend_handles_labels()
     (point,) = ax.plot([], [], "o", color="C2", fillstyle="none", markersize=4)
     ax.legend([*handles, point], [*labels, "quadrature"], loc="lower left", ncols=2)
@@ -103,4 +105,3 @@ def _columns(
             for name, unit in QUANTITIES.items():
                 rows[f"{name} [{unit}]"] += getattr(state, name).tolist()
     return rows
-
