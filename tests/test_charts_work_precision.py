@@ -381,6 +381,8 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
 
     method, told = Method("half", "-", (0.0,), "evaluations", half), []
     jobs = [(problem("table-1"), [method])] * 2
+    coarse = Measurement(*jobs[0], Effort(1, 1.0, 1.0, 6))
+    assert coarse.begun == 2  # else nothing is known of the growth of the time
     measure(jobs, quick=True, progress=lambda *x: reports.append(x), announce=told.append)
     shares = [share for share, _ in reports]
     assert shares == sorted(shares)
