@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from figures import drawing, fig4
+from figures import drawing
 from figures.ball_start import TITLES, scenes, starts
+from kvtheory.plots.paper import fig4
 
 POSITIONS = np.linspace(-2.6e-3, 2.6e-3, 261)
 TIMES = np.linspace(0.0, 0.1, 201)

@@ -28,6 +28,7 @@ COMMANDS = {
     "elements --per-length 20/mm": "",
     "sweep --over drive.velocity=1mm/s,1m/s -o map.csv": "map.csv",
     "chart failures --only cancellation -o failures.html": "failures.html",
+    "chart table2 -o table2.svg": "table2.csv",
     "chart work-precision --help": "",
     "derive --only 27,F3 --format tex,html,md,ipynb,json -o derived": "derived/derivations.html",
     "explore -o explorer.html": "explorer.html",

@@ -305,13 +305,15 @@ def test_the_sums_over_strips_are_as_wrong_as_the_worse_of_both(worst, monkeypat
 
 
 def test_of_a_revolved_profile_only_the_side_x_above_0_counts():
-    """A measured profile is never quite even; the body that it makes is."""
-    rest = kv.Foundation(1e10, 0.1), kv.Fixed(1e-4), kv.Drive(0.01)
-    lopsided = lambda x: 50 * x**2 + 900 * x**3, lambda x: 100 * x + 2700 * x**2
-    even = lambda x: 50 * x**2 + 900 * abs(x) ** 3, lambda x: 100 * x + 2700 * x * abs(x)
-    found, right = (
-        kv.steady(kv.Scene(kv.Revolved(kv.Profile(*each, reach=5e-3)), *rest))
-        for each in (lopsided, even)
-    )
-    assert found.friction_coefficient == pytest.approx(right.friction_coefficient, rel=1e-12)
-    assert found.load == pytest.approx(right.load, rel=1e-12)
+    """A measured profile is never quite even; the middle plane of its body is, with its tip."""
+    lopsided = kv.Profile(
+        lambda x: 0.1 * abs(x) + 900 * x**3, lambda x: math.copysign(0.1, x) + 2700 * x**2,
+        kinks=(-1e-3, 0.0),
+    )  # fmt: skip
+    body, x = kv.Revolved(lopsided), np.array([-2e-3, -1e-3, 1e-3, 2e-3])
+    assert body.profile.height(x) == pytest.approx(0.1 * abs(x) + 900 * abs(x) ** 3, rel=1e-15)
+    slope = np.sign(x) * (0.1 + 2700 * x**2)
+    assert body.profile.slope(x) == pytest.approx(slope, rel=1e-15)
+    assert body.profile.slope(0.0) == 0.0
+    assert body.profile.kinks == (0.0,)
+    assert body.height(-1e-3) == body.profile.height(-1e-3)

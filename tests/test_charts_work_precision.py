@@ -381,6 +381,8 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
 
     method, told = Method("half", "-", (0.0,), "evaluations", half), []
     jobs = [(problem("table-1"), [method])] * 2
+    coarse = Measurement(*jobs[0], Effort(1, 1.0, 1.0, 6))
+    assert coarse.begun == 2  # else nothing is known of the growth of the time
     measure(jobs, quick=True, progress=lambda *x: reports.append(x), announce=told.append)
     shares = [share for share, _ in reports]
     assert shares == sorted(shares)
@@ -389,6 +391,14 @@ def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
     assert [words for _, words in reports] == [*["half"] * 2, *["half", *["repeats"] * 3] * 2]
     assert len(told) == 1
     assert told[0] > 0.0
+
+    def slow(one, knob, clock):
+        raise TimedOutError
+
+    jobs = [(problem("table-1"), [Method("slow", "-", (0.0,), "evaluations", slow)])]
+    (chart,) = measure(jobs, quick=True, announce=told.append)
+    assert chart.series[0].points[0].reason == "timed out"
+    assert told[1] == 0.0
 
 
 def test_a_run_that_is_not_finite_has_not_converged():

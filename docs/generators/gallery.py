@@ -81,6 +81,8 @@ _HEAD = """Figures
 =======
 
 Each script is in the folder ``figures`` of the repository; ``python -m figures.NAME`` draws it and writes
-its data as CSV. Maps that take minutes, and measurements of time, are the stored pictures of the repository.
+its data as CSV. Those of the paper need no checkout, and show any scene in any style: ``kvtheory chart fig6
+my-scene.toml --style mine.mplstyle -o fig6.pdf``. Maps that take minutes, and measurements of time, are the
+stored pictures of the repository.
 
 """

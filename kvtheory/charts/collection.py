@@ -225,9 +225,9 @@ def measure(
         each.begin(_part(progress, 0.3 * done / len(jobs), 0.3 / len(jobs)))
     times = [each.forecast() for each in measured]
     announce(sum(times))
-    charts, before = [], 0.3
+    charts, before, whole = [], 0.3, sum(times) or 1.0  # nothing is left where all timed out
     for each, seconds in zip(measured, times, strict=True):
-        share = 0.7 * seconds / sum(times)
+        share = 0.7 * seconds / whole
         charts.append(each.finish(_part(progress, before, share)))
         before += share
     return charts

@@ -179,8 +179,8 @@ class Measurement:
 
     @property
     def begun(self) -> int:
-        """How many settings of each method `begin` runs."""
-        return -(-CHEAPEST // self.effort.every)
+        """How many settings of each method `begin` runs: at least two, for the growth of the time."""
+        return max(2, -(-CHEAPEST // self.effort.every))
 
     def forecast(self) -> float:
         """Return the time (s) that `finish` will take, from the times of the cheapest settings."""

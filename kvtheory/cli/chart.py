@@ -1,6 +1,7 @@
 """`kvtheory chart` and `explore`: charts of methods, and an interactive page of a scene."""
 
 import os
+import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -136,8 +137,11 @@ def work_precision(
 
 
 def _say_time(seconds: float) -> None:
-    """Print how long a chart will take."""
-    click.echo(f"the cheapest settings are done; the others take about {seconds:.2g} s", err=True)
+    """Print how long a chart will take, on a terminal in place of the progress bar, which goes on below."""
+    terminal = sys.stderr and sys.stderr.isatty()  # standard error may be closed
+    clear = "\r\033[K" if terminal else ""
+    words = f"the cheapest settings are done; the others take about {seconds:.2g} s"
+    click.echo(clear + words, err=True)
 
 
 PAPER = {

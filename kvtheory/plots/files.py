@@ -46,7 +46,7 @@ def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> 
 
 def save_figure(
     data: Any, draw: Callable[[Any], Any], pictures: Sequence[Path], table: Path,
-    style: Mapping[str, Any] = STYLE,
+    style: Any = STYLE,
 ) -> None:  # fmt: skip
     """Draw a figure and write it in the formats of the suffixes, and the columns of its data as CSV.
 
@@ -82,7 +82,7 @@ def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
             writer.writerow("" if no else cell for no, cell in zip(missing, row, strict=True))
 
 
-def read_style(path: Path) -> dict[str, Any]:
+def read_style(path: Path) -> Any:
     """Return the settings of a style sheet of matplotlib, or raise `ValueError` with what it cannot read."""
     messages: list[str] = []
     handler, log = logging.Handler(), logging.getLogger("matplotlib")
@@ -96,7 +96,7 @@ def read_style(path: Path) -> dict[str, Any]:
         log.removeHandler(handler)
     if messages:
         raise ValueError(f'`style` "{path}": {" ".join(messages[0].split())}')
-    return dict(found)
+    return found
 
 
 def environment() -> dict[str, str | int]:

@@ -67,8 +67,8 @@ def _sweeps(ax: Any, fit: FoundationFit) -> None:
     for name, mark in zip(names, MARKS, strict=False):
         ax.plot([], [], mark, color=BLACK, markersize=2.5, label=name)
     ax.legend()
-    low, high = (round(sweeps[i].temperature - ZERO_CELSIUS, 1) + 0.0 for i in (0, -1))
-    title = f"measured at {low:g} to {high:g} °C (light)"
+    low, high = (celsius(sweeps[i].temperature) for i in (0, -1))
+    title = f"measured at {low} to {high} °C (light)"
     ax.set(xlabel=label, ylabel=f"{' and '.join(names)} modulus [{unit}]", title=title)
 
 

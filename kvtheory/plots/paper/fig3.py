@@ -44,4 +44,3 @@ def draw(data: Data) -> Figure:
         for ax in column:
             ax.label_outer()
     return drawn
-

@@ -73,4 +73,3 @@ def panels(
     axes[1].legend(loc="upper right")
     drawn.colorbar(images[1], ax=axes, label=label)
     return drawn
-

@@ -18,23 +18,22 @@ from kvtheory.scene import Scene
 from kvtheory.scene.static_state import StaticState
 
 QUANTITIES = {"depth": "m", "load": "N/m", "friction_force": "N/m", "friction_coefficient": "1"}
-SHARES: dict[float, dict[str, Any]] = {
-    10.0: {"color": "C2", "linestyle": "-"},
-    1.0: {"color": "C0", "linestyle": "--"},
-    0.1: {"color": "C1", "linestyle": "-."},
-}
-"""The retardation time of the scene over each, and their lines."""
+STYLES: tuple[dict[str, Any], ...] = (
+    {"color": "C2", "linestyle": "-"},
+    {"color": "C0", "linestyle": "--"},
+    {"color": "C1", "linestyle": "-."},
+)
+"""Of a tenth of the retardation time of the scene, of the time itself, and of ten times it."""
 VELOCITIES = np.geomspace(1e-4, 10.0, 201)
-"""Velocities (m/s) of Table 1; of another scene they are larger by the power of ten of its velocity a_0/tau."""
+"""Velocities (m/s) of Table 1; of another scene, a power of ten times these, by its a_0/tau."""
 EVERY = 20
 """The quadrature is evaluated at every twentieth velocity."""
 
 
 @dataclass(frozen=True)
 class Data:
-    """Exact curves and quadrature points by (support, share of tau), and both as one table."""
+    """Exact curves and quadrature points by (support, tau), and both as one table."""
 
-    time: float
     velocities: np.ndarray
     curves: dict[tuple[str, float], Any]
     points: dict[tuple[str, float], Any]
@@ -48,12 +47,12 @@ def compute(scene: Scene | None = None) -> Data:
     larger = own.half_length / own.time / (first.half_length / first.time)
     velocities = VELOCITIES * 10.0 ** round(math.log10(larger))
     for support, each in found.items():
-        for share in SHARES:
-            over = {"drive.velocity": velocities, "foundation.retardation_time": own.time / share}
-            curves[support, share] = steady(each, over=over)
+        for tau in (own.time / 10.0, own.time, 10.0 * own.time):
+            over = {"drive.velocity": velocities, "foundation.retardation_time": tau}
+            curves[support, tau] = steady(each, over=over)
             sparse = {**over, "drive.velocity": velocities[::EVERY]}
-            points[support, share] = steady(each, over=sparse, method="quadrature")
-    return Data(own.time, velocities, curves, points, _columns(own.time, velocities, curves, points))
+            points[support, tau] = steady(each, over=sparse, method="quadrature")
+    return Data(velocities, curves, points, _columns(velocities, curves, points))
 
 
 def draw(data: Data) -> Figure:
@@ -62,13 +61,12 @@ def draw(data: Data) -> Figure:
     axes = drawn.subplots(4, 2, sharex=True, sharey="row")
     for column, (support, title) in zip(axes.T, SUPPORTS.items(), strict=True):
         for ax, quantity in zip(column, QUANTITIES, strict=True):
-            for share, style in SHARES.items():
-                words = rf"$\tau = {data.time / share:.6g}$ s"
+            taus = [tau for kind, tau in data.curves if kind == support]
+            for tau, style in zip(taus, STYLES, strict=True):
+                key, words = (support, tau), rf"$\tau = {tau:.6g}$ s"
+                plot_steady(ax, data.velocities, data.curves[key], quantity, label=words, **style)
                 plot_steady(
-                    ax, data.velocities, data.curves[support, share], quantity, label=words, **style
-                )
-                plot_steady(
-                    ax, data.velocities[::EVERY], data.points[support, share], quantity,
+                    ax, data.velocities[::EVERY], data.points[key], quantity,
                     color=style["color"], linestyle="", marker="o", fillstyle="none", markersize=4,
                 )  # fmt: skip
             ax.label_outer()
@@ -76,16 +74,15 @@ def draw(data: Data) -> Figure:
     ax = axes[0, 0]
     depths = np.array([each.depth for each in data.curves.values()]) * LABELS["depth"][1]
     low, high = depths.min(), depths.max()
-    ax.set_ylim(10.0 ** np.floor(np.log10(low / 3.0)), 10.0 ** np.ceil(np.log10(high)))  # the legend
+    decades = np.floor(np.log10(low / 3.0)), np.ceil(np.log10(high))  # with space for the legend
+    ax.set_ylim(*(10.0**each for each in decades))
     handles, labels = ax.get_legend_handles_labels()
     (point,) = ax.plot([], [], "o", color="C2", fillstyle="none", markersize=4)
     ax.legend([*handles, point], [*labels, "quadrature"], loc="lower left", ncols=2)
     return drawn
 
 
-def _columns(
-    time: float, velocities: np.ndarray, curves: dict[Any, Any], points: dict[Any, Any]
-) -> Columns:
+def _columns(velocities: np.ndarray, curves: dict[Any, Any], points: dict[Any, Any]) -> Columns:
     rows: dict[str, list[Any]] = {
         "support": [],
         "method": [],
@@ -94,13 +91,12 @@ def _columns(
     }
     rows |= {f"{name} [{unit}]": [] for name, unit in QUANTITIES.items()}
     for states, at in ((curves, velocities), (points, velocities[::EVERY])):
-        for (support, share), state in states.items():
+        for (support, tau), state in states.items():
             count = at.size
             rows["support"] += [support] * count
             rows["method"] += [state.model] * count
-            rows["retardation_time [s]"] += [time / share] * count
+            rows["retardation_time [s]"] += [tau] * count
             rows["velocity [m/s]"] += at.tolist()
             for name, unit in QUANTITIES.items():
                 rows[f"{name} [{unit}]"] += getattr(state, name).tolist()
     return rows
-

@@ -28,7 +28,7 @@ POINTS = 24
 
 @dataclass(frozen=True)
 class Data:
-    """The scaled friction coefficient by support: exact on `NUMBERS`, quadrature at `points`, and of a scene."""
+    """The scaled friction coefficient by support: exact on `NUMBERS`, by quadrature, of a scene."""
 
     curves: dict[str, np.ndarray]
     points: dict[str, tuple[np.ndarray, np.ndarray]]
@@ -119,7 +119,8 @@ def _own(scene: Scene) -> tuple[float, float]:
     """Return the scaled velocity and friction coefficient of a scene of one of the two models."""
     if not scene.drive.final_velocity:
         raise ValueError("drive.velocity = 0: the scene has no place on a logarithmic axis")
-    R, K = scene.indenter.radius, scene.foundation.stiffness
+    values = scene.values()
+    R, K = values["indenter.radius"], values["foundation.stiffness"]
     state = steady(scene)
     fixed = scene.support.kind == "fixed"
     length = np.sqrt(R * state.depth) if fixed else np.cbrt(R * state.load / K)
@@ -144,4 +145,3 @@ def _scaled(
         over["support.gravity"] = 1.0
     mu = steady(Scene.table1(support), over=over, method=method).friction_coefficient
     return np.asarray(mu) * R / length
-

@@ -22,7 +22,10 @@ def models(scene: Scene | None) -> dict[str, Scene]:
     if scene is None:
         return {support: Scene.table1(support) for support in SUPPORTS}
     rest, own = StaticState.of(scene), scene.support
-    supports = {"fixed": Fixed(depth=rest.depth), "dead-weight": DeadWeight(load=rest.load)}
+    supports: dict[str, Any] = {
+        "fixed": Fixed(depth=rest.depth),
+        "dead-weight": DeadWeight(load=rest.load),
+    }
     return {
         kind: replace(scene, support=own if own.kind == kind else other)
         for kind, other in supports.items()

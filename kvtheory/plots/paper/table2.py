@@ -9,7 +9,6 @@ from kvtheory.plots.paper.models import SUPPORTS, Columns, sliding
 from kvtheory.plots.style import Picture
 from kvtheory.scene import Scene
 
-
 ROWS = (
     r"critical velocity $V^*$",
     r"$\mu$ for $V \ll V^*$",
@@ -79,4 +78,3 @@ def draw(data: Data) -> Figure:
     table.scale(1.0, 2.1)
     ax.set_title(r"Steady sliding with its exact coefficients, $\alpha = 2\sqrt{2}/3$")
     return drawn
-
