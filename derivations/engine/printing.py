@@ -90,7 +90,8 @@ def _is_negative(term: sp.Expr) -> bool:
 def _rank(factor: sp.Expr) -> tuple[Any, ...]:
     """Return the place of a factor in a product."""
     base = factor.as_base_exp()[0] if factor.is_Pow else factor
-    if base.is_number or str(base).startswith("\\"):
+    shown = base.name if base.is_Symbol else str(base)
+    if base.is_number or shown.startswith("\\"):
         return 0, not isinstance(factor, sp.NumberSymbol), str(factor)
     if isinstance(base, sp.Symbol | sp.Indexed):
         letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
@@ -106,7 +107,7 @@ def _rank(factor: sp.Expr) -> tuple[Any, ...]:
         (isinstance(base, sp.Add), 4), (isinstance(factor, sp.exp), 6), (isinstance(base, _TALL), 7),
         (open_ended, 9),
     )  # fmt: skip
-    return next((place for found, place in kinds if found), 5), str(base), 0
+    return next((place for found, place in kinds if found), 5), shown, 0
 
 
 class Printer(LatexPrinter):
