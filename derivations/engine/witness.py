@@ -46,9 +46,11 @@ def has_witness(premises: Pairs, positive: _Expressions, near: _Point | None = N
         parts = [*(part for part in parts if part not in joined), letters.union(*joined)]
     # What has no letter in common needs no common point.
     for part in dict.fromkeys(parts):
-        asked = tuple(tuple(each for each in group if letters_of(each) <= part) for group in groups)
+        asked = laws, gaps, signed = (
+            *(tuple(each for each in group if letters_of(each) <= part) for group in groups),
+        )
         if asked not in _found:
-            if (point := _search(*asked, near)) is None:
+            if (point := _search(laws, gaps, signed, near)) is None:
                 return False
             _found[asked] = point
         near |= _found[asked]
