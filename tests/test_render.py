@@ -23,6 +23,7 @@ from kvtheory.derivations.render import (
     html,
     latex,
     latex_engine,
+    markdown,
     pdf,
     write,
 )
@@ -325,8 +326,14 @@ def test_html_fits_a_phone(page, tmp_path):
         browser.open(tmp_path / "page.html")
         sizes = "[scroll.clientWidth, scroll.scrollWidth, document.querySelectorAll('math').length]"
         client, scroll, formulas = browser.run(f"(scroll => {sizes})(document.documentElement)")
+        browser.screen(390, 844, phone=True)
+        wide = browser.run(
+            "[...document.querySelectorAll('.line .scroll')].filter("
+            "each => each.scrollWidth > each.clientWidth + 1).length"
+        )
     assert formulas > 100
     assert scroll <= client <= 360
+    assert wide <= 20  # fractions and values at a place, which cannot be broken
 
 
 # LaTeX and PDF
@@ -417,6 +424,28 @@ def test_two_editions_share_an_article_of_somebody_else(everything, tmp_path, ki
     log = compiled(tmp_path, names, own, rf"\documentclass{{{kind}}}{packages}")
     assert not re.search(r"Warning|undefined|multiply", log)
     assert max(overfull(log), default=0.0) <= 1
+
+
+def test_fragments_are_broken_for_a_page_of_two_columns(everything, tmp_path):
+    (tmp_path / "fragments").mkdir()
+    wide = {}
+    for columns in (1, 2):
+        printing = edition(everything, ["eq27", "F3", "F11", "F17-parts"], columns=columns)
+        for each in printing.derivations:
+            text = fragments.with_steps(each, printing)
+            (tmp_path / "fragments" / f"{each.label}.tex").write_text(text)
+        names = [f"{each.label}.tex" for each in printing.derivations]
+        log = compiled(tmp_path, names, start=r"\documentclass[twocolumn]{article}")
+        wide[columns] = max(overfull(log), default=0.0)
+    assert wide[1] > 10
+    assert wide[2] <= 1
+
+
+def test_a_sign_without_a_reason_stands_beside_its_formula(book):
+    text = markdown.document(book)
+    for sign in frame.SIGNS.values():
+        assert f"\n{sign}\n" not in text
+    assert "l_{\\mathrm{r}} = a l \\quad \\text{∎}\n$$" in text
 
 
 def test_the_document_counts_the_equations_of_a_fragment(book, everything):

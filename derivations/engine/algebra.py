@@ -58,8 +58,9 @@ def normalise(expr: sp.Expr) -> sp.Expr:
     assumptions on the symbols allow it.
     """
     for kind, written in _WRITTEN.items():
-        expr = expr.replace(kind, written)
-    expr = expr.replace(_is_of_two, _by_distance)
+        expr = expr.replace(kind, written) if expr.has(kind) else expr
+    if expr.has(sp.Max, sp.Min):
+        expr = expr.replace(_is_of_two, _by_distance)
     if expr.has(sp.log):  # e**(c log b) = b**c
         expr = expr.replace(sp.exp, lambda u: sp.exp(u).rewrite(sp.Pow))
     return expr.replace(
@@ -118,9 +119,10 @@ def _masked(expr: sp.Expr, letters: Mapping[sp.Expr, sp.Dummy]) -> sp.Expr:
 
 
 def _difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
-    if vanishes(left - right):
+    whole = left - right
+    if vanishes(whole) or vanishes(whole := normalise(whole)):
         return sp.S.Zero
-    numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
+    numerator, denominator = sp.fraction(sp.together(whole))
     rest = expanded(normalise(numerator))
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()

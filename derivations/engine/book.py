@@ -294,6 +294,10 @@ class Book:
         """The letters by their names."""
         self._letters: dict[str, Any] = {}
         """The symbols and functions by what is printed for them."""
+        self._reach: tuple[object, dict[sp.Expr, frozenset[sp.Expr]]] = None, {}
+        """What is hidden, and the rules and facts for which it is."""
+        self._point: dict[sp.Expr, Any] = {}
+        """Where premises and conditions so far were seen to hold together."""
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
         self._last: tuple[sp.Expr, sp.Expr] = sp.nan, sp.nan
         """The sides of the relation that was kept last."""
@@ -698,7 +702,7 @@ class Book:
     def _ask_witness(self, what: str) -> None:
         """Refuse what holds together with premises and conditions at no point."""
         pairs = tuple((each.lhs, each.rhs) for each in self._premises())
-        if not has_witness(pairs, self._conditions.gaps):
+        if not has_witness(pairs, self._conditions.gaps, self._point):
             raise StepError(f"{self.label}: no point was found where {what}")
 
     def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
@@ -735,7 +739,7 @@ class Book:
         ):
             return True
         pairs = tuple((each.lhs, each.rhs) for each in premises)
-        return has_witness(pairs, self._conditions.gaps)
+        return has_witness(pairs, self._conditions.gaps, self._point)
 
     def _equals(self, expr: sp.Expr) -> list[sp.Expr]:
         """Return an expression and the forms that a step has proved it to be equal to."""
@@ -834,6 +838,12 @@ class Book:
 
     def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
         """Return on what names depend by the premises of recalled facts, where no rule says it."""
+        asked = [*self._rules], [*self._origins.values()]
+        if asked != self._reach[0]:
+            self._reach = asked, self._found_hidden()
+        return self._reach[1]
+
+    def _found_hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
         direct: dict[sp.Expr, set[sp.Expr]] = {}
         opaque = (AppliedUndef, sp.Derivative, sp.Integral)
         found = (each for fact in self._origins.values() for each in fact.premises)
@@ -871,6 +881,8 @@ class Book:
 
     def _parted(self, expr: sp.Expr) -> sp.Expr:
         """Write each integral as the sum of its parts, where these exist."""
+        if not expr.has(sp.Integral):
+            return expr
         return expr.replace(
             lambda node: isinstance(node, sp.Integral),
             lambda node: parted(node, self._conditions),

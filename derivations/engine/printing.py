@@ -1,12 +1,15 @@
 r"""Mathematics as one writes it by hand: the only place that decides how an expression is printed.
 
-A sum begins with a positive term, a damper follows its spring, a common factor stands before its bracket;
-a product is a number, then constants, letters (capital, Greek, small), roots, brackets, functions; roots of
-one order are one root; dots and primes are derivatives.
+A sum begins with a positive term, a damper follows its spring, a common factor stands before its bracket,
+a characteristic polynomial falls in powers of the growth rate; a product is a number, then constants, letters
+(capital, Greek, small), roots, brackets, functions; roots of one order are one root; dots and primes are
+derivatives.
 
->>> C, V, W, delta, R = sp.symbols("C V W delta R", positive=True)
+>>> C, V, W, delta, R, s = sp.symbols("C V W delta R s_r", positive=True)
 >>> doprint(W - C * V * delta)
 'W - C V \\delta'
+>>> doprint(V + C * s - R + W * s**2)
+'W s_{r}^{2} + C s_{r} + V - R'
 >>> doprint(3 * sp.sqrt(3) / 4 - sp.Rational(3, 4)), doprint(sp.sqrt(2 * R * delta))
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
 >>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
@@ -34,6 +37,8 @@ _TALL = sp.Integral, sp.Sum, sp.Product, sp.Piecewise, sp.Limit
 """What stands beside a fraction, not in it."""
 _CLOSED = sp.Symbol, sp.Indexed, AppliedUndef
 _MOST_PRIMES = 3
+_RATE = "s_r"
+"""The growth rate of a disturbance."""
 _MOST_TERMS, _MOST_CHARACTERS = 5, 160
 """Of a sum in a bracket of its own: in a longer one a line could not be broken."""
 _ACCENT = re.compile(r"\\(?:bar|hat|tilde|breve|check|math[a-z]+) ?\{?")
@@ -90,7 +95,8 @@ def _is_negative(term: sp.Expr) -> bool:
 def _rank(factor: sp.Expr) -> tuple[Any, ...]:
     """Return the place of a factor in a product."""
     base = factor.as_base_exp()[0] if factor.is_Pow else factor
-    if base.is_number or str(base).startswith("\\"):
+    shown = base.name if base.is_Symbol else str(base)
+    if base.is_number or shown.startswith("\\"):
         return 0, not isinstance(factor, sp.NumberSymbol), str(factor)
     if isinstance(base, sp.Symbol | sp.Indexed):
         letter = _ACCENT.sub("", TEX.get(base) or sp.latex(base))
@@ -106,7 +112,7 @@ def _rank(factor: sp.Expr) -> tuple[Any, ...]:
         (isinstance(base, sp.Add), 4), (isinstance(factor, sp.exp), 6), (isinstance(base, _TALL), 7),
         (open_ended, 9),
     )  # fmt: skip
-    return next((place for found, place in kinds if found), 5), str(base), 0
+    return next((place for found, place in kinds if found), 5), shown, 0
 
 
 class Printer(LatexPrinter):
@@ -177,6 +183,10 @@ class Printer(LatexPrinter):
             terms = [*numbers, *others] if leads else [*others, *numbers] if falls else terms
         if len(terms) == 2 and _is_rate(terms[0]) and not _is_rate(terms[1]):
             terms.reverse()
+        growth = next((each for each in letters if str(each) == _RATE), None)
+        powers = {term: term.as_coeff_exponent(growth)[1] for term in terms if growth}
+        if {*powers.values()} in ({0, 2}, {0, 1, 2}) and len(letters) > 2:  # a characteristic one
+            terms.sort(key=lambda term: (-powers[term], _is_negative(term)))
         first = next((term for term in terms if not _is_negative(term)), terms[0])
         return [first, *(term for term in terms if term is not first)]
 

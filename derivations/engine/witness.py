@@ -33,23 +33,37 @@ _Point = dict[sp.Expr, mpmath.mpf]
 _Expressions = tuple[sp.Expr, ...]
 
 
-@lru_cache(maxsize=4096)
-def has_witness(premises: Pairs, positive: _Expressions) -> bool:
-    """Tell whether a point was found where all premises hold and the other expressions are positive."""
+def has_witness(premises: Pairs, positive: _Expressions, near: _Point | None = None) -> bool:
+    """Tell whether a point was found where all premises hold and the other expressions are positive.
+
+    It is looked for `near` a point first, to which what was found is added.
+    """
+    near = {} if near is None else near
     groups = _without_definitions(premises, positive)
     parts: list[frozenset[sp.Expr]] = []
     for letters in map(letters_of, chain(*groups)):
         joined = [part for part in parts if part & letters]
         parts = [*(part for part in parts if part not in joined), letters.union(*joined)]
     # What has no letter in common needs no common point.
-    return all(
-        _has_point(*(tuple(each for each in group if letters_of(each) <= part) for group in groups))
-        for part in dict.fromkeys(parts)
-    )
+    for part in dict.fromkeys(parts):
+        asked = laws, gaps, signed = (
+            *(tuple(each for each in group if letters_of(each) <= part) for group in groups),
+        )
+        if asked not in _found:
+            if (point := _search(laws, gaps, signed, near)) is None:
+                return False
+            _found[asked] = point
+        near |= _found[asked]
+    return True
 
 
-@lru_cache(maxsize=4096)
-def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> bool:
+_found: dict[tuple[_Expressions, ...], _Point] = {}
+"""The points that were found, by what vanishes, is positive, and is not negative there."""
+
+
+def _search(
+    laws: _Expressions, gaps: _Expressions, signed: _Expressions, near: _Point
+) -> _Point | None:
     slack = {gap: positive_letter(place) for place, gap in enumerate(gaps)}
     order = sorted(frozenset().union(*map(letters_of, (*laws, *gaps, *signed))), key=str)
     above = {*gaps, *signed}
@@ -68,14 +82,15 @@ def _has_point(laws: _Expressions, gaps: _Expressions, signed: _Expressions) -> 
             )
             order.sort(key=last, reverse=True)
             try:
-                points = _extended(start, closed, order, draw, above)
-                if any(_meets(point, gaps, signed) for point in points):
-                    return True
+                for point in _extended(start, closed, order, draw, above, {} if attempt else near):
+                    if _meets(point, gaps, signed):
+                        return point
             except (ZeroDivisionError, ValueError, OverflowError, TypeError):
                 continue
-    return False
+    return None
 
 
+@lru_cache(maxsize=4096)
 def _without_definitions(
     premises: Pairs, positive: _Expressions
 ) -> tuple[list[sp.Expr], list[sp.Expr], list[sp.Expr]]:
@@ -148,8 +163,9 @@ def _extended(
     order: list[sp.Symbol],
     draw: random.Random,
     above: set[sp.Expr],
+    near: _Point,
 ) -> Iterator[_Point]:
-    """Give values to the letters that are left: by an equation, else by chance."""
+    """Give values to the letters that are left: by an equation, else those near a point, or by chance."""
     waiting = []
     for each in equations:
         left = letters_of(each) - point.keys()
@@ -165,11 +181,11 @@ def _extended(
         _, equation, (letter,) = least
         rest = [each for _, each, _ in waiting if each is not equation]
         for value in _roots(equation, letter, point):
-            yield from _extended({**point, letter: value}, rest, order, draw, above)
+            yield from _extended({**point, letter: value}, rest, order, draw, above, near)
         return
     letter = next(each for each in order if each not in point)
-    rest = [each for _, each, _ in waiting]
-    yield from _extended({**point, letter: _drawn(letter, draw, above)}, rest, order, draw, above)
+    point = {**point, letter: near.get(letter) or _drawn(letter, draw, above)}
+    yield from _extended(point, [each for _, each, _ in waiting], order, draw, above, near)
 
 
 def _roots(equation: sp.Expr, letter: sp.Symbol, point: _Point) -> Iterator[mpmath.mpf]:

@@ -150,11 +150,15 @@ def _terms(link: str, most: float) -> list[str]:
                 packed.append(part)
         if max(map(width, packed)) <= most:
             return packed
-    return packed if len(packed) > 1 else _opened(link, most)
+    return packed if len(packed) > 1 else opened(link, most)
 
 
-def _opened(link: str, most: float) -> list[str]:
-    """Break within the widest pair of fences, which then are set apart in each line."""
+def opened(link: str, most: float) -> list[str]:
+    r"""Break within the widest pair of fences, which then are set apart in each line.
+
+    >>> opened(r"= 2 \left(a + b - c - d\right) e", 7)
+    ['= 2 \\left( a + b \\right.', '\\left. - c - d \\right)  e']
+    """
     start, depth = -1, 0
     spans = []
     for fence in _FENCED.finditer(link):

@@ -48,6 +48,8 @@ class Edition:
     """The sentence on the values for which a result holds, by its label."""
     label_prefix: str = PREFIX
     """What each label of a fragment begins with."""
+    columns: int = 1
+    """How many columns the page has for which fragments are broken into lines."""
 
     @property
     def labels(self) -> set[str]:
@@ -105,6 +107,7 @@ def edition(
     scene: str = "",
     symbols: Sequence[Symbol] = (),
     label_prefix: str = PREFIX,
+    columns: int = 1,
 ) -> Edition:
     """Select derivations, with those that they depend on if wanted, and write them in other letters.
 
@@ -155,6 +158,7 @@ def edition(
         scene=scene,
         conditions={each.label: _words(domain(each), letters[each.section].get) for each in chosen},
         label_prefix=label_prefix,
+        columns=columns,
     )
 
 

@@ -24,8 +24,9 @@ from .text import (
     sentence,
 )
 
-LINE = 27.0
-"""Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt."""
+LINES = {1: 27.0, 2: 15.5}
+"""Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt, and what its
+second column does, by the number of columns."""
 
 Link = Callable[[Piece], str]
 
@@ -41,13 +42,13 @@ _REFER = (
 def equation(derivation: Derivation, edition: Edition) -> str:
     """Return the result alone."""
     name = edition.label_prefix + derivation.label
-    return f"% {_comment(derivation)}\n{_display(derivation.latex, name)}"
+    return f"% {_comment(derivation)}\n{_display(derivation.latex, LINES[edition.columns], name)}"
 
 
 def with_steps(derivation: Derivation, edition: Edition) -> str:
     """Return the result with its steps, the meaning of its symbols and its domain."""
     labels = CONTENTS.keys() | edition.labels
-    prefix = edition.label_prefix
+    prefix, line = edition.label_prefix, LINES[edition.columns]
     link = partial(_reference, prefix)
     parts = [
         f"% {_comment(derivation)}",
@@ -55,7 +56,10 @@ def with_steps(derivation: Derivation, edition: Edition) -> str:
         _REFER + r"\begingroup\emergencystretch=6em\raggedright",
         rf"\paragraph{{{words(derivation.title, ())}.}}",
         words(derivation.text, labels, link),
-        *(_block(block, prefix + derivation.label, labels, link) for block in blocks(derivation)),
+        *(
+            _block(block, line, prefix + derivation.label, labels, link)
+            for block in blocks(derivation)
+        ),
     ]
     parts += _where(edition.table(edition.symbols(derivation)), labels, link)
     if holds := edition.domain(derivation):
@@ -64,7 +68,7 @@ def with_steps(derivation: Derivation, edition: Edition) -> str:
         parts.append(rf"\par {frame.WITH_NUMBERS}")
         for each in derivation.numbers:
             note = rf"\par\nopagebreak ({words(each.note, ())})" if each.note else ""
-            parts.append(_display(calculation(each)) + note)
+            parts.append(_display(calculation(each), line) + note)
     return "\n".join(part for part in [*parts, r"\par\endgroup"] if part) + "\n"
 
 
@@ -90,27 +94,29 @@ def _comment(derivation: Derivation) -> str:
     return f"{derivation.label}: {derivation.title} [{derivation.status}]"
 
 
-def _display(latex: str, label: str = "") -> str:
+def _display(latex: str, line: float, label: str = "") -> str:
     """Return a displayed formula, broken where it is wide, with its label if it is numbered."""
-    star = "" if label else "*"
-    broken = lines(latex, LINE if label else LINE + 4)
+    star, room = ("", line) if label else ("*", line + 4)
+    broken = lines(latex, room)
     body = broken[0]
     if "&" in body:
         rows = " \\\\\n    ".join(broken)
         body = f"\\begin{{split}}\n    {rows}\n  \\end{{split}}"
-    wide = max(map(width, broken)) / (LINE if label else LINE + 4)
+    wide = max(map(width, broken)) / room
     size = next((name for most, name in SIZES if wide <= most), SIZES[-1][1])
     mark = rf"\label{{{label}}}" if label else ""
     shown = f"\\begin{{equation{star}}}{mark}\n  {body}\n\\end{{equation{star}}}\n"
     return f"\\begingroup\\{size}\n{shown}\\endgroup\n" if size else shown
 
 
-def _block(block: Given | Line, label: str, labels: Collection[str], link: Link) -> str:
+def _block(
+    block: Given | Line, line: float, label: str, labels: Collection[str], link: Link
+) -> str:
     if isinstance(block, Given):
         return printed(sentence(block, labels), link)
     reason = printed(remark(block.step, labels), link)
     told = rf"\nopagebreak ({reason})\par" if reason else ""
-    return _display(block.step.latex, label if block.tag else "").rstrip() + told
+    return _display(block.step.latex, line, label if block.tag else "").rstrip() + told
 
 
 def _reference(prefix: str, piece: Piece) -> str:

@@ -8,7 +8,7 @@ from latex2mathml.converter import convert
 
 from ..engine.record import Calculation, Derivation, Table
 from . import frame
-from .breaking import cut_at_brackets, cut_at_signs
+from .breaking import cut_at_brackets, cut_at_signs, opened, width
 from .edition import Edition
 from .pdf import RenderError
 from .style import STYLE
@@ -56,8 +56,10 @@ _CORRECTIONS = (
 )
 """What latex2mathml writes, and its correction."""
 
-_NARROW = 18
-"""Width in em of a formula that fits on a telephone."""
+_NARROW, _SCREEN = 18, 19
+"""Widths in em: of a formula that fits on a telephone, and of its screen, for which brackets are opened."""
+_SIGN_FIRST = re.compile(r"^((?:<m(?:ath|row)[^>]*>)*<mo)(?=>&#x0(?:002B|2212);)>")
+"""A sign at the beginning of what follows in a bracket."""
 _PUNCTUATED = re.compile(r"(\((?=<math))?(<math(?:(?!</math>).)*</math>)([.,;:)]+)?")
 """A formula and the punctuation that must stay on its line."""
 _TWO_PRIMES = re.compile(r"(_(?:\w|\{[^{}]*\}))''")
@@ -216,7 +218,13 @@ def _broken(latex: str, display: str) -> list[str]:
     shown = []
     for link in relations(latex):
         for place, each in enumerate(cut_at_signs(link, _NARROW)):
-            first, *rest = (mathml(part, display) for part in cut_at_brackets(each, _NARROW))
+            first, *rest = (
+                _SIGN_FIRST.sub(r'\1 form="infix">', mathml(piece, display))
+                if piece.startswith(r"\left.")
+                else mathml(piece, display)
+                for part in cut_at_brackets(each, _NARROW)
+                for piece in (opened(part, _SCREEN) if width(part) > _SCREEN else [part])
+            )
             # Else a sign at the beginning would be that of a number, without space about it.
             first = first.replace("<mo>", '<mo form="infix">', 1) if place else first
             shown.append(f'<span class="term">{first}{"".join(rest)}</span>' if rest else first)

@@ -64,8 +64,9 @@ def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
         return _printed(sentence(block, labels))
     mark = f" ({label})" if block.tag else ""
     reason = _printed(remark(block.step, labels))
-    worth = f"{reason} {frame.SIGNS[block.step.status]}".strip()
-    return f"$$\n{_tame(block.step.latex)}\n$${mark}\n\n{worth}"
+    sign = frame.SIGNS[block.step.status]
+    beside, below = ("", f"\n\n{reason} {sign}") if reason else (rf" \quad \text{{{sign}}}", "")
+    return f"$$\n{_tame(block.step.latex)}{beside}\n$${mark}{below}"
 
 
 def _table(table: Table, labels: Collection[str]) -> str:

@@ -62,6 +62,10 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
     "--label-prefix", default="kv:", show_default=True, metavar="TEXT",
     help="Beginning of each \\label of a fragment.",
 )  # fmt: skip
+@click.option(
+    "--columns", type=click.IntRange(1, 2), default=1, show_default=True,
+    help="Columns of the page for which fragments are broken into lines.",
+)  # fmt: skip
 @click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
     "--symbols", is_flag=True, help="List the names of the symbols for --notation, and stop."
@@ -77,8 +81,8 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 @console.overwrite_option
 def derive(
     scene: str | None, output: Path, formats: list[str] | None, only: list[str] | None, closure: bool,
-    numbers: bool, shape: str | None, notation: Path | None, label_prefix: str, overrides: Sequence[str],
-    listing: bool, symbols: bool, recheck: bool, as_json: bool,
+    numbers: bool, shape: str | None, notation: Path | None, label_prefix: str, columns: int,
+    overrides: Sequence[str], listing: bool, symbols: bool, recheck: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Derive the equations, check every step, and print them.
 
@@ -126,7 +130,7 @@ def derive(
     with console.progress_bar("derive") as report:
         deriving = lambda share, words: report(DERIVING * share, words)  # noqa: E731
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
-        edition = _edition(labels, closure, shape, letters, label_prefix, given, deriving)
+        edition = _edition(labels, closure, shape, letters, label_prefix, columns, given, deriving)
         paths = write_edition(edition, output, wanted, writing)
     _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
 
@@ -234,7 +238,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> Given:
 
 def _edition(
     labels: list[str], closure: bool, shape: str | None, notation: dict[str, str], label_prefix: str,
-    given: Given | None, report: Callable[[float, str], None],
+    columns: int, given: Given | None, report: Callable[[float, str], None],
 ) -> "Edition":  # fmt: skip
     """Derive what was requested, after a line with the number of records."""
     from kvtheory import __version__
@@ -244,7 +248,7 @@ def _edition(
     from kvtheory.derivations.shape import derive_shape, symbols, title
 
     about: dict[str, Any] = {"command": _command(), "version": __version__, "notation": notation}
-    about["label_prefix"] = label_prefix
+    about |= {"label_prefix": label_prefix, "columns": columns}
     if shape is not None:
         return edition(derive_shape(shape), **about, title=title(shape), symbols=symbols(shape))
     following = {label for label, _ in FOLLOWING} if given else set()
