@@ -311,9 +311,9 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
             yield Explanation(FEW, text, 1.0 if known else READ, True)
     if (drops := _drops(case)).size >= SEVERAL:
         text = (
-            f"the contact is lost for single steps, {drops.size} times from {drops[0] * 1e3:.4g} ms on, and is back "
-            "at once: an element in contact fails its test by rounding, as where its position is once k dt + dt and "
-            "once (k + 1) dt. Compare with a tolerance, or keep contact until p < 0 (Eqs. 23 and 24)"
+            f"the contact is lost for single steps, {drops.size} times from {drops[0] * 1e3:.4g} ms on, and "
+            "is back at once: elements in contact fail its test by rounding, as where x is once at the time "
+            "k dt + dt and once at (k + 1) dt; test with a tolerance, or keep contact until p < 0 (Eq. 23)"
         )
         yield Explanation(DROPS, text, LIKELY, True)
     if case.theory.scene.held or case.resolution.step_known:

@@ -1,7 +1,7 @@
 """The smallest errors that a series would have shown, by the allowances that judge it.
 
-An error x of a quantity changes each curve by x times its slope: that of a column is the column itself, that of
-a parameter the change of theory over the change of the parameter. All that is compared with an allowance is
+An error x of a quantity changes each curve by x times its slope: that of a column is the column itself, that
+of a parameter the change of theory over that of the parameter. All that is compared with an allowance is
 linear in the curves, except root mean squares.
 """
 
@@ -28,7 +28,7 @@ QUANTITIES = {
     "stiffness": ("K", ("K",)), "retardation_time": ("tau", ("tau", "all tau_i", "tau_1")),
     "mass": ("M", ("M",)), "velocity": ("V", ("V",)), "radius": ("R", ("R",)),
 }  # fmt: skip
-"""Each quantity with its word, and the columns or symbols that stand for it: the first that there is counts."""
+"""Each quantity with its word, and the columns or symbols that stand for it, of which the first counts."""
 STEP, FAR = {False: 0.03, True: 0.2}, 2.0
 """Change of a parameter for slopes, larger where theory is a simulation by elements; and from how many steps
 on a slope is taken again, at the error that was found."""
@@ -61,7 +61,7 @@ def detectable(
             x = _smallest(case, bounds, {way: case.columns[way]})
         found[name] = x if x < MOST else None
         if x < MOST:
-            shown.append(f"{x:.2%} in {word}")
+            shown.append(f"{float(f'{100.0 * x:.2g}'):g}% in {word}")
         elif way:
             unseen.append(word)
     text = f" These data would have shown an error of {', '.join(shown)}." if shown else ""
@@ -70,7 +70,7 @@ def detectable(
 
 
 def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
-    """Return the slope of each curve by a parameter; a velocity that the data hold would be as wrong as it."""
+    """Return the slope of each curve by a parameter; a velocity in the data would be as wrong as it is."""
     scene, times = rows.theory.scene, None
     if rows.series.curve and VELOCITY in powers:
         times = rows.time * (1.0 + step)
@@ -90,14 +90,17 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
     parts: list[tuple[Callable[[Curves], Any], Any, Any]] = []
     for name in case.names:
         for n in lengths(case):
-            band, allowed = case.bands[name].averaged(n), case.limit(name, n) * case.theory.scales[name]
+            band = case.bands[name].averaged(n)
+            allowed = case.limit(name, n) * case.theory.scales[name]
             averages = partial(lambda curves, name, n: means(curves[name], n), name=name, n=n)
             parts.append((averages, band.low - allowed, band.high + allowed))
     for of in means_of:
-        with suppress(NotMade, KeyError):
-            parts += [(each.off, -each.allowed, each.allowed) for each in of(case)]
+        with suppress(NotMade):
+            made = (each for each in of(case) if each.weights.keys() <= case.columns.keys())
+            parts += [(each.off, -each.allowed, each.allowed) for each in made]
     support, depth_0 = case.theory.scene.support, case.theory.static.depth
-    if not (case.series.curve or case.theory.scene.held) and {"depth", "normal_force"} <= {*case.names}:
+    free = not (case.series.curve or case.theory.scene.held)
+    if free and {"depth", "normal_force"} <= {*case.names}:
         for window, limit in balances(case):
             missing = partial(window.missing_force, support=support, depth_0=depth_0)
             parts.append((missing, -limit, limit))
