@@ -269,7 +269,8 @@ def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
     lever = math.copysign(a / R, l_r) if "normal_force" in columns else 0.0
     weights = {"friction_force": 1.0, **({"normal_force": -lever} if lever else {})}
     data, theirs = (
-        sum(by * curves[n] for n, by in weights.items()) for curves in (columns, case.now)
+        np.sum([by * curves[n] for n, by in weights.items()], axis=0)
+        for curves in (columns, case.now)
     )
     off = ELEMENTS_AT_AN_EDGE * fine.spacing
     arm = off if lever else a
@@ -280,7 +281,7 @@ def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
     trailing = 0.5 * K * math.hypot(a, l_r) * off * off * L / R
     smooth = ((normal.systematic - normal.rounding) * arm + trailing) / R
     smooth = smooth + friction.rounding + abs(lever) * normal.rounding
-    sigma = rms(noise(case.time, np.asarray(data - theirs), case.now["friction_force"])[late])
+    sigma = rms(noise(case.time, data - theirs, case.now["friction_force"])[late])
     allowed = float(smooth[late].max()) + SURE * sigma / math.sqrt(late.sum())
     allowed += SMALLEST * theory.scales["friction_force"]
     words = f"less F_z a/R in the mean after {case.time[late][0] * 1e3:.4g} ms, theory"

@@ -127,9 +127,10 @@ def compare(
         checks = judge(case)
     case, checks = _undecided(case, checks)
     text, explanations = diagnose(case, checks)
-    known, limits = verdict(checks), {}
+    known, limits = verdict(checks), dict[str, float | None]()
     if known != "disagrees":
-        limits, shown = detectable(case)
+        longer = case_of.with_longer_steps(case) if known == "agrees" else None
+        limits, shown = detectable(longer or case)  # with what would count as not known
         text += shown + (_untested(case, limits) if known == "agrees" else "")
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kvtheory.checks.allowances import (
     EDGES,
@@ -341,8 +342,8 @@ def _drops(case: Case) -> Array:
     forces = [name for name in ("normal_force", "friction_force") if name in case.names]
     with np.errstate(all="ignore"):
         part = np.array([case.columns[name] / case.now[name] for name in forces])
-    lost = (part < LOST).all(axis=0) & bool(forces)
-    if lost.all() or np.nanquantile(np.abs(part[0, ~lost] - 1.0), 0.9) > NEAR:
+    lost: NDArray[np.bool_] = np.all(part < LOST, axis=0)
+    if not forces or lost.all() or np.nanquantile(np.abs(part[0, ~lost] - 1.0), 0.9) > NEAR:
         return np.zeros(0)
     return case.time[1:][lost[1:] & ~lost[:-1]]
 

@@ -5,7 +5,7 @@ of a parameter the change of theory over that of the parameter. All that is comp
 linear in the curves, except root mean squares.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from kvtheory.checks.checklist import Mean, balances, initial_rest, lengths, steady_limit
-from kvtheory.checks.comparison_case import Case, NotMade, with_longer_steps
+from kvtheory.checks.comparison_case import Case, NotMade
 from kvtheory.checks.faults import FRICTION, parameters_of
 from kvtheory.checks.hypotheses import VELOCITY, Bench, bench, scaled_scene
 from kvtheory.checks.noise import means
@@ -45,7 +45,6 @@ def detectable(
 
     It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
     """
-    case = with_longer_steps(case) or case
     rows, bounds = bench(case), _bounds(case, means_of)
     powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
     found: dict[str, float | None] = {}
@@ -76,9 +75,10 @@ def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -
         times = rows.time * (1.0 + step)
     else:
         scene = scaled_scene(scene, powers, 1.0 + step)
-    pair, found = rows.against(scene, times), {}
-    given = ("velocity", "sliding_velocity")[: 1 + scene.drive.rigid]
-    for name in rows.names if pair else ():
+    if (pair := rows.against(scene, times)) is None:
+        return {}
+    given, found = ("velocity", "sliding_velocity")[: 1 + scene.drive.rigid], {}
+    for name in rows.names:
         change = pair[1][name] - rows.now[name]
         seen = (np.abs(change) > TRIAL_RTOL * rows.theory.scales[name]) & (name not in given)
         found[name] = np.interp(case.time, rows.time, np.where(seen, change, 0.0) / step)
@@ -105,11 +105,15 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
             missing = partial(window.missing_force, support=support, depth_0=depth_0)
             parts.append((missing, -limit, limit))
 
-    def values(curves: Curves) -> Array:
-        return np.hstack([part(curves) for part, _, _ in parts])
+    functions, low, high = zip(*parts, strict=True)
 
-    low, high = (np.hstack([part[k] for part in parts]) for k in (1, 2))
-    return values, values(case.columns), low, high
+    def joined(values: Iterable[Any]) -> Array:
+        return np.concatenate([np.atleast_1d(each) for each in values])
+
+    def values(curves: Curves) -> Array:
+        return joined(function(curves) for function in functions)
+
+    return values, values(case.columns), joined(low), joined(high)
 
 
 def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
@@ -123,7 +127,7 @@ def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
     for sign in (1.0, -1.0):
         with np.errstate(all="ignore"):
             room = np.where(sign * slope > 0.0, high - here, here - low) / np.abs(slope)
-        x = max(float(np.nanmin(room, initial=np.inf)), 0.0)
+        x = max(float(np.nanmin(room[slope != 0.0], initial=np.inf)), 0.0)
         for name, n in product(slopes, lengths(case)):
             left = partial(_beyond, case, name, n, sign * slopes[name])
             if x > 0.0 and left(end := min(x, MOST)) > 0.0:
