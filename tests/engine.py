@@ -29,7 +29,8 @@ def run(
 
     Faults: `slides` or `remembers` false, `hunt` (the damping grows with the compression), `middle` (friction
     by the normal in the middle of the patch), `share` of the contact, `loaded` (arms at the start), `start`
-    (factor on the initial depth), `sinks` (factor on delta' in the compression rate).
+    (factor on the initial depth), `sinks` (factor on delta' in the compression rate), `sine` (of the slope,
+    for its tangent, in friction).
     """
     slides, remembers = fault.get("slides", True), fault.get("remembers", True)
     K_i, T_i = np.array(arms, dtype=float).reshape(-1, 2).T[:, :, None, None]
@@ -70,6 +71,7 @@ def run(
         ends = x[held.any(axis=0)][[0, -1]] if held.any() else np.full(2, np.nan)
         F_z, F_x = share * p.sum(), -share * (p * x).sum() / R
         F_x = -F_z * ends.mean() / R if fault.get("middle") else F_x
+        F_x = -share * (p * np.sin(np.arctan(x / R))).sum() if fault.get("sine") else F_x
         return F_z, F_x, share * (stiff * held).sum(), ends, p.max(), new, new_s
 
     d, rate, pull, rows = start, 0.0, 0.0, []

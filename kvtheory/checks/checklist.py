@@ -256,30 +256,35 @@ def steady_limit(case: Case) -> list[Mean]:
 
 
 def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
-    """Return the mean of F_x - F_z a/R of a line contact after the transient: the leading edge leaves it alone.
+    """Return the mean of F_x - F_z a/R of a line contact after the transient, free of the leading edge.
 
-    Elements that lack the force b there lack the friction b a/R. A free indenter then sinks by b/(K A + k_s) (F12),
-    where F_z grows by K A and F_x by C V L/R, L being the length of the contact. Where data are in step with
-    elements, so is delta', by half of what b changes in a step, with a mean slope of a/2R. At the other edge
-    p = 0, and elements change p' x dx, with p' = K sqrt(a^2 + l_r^2)/R.
+    Elements that lack the force b there lack the friction b a/R. A free indenter then sinks by b/(K A + k_s)
+    (F12), where F_z grows by K A and F_x by C V L/R, L being the length of the contact. Where data are in
+    step with elements, so is delta', by half of what b changes in a step, with a mean slope of a/2R. At the
+    other edge p = 0, and elements change p' x dx, with p' = K sqrt(a^2 + l_r^2)/R.
     """
     theory, scene, columns = case.theory, case.theory.scene, case.columns
-    state, R, step = theory.steady_state, theory.radius, case.resolution.time_step
-    K, C, off = scene.foundation.stiffness, scene.foundation.damping, ELEMENTS_AT_AN_EDGE * case.resolution.spacing
+    state, R, fine = theory.steady_state, theory.radius, case.resolution
+    K, C = scene.foundation.stiffness, scene.foundation.damping
     a, l_r = float(state.half_length), float(state.retardation_length)
     L = abs(float(state.trailing_edge - state.leading_edge))
     lever = math.copysign(a / R, l_r) if "normal_force" in columns else 0.0
-    weights = {"friction_force": 1.0} | ({"normal_force": -lever} if lever else {})
-    data, theirs = (sum(by * curves[n] for n, by in weights.items()) for curves in (columns, case.now))
+    weights = {"friction_force": 1.0, **({"normal_force": -lever} if lever else {})}
+    data, theirs = (
+        np.sum([by * curves[n] for n, by in weights.items()], axis=0)
+        for curves in (columns, case.now)
+    )
+    off = ELEMENTS_AT_AN_EDGE * fine.spacing
     arm = off if lever else a
     if lever and not scene.held:
         regained = K * abs(l_r) * L / theory.stiffness(state.depth, a, abs(l_r))
-        arm += abs(a - regained) + 0.25 * a * min(step * C * L / scene.support.mass, 1.0)
+        arm += abs(a - regained) + 0.25 * a * min(fine.time_step * C * L / scene.support.mass, 1.0)
     friction, normal = case.bands["friction_force"], case.bands["normal_force"]
-    lost = (normal.systematic - normal.rounding) * arm + 0.5 * K * math.hypot(a, l_r) * off**2 * L / R
-    smooth = (lost / R + friction.rounding + abs(lever) * normal.rounding)[late].max()
-    sigma = rms(noise(case.time, np.asarray(data - theirs), case.now["friction_force"])[late])
-    allowed = float(smooth) + SURE * sigma / math.sqrt(late.sum())
+    trailing = 0.5 * K * math.hypot(a, l_r) * off * off * L / R
+    smooth = ((normal.systematic - normal.rounding) * arm + trailing) / R
+    smooth = smooth + friction.rounding + abs(lever) * normal.rounding
+    sigma = rms(noise(case.time, data - theirs, case.now["friction_force"])[late])
+    allowed = float(smooth[late].max()) + SURE * sigma / math.sqrt(late.sum())
     allowed += SMALLEST * theory.scales["friction_force"]
     words = f"less F_z a/R in the mean after {case.time[late][0] * 1e3:.4g} ms, theory"
     return Mean(weights, late, float(theirs[late].mean()), case.tolerance * allowed, words)
@@ -300,7 +305,8 @@ def rows_of(case: Case) -> Iterator[Row]:
     theorem = "F12" if scene.drive.rigid else "F22"
     yield Row(SAMPLING, theorem, "s, mean sampling interval", sampling)
     rest = "depth, relative to the static depth"
-    yield Row("initial rest state", "Eq. 40", rest, partial(worst_mean, means_of=initial_rest), ("depth",))
+    start = partial(worst_mean, means_of=initial_rest)
+    yield Row("initial rest state", "Eq. 40", rest, start, ("depth",))
     yield Row("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}", jump)
     missing = "mean force that is missing, relative to the load"
     yield Row("impulse balance", "Eq. 17", missing, balance, ("depth", "normal_force"))

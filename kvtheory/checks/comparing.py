@@ -1,7 +1,7 @@
 """A series compared with theory: the checks, the verdict, and the fault that explains a disagreement best."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -61,7 +61,7 @@ NEEDED = "depth", "normal_force", "friction_force"
 """Columns whose absence is worth a remark."""
 
 
-def _untested(case: Case) -> str:
+def _untested(case: Case, limits: Mapping[str, float | None]) -> str:
     """Say what an error would not show of in these data, and the reference problem in which it would."""
     rows, scene, motion = bench(case), case.theory.scene, case.theory.motion
     powers = {each.symbol: each.powers for each in faults.parameters_of(scene)}
@@ -74,6 +74,8 @@ def _untested(case: Case) -> str:
         ("the damper" if "tau" in powers else "the relaxation times", "high-velocity", times),
         *([] if scene.held else [("the inertia", "heavy-mass", powers["inertia"])]),
     ]
+    if (limits["retardation_time"] or math.inf) < LARGER - 1.0:  # it shows
+        del parts[1]
     untested = [f"{what}, as {LARGER:g} times as much would not show ({problem})"
             for what, problem, by in parts
             if not rows.shows(rows.against(scaled_scene(scene, by, LARGER)))]  # fmt: skip
@@ -126,11 +128,14 @@ def compare(
         checks = judge(case)
     case, checks = _undecided(case, checks)
     text, explanations = diagnose(case, checks)
-    known = verdict(checks)
-    limits, shown = ({}, "") if known == "disagrees" else detectable(case)
+    known, limits = verdict(checks), dict[str, float | None]()
+    if known != "disagrees":
+        longer = case_of.with_longer_steps(case) if known == "agrees" else None
+        limits, shown = detectable(longer or case)  # with what would count as not known
+        text += shown + (_untested(case, limits) if known == "agrees" else "")
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
-        known, checks, text + shown + unused(series), explanations, series.source, tolerance,
+        known, checks, text + unused(series), explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units, limits,
     )  # fmt: skip
 
@@ -201,8 +206,7 @@ def diagnose(
     failed, known = [check for check in checks if check.ok is False], verdict(checks)
     made = sum(check.ok is not None for check in checks)
     if known == "agrees":
-        text = f"All {made} checks that could be made passed."
-        return text + (_untested(case) if families is FAMILIES else ""), ()
+        return f"All {made} checks that could be made passed.", ()
     if known == "cannot tell":
         why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()

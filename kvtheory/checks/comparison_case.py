@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kvtheory.checks.allowances import (
     EDGES,
@@ -311,9 +312,9 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
             yield Explanation(FEW, text, 1.0 if known else READ, True)
     if (drops := _drops(case)).size >= SEVERAL:
         text = (
-            f"the contact is lost for single steps, {drops.size} times from {drops[0] * 1e3:.4g} ms on, and is back "
-            "at once: an element in contact fails its test by rounding, as where its position is once k dt + dt and "
-            "once (k + 1) dt. Compare with a tolerance, or keep contact until p < 0 (Eqs. 23 and 24)"
+            f"the contact is lost for single steps, {drops.size} times from {drops[0] * 1e3:.4g} ms on, and "
+            "is back at once: elements in contact fail its test by rounding, as where x is once at the time "
+            "k dt + dt and once at (k + 1) dt; test with a tolerance, or keep contact until p < 0 (Eq. 23)"
         )
         yield Explanation(DROPS, text, LIKELY, True)
     if case.theory.scene.held or case.resolution.step_known:
@@ -341,8 +342,8 @@ def _drops(case: Case) -> Array:
     forces = [name for name in ("normal_force", "friction_force") if name in case.names]
     with np.errstate(all="ignore"):
         part = np.array([case.columns[name] / case.now[name] for name in forces])
-    lost = (part < LOST).all(axis=0) & bool(forces)
-    if lost.all() or np.nanquantile(np.abs(part[0, ~lost] - 1.0), 0.9) > NEAR:
+    lost: NDArray[np.bool_] = np.all(part < LOST, axis=0)
+    if not forces or lost.all() or np.nanquantile(np.abs(part[0, ~lost] - 1.0), 0.9) > NEAR:
         return np.zeros(0)
     return case.time[1:][lost[1:] & ~lost[:-1]]
 

@@ -1,11 +1,11 @@
 """The smallest errors that a series would have shown, by the allowances that judge it.
 
-An error x of a quantity changes each curve by x times its slope: that of a column is the column itself, that of
-a parameter the change of theory over the change of the parameter. All that is compared with an allowance is
+An error x of a quantity changes each curve by x times its slope: that of a column is the column itself, that
+of a parameter the change of theory over that of the parameter. All that is compared with an allowance is
 linear in the curves, except root mean squares.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from kvtheory.checks.checklist import Mean, balances, initial_rest, lengths, steady_limit
-from kvtheory.checks.comparison_case import Case, NotMade, with_longer_steps
+from kvtheory.checks.comparison_case import Case, NotMade
 from kvtheory.checks.faults import FRICTION, parameters_of
 from kvtheory.checks.hypotheses import VELOCITY, Bench, bench, scaled_scene
 from kvtheory.checks.noise import means
@@ -28,7 +28,7 @@ QUANTITIES = {
     "stiffness": ("K", ("K",)), "retardation_time": ("tau", ("tau", "all tau_i", "tau_1")),
     "mass": ("M", ("M",)), "velocity": ("V", ("V",)), "radius": ("R", ("R",)),
 }  # fmt: skip
-"""Each quantity with its word, and the columns or symbols that stand for it: the first that there is counts."""
+"""Each quantity with its word, and the columns or symbols that stand for it, of which the first counts."""
 STEP, FAR = {False: 0.03, True: 0.2}, 2.0
 """Change of a parameter for slopes, larger where theory is a simulation by elements; and from how many steps
 on a slope is taken again, at the error that was found."""
@@ -45,7 +45,6 @@ def detectable(
 
     It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
     """
-    case = with_longer_steps(case) or case
     rows, bounds = bench(case), _bounds(case, means_of)
     powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
     found: dict[str, float | None] = {}
@@ -61,7 +60,7 @@ def detectable(
             x = _smallest(case, bounds, {way: case.columns[way]})
         found[name] = x if x < MOST else None
         if x < MOST:
-            shown.append(f"{x:.2%} in {word}")
+            shown.append(f"{float(f'{100.0 * x:.2g}'):g}% in {word}")
         elif way:
             unseen.append(word)
     text = f" These data would have shown an error of {', '.join(shown)}." if shown else ""
@@ -70,15 +69,16 @@ def detectable(
 
 
 def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
-    """Return the slope of each curve by a parameter; a velocity that the data hold would be as wrong as it."""
+    """Return the slope of each curve by a parameter; a velocity in the data would be as wrong as it is."""
     scene, times = rows.theory.scene, None
     if rows.series.curve and VELOCITY in powers:
         times = rows.time * (1.0 + step)
     else:
         scene = scaled_scene(scene, powers, 1.0 + step)
-    pair, found = rows.against(scene, times), {}
-    given = ("velocity", "sliding_velocity")[: 1 + scene.drive.rigid]
-    for name in rows.names if pair else ():
+    if (pair := rows.against(scene, times)) is None:
+        return {}
+    given, found = ("velocity", "sliding_velocity")[: 1 + scene.drive.rigid], {}
+    for name in rows.names:
         change = pair[1][name] - rows.now[name]
         seen = (np.abs(change) > TRIAL_RTOL * rows.theory.scales[name]) & (name not in given)
         found[name] = np.interp(case.time, rows.time, np.where(seen, change, 0.0) / step)
@@ -90,23 +90,30 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
     parts: list[tuple[Callable[[Curves], Any], Any, Any]] = []
     for name in case.names:
         for n in lengths(case):
-            band, allowed = case.bands[name].averaged(n), case.limit(name, n) * case.theory.scales[name]
+            band = case.bands[name].averaged(n)
+            allowed = case.limit(name, n) * case.theory.scales[name]
             averages = partial(lambda curves, name, n: means(curves[name], n), name=name, n=n)
             parts.append((averages, band.low - allowed, band.high + allowed))
     for of in means_of:
-        with suppress(NotMade, KeyError):
-            parts += [(each.off, -each.allowed, each.allowed) for each in of(case)]
+        with suppress(NotMade):
+            made = (each for each in of(case) if each.weights.keys() <= case.columns.keys())
+            parts += [(each.off, -each.allowed, each.allowed) for each in made]
     support, depth_0 = case.theory.scene.support, case.theory.static.depth
-    if not (case.series.curve or case.theory.scene.held) and {"depth", "normal_force"} <= {*case.names}:
+    free = not (case.series.curve or case.theory.scene.held)
+    if free and {"depth", "normal_force"} <= {*case.names}:
         for window, limit in balances(case):
             missing = partial(window.missing_force, support=support, depth_0=depth_0)
             parts.append((missing, -limit, limit))
 
-    def values(curves: Curves) -> Array:
-        return np.hstack([part(curves) for part, _, _ in parts])
+    functions, low, high = zip(*parts, strict=True)
 
-    low, high = (np.hstack([part[k] for part in parts]) for k in (1, 2))
-    return values, values(case.columns), low, high
+    def joined(values: Iterable[Any]) -> Array:
+        return np.concatenate([np.atleast_1d(each) for each in values])
+
+    def values(curves: Curves) -> Array:
+        return joined(function(curves) for function in functions)
+
+    return values, values(case.columns), joined(low), joined(high)
 
 
 def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
@@ -120,7 +127,7 @@ def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
     for sign in (1.0, -1.0):
         with np.errstate(all="ignore"):
             room = np.where(sign * slope > 0.0, high - here, here - low) / np.abs(slope)
-        x = max(float(np.nanmin(room, initial=np.inf)), 0.0)
+        x = max(float(np.nanmin(room[slope != 0.0], initial=np.inf)), 0.0)
         for name, n in product(slopes, lengths(case)):
             left = partial(_beyond, case, name, n, sign * slopes[name])
             if x > 0.0 and left(end := min(x, MOST)) > 0.0:

@@ -59,11 +59,10 @@ class Comparison(Exported):
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
     ``"cannot tell"`` if only the check of the sampling, or of the phase of a cycle, failed. `diagnosis`
-    explains it in words; `explanations` are possible faults, the most likely first. `detectable` is the smallest
-    relative error of each quantity that data which do not disagree would have shown, whatever its sign; None if
-    no error up to 100 % would, or if scene and data lack the quantity. `series` holds the data
+    explains it in words; `explanations` are possible faults, the most likely first. `series` holds the data
     as arrays in SI by name, `time` first (for a curve, `velocity`); `theory`, and the `allowed` difference,
-    are at the same times.
+    are at the same times. `detectable` is the smallest relative error of each quantity that data which do not
+    disagree would have shown; None if none up to 100 % would, or if scene and data lack the quantity.
     """
 
     verdict: str
