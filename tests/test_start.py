@@ -332,6 +332,16 @@ def test_ground_that_is_left_where_the_rate_of_the_depth_jumps_is_kept():
     assert motion.compression(xi, 0.62) == pytest.approx(known.compression(xi, 0.62), abs=1e-8)
 
 
+def test_energy_is_kept_where_a_contact_opens_beside_the_place_where_it_closed():
+    """It covers that place, and both parts of its trace, in its first step."""
+    drive = BaseMotion.constant(1e-5, end=0.8).holding(
+        [(0.0, 1.4), (0.1, -0.3), (0.6, -0.3), (0.8, 0.9)]
+    )
+    start = Beginning(*drive.depths[0], 0.0)
+    motion = trajectory.solve(drive, [(2.0, 0.6)], (1.0, math.inf), 0.8, 1e-7, start=start)
+    assert motion.ledger(0.8).balance == pytest.approx(0.0, abs=1e-10)
+
+
 @pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.1), ARMS], ids=["damper", "arms"])
 @pytest.mark.parametrize("velocity", [0.0, 0.05])
 def test_a_contact_that_is_opened_and_closed_agrees_with_elements_and_keeps_energy(law, velocity):
