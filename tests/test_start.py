@@ -232,6 +232,21 @@ def test_solve_and_compare_know_the_start():
     assert rest.verdict == "disagrees"
 
 
+def test_solve_returns_what_a_drop_or_coasting_is_asked_for():
+    scene = kv.problem("drop")
+    found = kv.solve(scene, quantity=["restitution", "contact_time"], rtol=1e-4)
+    known = kv.transient(scene, rtol=1e-9, certify=False)
+    for name in ("restitution", "contact_time"):
+        error = found.certificate.relative_error[name]
+        assert error <= 1e-4
+        assert found.values[name] == pytest.approx(getattr(known, name), rel=error)
+    assert np.isnan(kv.solve(scene, quantity="stopping_time").stopping_time)
+    coasting = kv.solve(kv.problem("coasting"), quantity=["stopping_time", "stopping_distance"])
+    assert coasting.stopping_time == pytest.approx(0.11470373, rel=2e-4)
+    with pytest.raises(ValueError, match="is of a whole motion"):
+        kv.solve(scene, quantity=["restitution", "depth"])
+
+
 @pytest.mark.parametrize(
     ("parts", "message"),
     [

@@ -14,7 +14,7 @@ from kvtheory.api._transient import transient
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
-from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
+from kvtheory.results.table import LANDMARKS, SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.capabilities import lacks_stability
 from kvtheory.scene.mistakes import Problems, nearest
@@ -48,13 +48,14 @@ def solve(
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
         in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
-        load and depth.
+        load and depth; or ``restitution`` and ``contact_time`` of a drop, ``stopping_time`` and
+        ``stopping_distance`` of an indenter that coasts, NaN where they do not occur.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
     rtol
-        Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
-        relative to the static depth, half length and load.
+        Largest error allowed, from 1e-14 to 1: for a series relative to the static depth, half length and
+        load; for all other quantities relative to their value.
     over_time
         Solve for a time series even without `at`, at times chosen by the model.
     progress
@@ -97,9 +98,10 @@ def solve(
     from kvtheory.ladder import climbing, series  # these import the models over time
 
     scene = one_scene(scene, "`solve`")
-    over_time = over_time or at is not None
-    problems = Problems()
+    over_time, problems = over_time or at is not None, Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
+    if quantity and not over_time and not set(quantity) - set(LANDMARKS):
+        over_time, units = True, {name: LANDMARKS[name] for name in quantity}
     names = _names(quantity, units, over_time, problems)
     with problems.catching("`at`", at):
         times_of(scene, at)
@@ -137,12 +139,14 @@ def _names(
     for name in names:
         if name in units:
             continue
-        if over_time and name in SPRING_UNITS:
+        if name in LANDMARKS:
+            what = "is of a whole motion; ask for it without others, and without times"
+        elif over_time and name in SPRING_UNITS:
             what = "needs drive.stiffness, of a spring"
         elif name in other:
             hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
-            what = nearest(name, units)
+            what = nearest(name, (*units, *LANDMARKS))
         problems.add("`quantity`", name, what)
     return tuple(dict.fromkeys(names))

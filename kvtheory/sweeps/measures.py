@@ -32,7 +32,7 @@ from kvtheory.models.continuum.solved_scene import (
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.records import readable
 from kvtheory.results.errors import AT_REST
-from kvtheory.results.table import QUANTITIES
+from kvtheory.results.table import LANDMARKS, QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
@@ -40,7 +40,6 @@ from kvtheory.sweeps.plan import (
     CYCLE,
     EVENTS,
     FAILS,
-    LANDMARKS,
     UNSETTLED,
     Array,
     Column,

@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.energy import Ledger
 from kvtheory.models.continuum.error_estimate import (
+    FLOOR,
     LOOSEST,
+    MARGIN,
     NOT_ASKED,
     NOTHING,
     TIGHTEST,
@@ -326,4 +328,14 @@ def certified(
             other = solved(1, *each)
             break
     s = None if times is None else fine.scaled(time)
-    return fine, time, method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)
+    errors = method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)
+    if other is None or not fine.landmarks:
+        return fine, time, errors
+    beside = replace(fine, motion=other).landmarks
+    marks = {
+        name: max(MARGIN * abs(beside.get(name, math.inf) / value - 1.0), FLOOR * rtol)
+        for name, value in fine.landmarks.items()
+    }
+    statement = f"{errors.statement}; those of {' and '.join(marks)} are relative to their value"
+    marks = {**errors.relative_error, **marks}
+    return fine, time, replace(errors, statement=statement, relative_error=marks)
