@@ -62,6 +62,9 @@ def test_both_solvers_agree_and_the_energy_of_the_start_is_in_the_ledger(name):
         books = motion.ledger(times)
         given = books.stored_at_rest + books.of_start
         assert np.abs(books.balance).max() < 1e-6 * (np.abs(given) + np.abs(books.work)).max()
+        found = motion.impulses(times)
+        assert np.abs(found.balance).max() < 1e-6 * (1.0 + np.abs(found.momentum).max())
+        assert found.of_start[-1] == 0.4 * start[1]
         first = motion.states([0.0])[0]
         assert (first["depth"], first["depth_rate"]) == pytest.approx(start[:2], abs=1e-12)
         assert first["sliding_velocity"] == pytest.approx(4.0 - start[2], abs=1e-12)

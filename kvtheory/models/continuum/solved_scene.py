@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
-from kvtheory.models.continuum.energy import Ledger
+from kvtheory.models.continuum.energy import Impulses, Ledger
 from kvtheory.models.continuum.error_estimate import (
     FLOOR,
     LOOSEST,
@@ -170,6 +170,11 @@ class SolvedScene:
         """Return the energy ledger in J/m at the times (s)."""
         books: Ledger = self.motion.ledger(self.scaled(time))
         return books.scaled(self.units.energy)
+
+    def impulse(self, time: ArrayLike) -> Impulses:
+        """Return the vertical impulses in N s/m until the times (s)."""
+        found: Impulses = self.motion.impulses(self.scaled(time))
+        return found.scaled(self.units.load * self.units.time)
 
 
 def transient(
