@@ -215,9 +215,9 @@ class _Motions:
         self.tell(index, errors.relative_error, errors.statement)
 
     def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
-        """Keep the errors of scenes, and what the certificate states of them."""
-        for name, error in errors.items():
-            self.measured.errors[name][where] = error
+        """Keep the errors of scenes, but for landmarks, and what the certificate states of them."""
+        for name in errors.keys() - LANDMARKS.keys():
+            self.measured.errors[name][where] = errors[name]
         self.measured.statements.add(relative(statement))
 
     def values(self, column: Column) -> Any:
