@@ -62,6 +62,9 @@ def test_both_solvers_agree_and_the_energy_of_the_start_is_in_the_ledger(name):
         books = motion.ledger(times)
         given = books.stored_at_rest + books.of_start
         assert np.abs(books.balance).max() < 1e-6 * (np.abs(given) + np.abs(books.work)).max()
+        found = motion.impulses(times)
+        assert np.abs(found.balance).max() < 1e-6 * (1.0 + np.abs(found.momentum).max())
+        assert found.of_start[-1] == 0.4 * start[1]
         first = motion.states([0.0])[0]
         assert (first["depth"], first["depth_rate"]) == pytest.approx(start[:2], abs=1e-12)
         assert first["sliding_velocity"] == pytest.approx(4.0 - start[2], abs=1e-12)
@@ -232,6 +235,21 @@ def test_solve_and_compare_know_the_start():
     assert rest.verdict == "disagrees"
 
 
+def test_solve_returns_what_a_drop_or_coasting_is_asked_for():
+    scene = kv.problem("drop")
+    found = kv.solve(scene, quantity=["restitution", "contact_time"], rtol=1e-4)
+    known = kv.transient(scene, rtol=1e-9, certify=False)
+    for name in ("restitution", "contact_time"):
+        error = found.certificate.relative_error[name]
+        assert error <= 1e-4
+        assert found.values[name] == pytest.approx(getattr(known, name), rel=error)
+    assert np.isnan(kv.solve(scene, quantity="stopping_time").stopping_time)
+    coasting = kv.solve(kv.problem("coasting"), quantity=["stopping_time", "stopping_distance"])
+    assert coasting.stopping_time == pytest.approx(0.11470373, rel=2e-4)
+    with pytest.raises(ValueError, match="is of a whole motion"):
+        kv.solve(scene, quantity=["restitution", "depth"])
+
+
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
@@ -330,6 +348,16 @@ def test_ground_that_is_left_where_the_rate_of_the_depth_jumps_is_kept():
     assert motion.ledger(0.62).balance == pytest.approx(0.0, abs=1e-7)
     xi = np.linspace(-1.5, 1.5, 7)
     assert motion.compression(xi, 0.62) == pytest.approx(known.compression(xi, 0.62), abs=1e-8)
+
+
+def test_energy_is_kept_where_a_contact_opens_beside_the_place_where_it_closed():
+    """It covers that place, and both parts of its trace, in its first step."""
+    drive = BaseMotion.constant(1e-5, end=0.8).holding(
+        [(0.0, 1.4), (0.1, -0.3), (0.6, -0.3), (0.8, 0.9)]
+    )
+    start = Beginning(*drive.depths[0], 0.0)
+    motion = trajectory.solve(drive, [(2.0, 0.6)], (1.0, math.inf), 0.8, 1e-7, start=start)
+    assert motion.ledger(0.8).balance == pytest.approx(0.0, abs=1e-10)
 
 
 @pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.1), ARMS], ids=["damper", "arms"])

@@ -15,7 +15,7 @@ from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.cycles import CYCLE
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
-from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
+from kvtheory.results.table import LANDMARKS, SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.capabilities import lacks_stability
 from kvtheory.scene.mistakes import Problems, nearest
@@ -52,13 +52,15 @@ def solve(
         in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
         load and depth. On a spring in the drive also of the cycle in which the run ends, as in `sweep`:
         ``stick_slip_amplitude`` (0 of steady sliding), ``stick_slip_period`` (NaN of it), and
-        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``.
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``; or ``restitution`` and
+        ``contact_time`` of a drop, ``stopping_time`` and ``stopping_distance`` of an indenter that coasts, NaN
+        where they do not occur.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
     rtol
-        Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
-        relative to the static depth, half length and load; for a cycle to its amplitude, period and ranges.
+        Largest error allowed, from 1e-14 to 1: for a series relative to the static depth, half length and
+        load; for a cycle to its amplitude, period and ranges; for all other quantities to their value.
     over_time
         Solve for a time series even without `at`, at times chosen by the model.
     progress
@@ -101,14 +103,15 @@ def solve(
     from kvtheory.ladder import climbing, cycles, series  # these import the models over time
 
     scene = one_scene(scene, "`solve`")
-    over_time = over_time or at is not None
-    problems = Problems()
+    over_time, problems = over_time or at is not None, Problems()
     units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
     of_cycle = not over_time and bool(CYCLE.keys() & (quantity or ()))
     if of_cycle:
         units = CYCLE
         if scene.drive.rigid or scene.drive.coasts:
             problems.add("`quantity`", quantity[0], SPRUNG)
+    if quantity and not over_time and not set(quantity) - set(LANDMARKS):
+        over_time, units = True, {name: LANDMARKS[name] for name in quantity}
     names = _names(quantity, units, over_time, problems)
     with problems.catching("`at`", at):
         times_of(scene, at)
@@ -146,7 +149,9 @@ def _names(
     for name in names:
         if name in units:
             continue
-        if over_time and name in SPRING_UNITS:
+        if name in LANDMARKS:
+            what = "is of a whole motion; ask for it without others, and without times"
+        elif over_time and name in SPRING_UNITS:
             what = SPRUNG
         elif over_time and name in CYCLE:
             what = "belongs to the cycle in which the whole motion ends; leave out the times"
@@ -156,6 +161,6 @@ def _names(
             hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
-            what = nearest(name, units)
+            what = nearest(name, (*units, *LANDMARKS))
         problems.add("`quantity`", name, what)
     return tuple(dict.fromkeys(names))

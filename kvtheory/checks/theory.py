@@ -153,8 +153,8 @@ class Theory:
     def steady_state(self) -> Any:
         """Steady sliding at the last velocity and given depth."""
         support = Fixed(self.scene.depths[-1][1]) if self.scene.depths else self.scene.support
-        last = {"support": support, "drive": Drive(self.final_velocity), "start": REST}
-        return self.methods.steady(replace(self.scene, **last))
+        drive = Drive(self.final_velocity)
+        return self.methods.steady(replace(self.scene, support=support, drive=drive, start=REST))
 
     @cached_property
     def rates(self) -> Rates | None:

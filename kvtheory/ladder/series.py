@@ -21,8 +21,8 @@ from kvtheory.results import (
     SteadyState,
     Transient,
 )
-from kvtheory.results.errors import AT_REST
-from kvtheory.results.table import scales
+from kvtheory.results.errors import AT_REST, THE_TRUTH
+from kvtheory.results.table import LANDMARKS, scales
 from kvtheory.scene.capabilities import (
     lacks_arms,
     lacks_closed_form,
@@ -248,6 +248,8 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
     The difference from the previous, coarser run, divided by the ratio of elements, counts too.
     """
     need(lacks_arms(scene))
+    marks = " and ".join(name for name in request.quantities if name in LANDMARKS)
+    need(f"the error of {marks} by elements is not known; ask `elements`" if marks else "")
 
     def run() -> Answer:
         from kvtheory.models.elements.model import Model  # slow to import
@@ -329,8 +331,18 @@ def _picked(result: Any, request: Request) -> Answer:
 
 
 def _answer(series: Any, own: Certificate, request: Request, result: Any) -> Answer:
-    """Return the series, NaN where a quantity was not requested, and the errors of those that were."""
+    """Return the series, NaN where a quantity was not requested, and the errors of those that were.
+
+    A landmark that does not occur is NaN too.
+    """
     known = {**own.relative_error, **dict.fromkeys(GIVEN, 0.0)}
+    if marks := {name: series.get(name) for name in request.units if name in LANDMARKS}:
+        errors = {
+            name: 0.0 if v is None else known.get(name, math.inf) for name, v in marks.items()
+        }
+        found = {name: math.nan if v is None else v for name, v in marks.items()}
+        own = replace(own, relative_error=errors, relative_to=THE_TRUTH)
+        return Answer(found, own, result)
     wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
     source = {name: name if name in series else ON_RIGID[name] for name in wanted}
     values = {

@@ -66,6 +66,10 @@ STABILITY_UNITS = _units(
 SPRING_UNITS = _units("sliding_velocity spring_force")
 """The additional quantities of a time series if the drive has a spring."""
 SERIES_UNITS = TRANSIENT_UNITS | SPRING_UNITS
+LANDMARKS = {
+    "restitution": "1", "contact_time": "s", "stopping_time": "s", "stopping_distance": "m",
+}  # fmt: skip
+"""Single values of a drop, and of an indenter that coasts, and their units."""
 
 SHOWN_UNITS = {
     "1": ("", 1.0),

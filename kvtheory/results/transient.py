@@ -119,6 +119,24 @@ class Transient(TimeSeries):
         """
         return self.solution.energy(time)
 
+    @checked(time=instants)
+    def impulse(self, time: Any) -> Any:
+        """Return the vertical impulses on the indenter until one or several times (s), in N s/m, downward.
+
+        The momentum at the start, M d(delta)/dt (`of_start`), and the impulses since then of the weight, of
+        the spring of the support and of the foundation, -int F_z dt, make the `momentum`; `balance` is the
+        residual (Eq. 17). A fixed indenter has none: ValueError.
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> scene = kv.Scene(start=kv.Start(gap="1 mm", depth_rate="0.1 m/s"), run=kv.Run(0.05))
+        >>> found = kv.transient(scene, rtol=1e-8).impulse(0.05)
+        >>> f"{found.of_start:.1f} {found.of_weight:.1f} {abs(found.balance) < 1e-4}"
+        '100.0 490.3 True'
+        """
+        return self.solution.impulse(time)
+
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class SprungTransient(Transient):

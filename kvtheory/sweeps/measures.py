@@ -34,14 +34,13 @@ from kvtheory.models.steady.stable_sliding import ended
 from kvtheory.records import readable
 from kvtheory.results.cycles import CYCLE, cycle_statement
 from kvtheory.results.errors import AT_REST
-from kvtheory.results.table import QUANTITIES
+from kvtheory.results.table import LANDMARKS, QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import (
     EVENTS,
     FAILS,
-    LANDMARKS,
     NO_CYCLE,
     UNSETTLED,
     Array,
@@ -220,9 +219,9 @@ class _Motions:
         self.tell(index, errors.relative_error, errors.statement)
 
     def tell(self, where: Any, errors: Mapping[str, Any], statement: str) -> None:
-        """Keep the errors of scenes, and what the certificate states of them."""
-        for name, error in errors.items():
-            self.measured.errors[name][where] = error
+        """Keep the errors of scenes, but for landmarks, and what the certificate states of them."""
+        for name in errors.keys() - LANDMARKS.keys():
+            self.measured.errors[name][where] = errors[name]
         self.measured.statements.add(relative(statement))
 
     def values(self, column: Column) -> Any:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.cycles import CYCLE
 from kvtheory.results.sweep import Axis
+from kvtheory.results.table import LANDMARKS
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.foundations import BEYOND, EXTRAPOLATED
 from kvtheory.scene.indenters import Indenter, Parabola
@@ -48,10 +49,6 @@ STABLE = "stable"
 """Whether steady sliding is stable on the spring in the drive: 1 or 0."""
 EVENTS = "events"
 """The only column of text (JSON)."""
-LANDMARKS = {
-    "restitution": "1", "contact_time": "s", "stopping_time": "s", "stopping_distance": "m",
-}  # fmt: skip
-"""Single values of a drop, and of an indenter that coasts."""
 WHOLE = {
     "peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", **LANDMARKS, EVENTS: "",
 }  # fmt: skip

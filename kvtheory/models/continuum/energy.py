@@ -58,6 +58,31 @@ class Ledger:
         return Ledger(*(unit * entry for entry in astuple(self)))
 
 
+@dataclass(frozen=True)
+class Impulses:
+    """Downward impulses on the indenter until one time, or arrays of them: in units of W_0 tau, or in N s/m.
+
+    Its momentum at the start (`of_start`), and the impulses of its weight, of the spring of its support and
+    of the foundation since then, make its present `momentum`.
+    """
+
+    of_start: Any
+    of_weight: Any
+    of_spring: Any
+    of_foundation: Any
+    momentum: Any
+
+    @property
+    def balance(self) -> Any:
+        """Impulses given less the momentum: zero, but for the error of the solution."""
+        *given, momentum = astuple(self)
+        return sum(given) - momentum
+
+    def scaled(self, unit: float) -> "Impulses":
+        """Return the impulses multiplied by `unit`."""
+        return Impulses(*(unit * entry for entry in astuple(self)))
+
+
 MOVING = "depth", "depth_rate", "offset", "offset_rate"
 """What of a state has energy itself."""
 
@@ -98,6 +123,28 @@ def ledger(motion: Any, s: ArrayLike) -> Ledger:
     stored = inside, 0.375 * relaxing(motion, flat.tolist(), 2, memory)
     moving = np.array([found[name] for name in MOVING])
     return entries(given, moving, sums, stored, times.shape)
+
+
+def impulses(motion: Any, states: Callable[[Array], Any], s: ArrayLike) -> Impulses:
+    """Return the impulses at the times `s`, in their shape; `states` returns those of the motion at times.
+
+    eps d' = eps d'_0 + int 1 - kappa (d - 1) - f_z ds.
+    """
+    given = motion.given
+    if given.fixed:
+        raise ValueError("a fixed indenter has no momentum: what holds it takes every impulse")
+    times = np.asarray(s, dtype=float)
+    flat = times.reshape(-1)
+
+    def forces(_: Any, t: Array) -> Array:
+        found = states(t.reshape(-1))
+        both = found["normal_force"], found["depth"] - 1.0
+        return np.stack(both, axis=-1).reshape(*t.shape, 2)
+
+    lift, sunk = accumulated(lambda low, high: integrals(forces, low, high), motion.natural, flat)
+    begun = np.full(flat.shape, given.eps * given.start_rate)
+    found = begun, flat, -given.kappa * sunk, -lift, given.eps * states(flat)["depth_rate"]
+    return Impulses(*(entry.reshape(times.shape)[()] for entry in found))
 
 
 def accumulated(integrated: Callable[[Array, Array], Array], starts: ArrayLike, s: Array) -> Array:

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import maxima
-from kvtheory.models.continuum.energy import Ledger
+from kvtheory.models.continuum.energy import Impulses, Ledger
 from kvtheory.models.continuum.error_estimate import (
+    FLOOR,
     LOOSEST,
     MARGIN,
     NOT_ASKED,
@@ -208,6 +209,11 @@ class SolvedScene:
         books: Ledger = self.motion.ledger(self.scaled(time))
         return books.scaled(self.units.energy)
 
+    def impulse(self, time: ArrayLike) -> Impulses:
+        """Return the vertical impulses in N s/m until the times (s)."""
+        found: Impulses = self.motion.impulses(self.scaled(time))
+        return found.scaled(self.units.load * self.units.time)
+
 
 def transient(
     scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
@@ -366,4 +372,14 @@ def certified(
             break
     s = None if times is None else fine.scaled(time)
     fine = replace(fine, other=other)
-    return fine, time, method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)
+    errors = method.certificate(fine, other, s, NOTHING if certify else NOT_ASKED)
+    if other is None or not fine.landmarks:
+        return fine, time, errors
+    beside = replace(fine, motion=other).landmarks
+    marks = {
+        name: max(MARGIN * abs(beside.get(name, math.inf) / value - 1.0), FLOOR * rtol)
+        for name, value in fine.landmarks.items()
+    }
+    statement = f"{errors.statement}; those of {' and '.join(marks)} are relative to their value"
+    marks = {**errors.relative_error, **marks}
+    return fine, time, replace(errors, statement=statement, relative_error=marks)

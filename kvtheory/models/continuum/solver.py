@@ -197,6 +197,10 @@ class Trajectory(Finished):
         """Return the energy ledger at times."""
         return energy.ledger(self, s)
 
+    def impulses(self, s: ArrayLike) -> energy.Impulses:
+        """Return the vertical impulses until the times."""
+        return energy.impulses(self, self.states, s)
+
     def deviations(self, other: "Trajectory", times: NDArray[np.float64] | None = None) -> Any:
         """Return the `deviation` of another solution at the `times`, by default the natural ones."""
         if self.compiled != other.compiled:

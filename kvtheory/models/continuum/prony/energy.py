@@ -318,7 +318,8 @@ class Ground:
             segment = self.segments[number[at]]
             X, moves, _, _ = self.place(k, s[at])
             edge = segment["edge"]
-            sigma = self.instants(edge, X, segment["a"], np.minimum(segment["b"], s[at]))
+            last = np.nextafter(np.minimum(segment["b"], s[at]), 0.0)  # at b a flight may begin
+            sigma = self.instants(edge, X, segment["a"], last)
             _, _, then, theta = self.place(edge, sigma)
             u = self._depth(then, theta) - (X + self.slid(then, theta, sigma)[0]) ** 2
             modes = self._modes(self._stress(then, edge, theta), u)

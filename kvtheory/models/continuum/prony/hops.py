@@ -304,6 +304,7 @@ def open_contact(run: Run, span: float) -> bool:
         side.state = TOUCHING
         while c_.at_far_end(run, k, at, xi) < 0.0:  # it opens over more than one segment
             aim(run, k, int(run.segments[side.segment].next))
+        run.steps[now.steps].sides[k].segment = side.segment  # over this one most of all
         place, index, sigma = c_.edge_at(run, k, at, xi, side.index, side.sigma)
         if not abs(place) < math.inf:
             return False

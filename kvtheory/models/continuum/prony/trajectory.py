@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from contextlib import nullcontext
-from functools import cached_property
+from functools import cached_property, partial
 from time import thread_time
 from typing import Any
 
@@ -15,7 +15,7 @@ from kvtheory.models.continuum import compiled, maxima
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.compiled import Finished, Solver, finished
-from kvtheory.models.continuum.energy import Ledger
+from kvtheory.models.continuum.energy import Impulses, Ledger, impulses
 from kvtheory.models.continuum.evaluation import MEASURED, STATE
 from kvtheory.models.continuum.maxima import EXTREME
 from kvtheory.models.continuum.prony import (
@@ -130,6 +130,10 @@ class Trajectory(Finished):
     def ledger(self, s: ArrayLike) -> Ledger:
         """Return the energy ledger at times."""
         return energy.ledger(self, s)
+
+    def impulses(self, s: ArrayLike) -> Impulses:
+        """Return the vertical impulses until the times."""
+        return impulses(self, partial(self.states, peaks=False), s)
 
     @property
     def events(self) -> tuple[ScaledEvent, ...]:
