@@ -52,9 +52,9 @@ def solve(
         in `Transient` or `SprungTransient`; without it, all of them, of steady sliding on a layer friction,
         load and depth. On a spring in the drive also of the cycle in which the run ends, as in `sweep`:
         ``stick_slip_amplitude`` (0 of steady sliding), ``stick_slip_period`` (NaN of it), and
-        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``; or ``restitution`` and
-        ``contact_time`` of a drop, ``stopping_time`` and ``stopping_distance`` of an indenter that coasts, NaN
-        where they do not occur.
+        ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``; or
+        ``restitution`` and ``contact_time`` of a drop, ``stopping_time`` and ``stopping_distance`` of an
+        indenter that coasts, NaN where they do not occur.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.
