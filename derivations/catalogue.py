@@ -69,6 +69,7 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
         keep(name, _digests()[name], finished(each.label for each in derived))
     finally:
         if collects:
+            gc.freeze()  # what was made stays in SymPy's caches
             gc.enable()
     return derived
 

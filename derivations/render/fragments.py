@@ -24,7 +24,7 @@ from .text import (
     sentence,
 )
 
-LINES = {1: 27.0, 2: 15.5}
+LINES = {1: 27.0, 2: 16.5}
 """Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt, and what its
 second column does, by the number of columns."""
 
