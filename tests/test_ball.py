@@ -283,7 +283,8 @@ def test_every_output_is_in_whole_units(tmp_path):
     solved = kv.solve(BALL, quantity="load")
     assert (solved.model, solved.units["load"]) == ("asymptote", "N")  # it is the weight
     assert "load 9.80665 N" in repr(solved)
-    assert set(state.as_dict()) == {*STEADY_UNITS, "stable", "notes", "model", "certificate"}
+    others = {"stable", "notes", "model", "certificate", "pressure_field"}
+    assert set(state.as_dict()) == {*STEADY_UNITS, *others}
 
 
 @pytest.mark.parametrize("worst", ["load", "friction"])

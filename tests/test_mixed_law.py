@@ -376,9 +376,9 @@ def test_a_motion_is_held_against_elements():
 
 
 def test_the_explorer_has_a_slider_of_a_damper_beside_arms_unless_it_is_zero():
-    assert '"foundation.damping": "' in explorer_page(scene())
+    assert '"foundation.damping":"' in explorer_page(scene())
     plain = explorer_page(scene(foundation=replace(MIXED, damping=0.0)))
-    assert '"foundation.damping": "' not in plain
+    assert '"foundation.damping":"' not in plain
 
 
 def test_closed_forms_of_kelvin_voigt_refuse_a_damper_beside_arms():

