@@ -162,7 +162,7 @@ def paper_command(name: str) -> None:
     )
 
     @chart.command(
-        name, help=f"{PAPER[name]}\n\n{whose}",
+        name, help=f"{PAPER[name]}\n\n{whose}", short_help=PAPER[name],
         example=f"kvtheory chart {name} my-scene.toml --style mine.mplstyle -o {name}.pdf",
     )  # fmt: skip
     @console.scene_options
