@@ -10,6 +10,8 @@ from kvtheory.charts.work_precision import Chart, Point, Series
 from kvtheory.scene.tables import read_text
 
 COLUMNS = "method", "seconds", "error"
+LEAST, GREATEST, MOST_RUNS = 1e-30, 1e30, 1000
+"""Range of times (s) and errors, and number of runs, beyond which a chart cannot be drawn."""
 Runs = dict[str, list[tuple[float, float]]]
 """Time (s) and achieved error of each run, by method."""
 
@@ -31,6 +33,8 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
             f"{where}: the first line has no column {missing[0]}; expected "
             f'"{",".join(COLUMNS)}" with commas between, and below it a row for each run'
         )
+    if len(set(head)) < len(head):
+        raise ValueError(f"{where}: the first line has a column twice")
     found: Runs = {}
     for number, cells in enumerate(lines[1:], start=2):
         row = dict(zip(head, map(str.strip, cells), strict=False))
@@ -40,7 +44,7 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
                 raise ValueError(
                     f"{here}: {len(cells)} cells below {len(head)} names; quote a name with commas"
                 )
-            if row["method"] in ("", *taken):
+            if row["method"] in ("", *taken) or not row["method"].isprintable():
                 raise ValueError(
                     f'{here}: method "{row["method"]}": expected a name that no method of the chart has'
                 )
@@ -48,6 +52,8 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
             found.setdefault(row["method"], []).append((values[0], values[1]))
     if not 1 <= len(found) <= most:
         raise ValueError(f"{where}: has {len(found)} methods; expected 1 to {most}")
+    if (runs := sum(map(len, found.values()))) > MOST_RUNS:
+        raise ValueError(f"{where}: has {runs} runs; expected at most {MOST_RUNS}")
     return found
 
 
@@ -56,10 +62,12 @@ def _number(where: str, text: str, name: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if 0.0 < value < math.inf or (value == 0.0 and name == "error"):
+    if LEAST <= value <= GREATEST or (value == 0.0 and name == "error"):
         return value
     least = "of at least" if name == "error" else "above"
-    raise ValueError(f'{where} "{text}": expected a number {least} 0, with a decimal point')
+    raise ValueError(
+        f'{where} "{text}": expected a number {least} 0 ({LEAST:g} to {GREATEST:g}), with a decimal point'
+    )
 
 
 def with_runs(chart: Chart, runs: Runs, error: str) -> Chart:
