@@ -60,6 +60,23 @@ def test_a_relaxation_function_is_met_within_the_range(G):
     assert relaxed == pytest.approx(exact, rel=0.021)
 
 
+def peak(width, beside):
+    return lambda tau: beside + 4e9 * math.exp(-0.5 * (math.log10(tau / 1.0234e-2) / width) ** 2)
+
+
+def test_a_narrow_peak_of_a_spectrum_is_within_the_bound_or_refused():
+    H = peak(0.005, 1e8)
+    found = kv.GeneralizedMaxwell.from_spectrum(1e9, H, rtol=0.05, over=OVER)
+    tau, t = np.logspace(-8, 3, 110_001), np.geomspace(*OVER, 7)
+    exact = (np.exp(-t[:, None] / tau) / tau) @ [H(x) for x in tau] * np.log(tau[1] / tau[0])
+    slopes = sum(
+        arm.stiffness / arm.relaxation_time * np.exp(-t / arm.relaxation_time) for arm in found.arms
+    )
+    assert np.abs(slopes / exact - 1.0).max() < found.deviation
+    with pytest.raises(ValueError, match="`H` changes too fast"):
+        kv.GeneralizedMaxwell.from_spectrum(1e9, peak(0.001, 0.0), rtol=0.05, over=OVER)
+
+
 def test_one_arm_is_found_wherever_its_time_is():
     found = kv.GeneralizedMaxwell.from_relaxation(
         lambda t: 1e9 + 3e9 * math.exp(-t / 1e-2), over=OVER

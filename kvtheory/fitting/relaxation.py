@@ -24,7 +24,7 @@ NODES, POWER = 64, 8
 """Nodes of the integrals from t = 0, in the root of this power of t, as a function may be infinite there."""
 GREATEST = 1e100
 """Largest value of a function, in N/m^3, with which all sums are finite."""
-DENSE, FAR = 32, 3.0
+DENSE, FAR = 256, 3.0
 """Times per decade at which a spectrum is summed, and decades beyond the range."""
 
 
@@ -85,14 +85,21 @@ def arms_of_spectrum(
 ) -> tuple[Series, float]:
     """Return the fewest arms for a spectrum, G - K = int H(tau) e^(-t/tau) d ln tau, and eps."""
     low, high = np.log10(over) + FAR * np.array([-1.0, 1.0])
-    tau = np.logspace(low, high, int((high - low) * DENSE) + 1)
+    tau = np.logspace(low, high, 2 * int((high - low) * DENSE / 2.0) + 1)
     size = np.array([value_of("H", H, each) for each in tau.tolist()]) * np.log(tau[1] / tau[0])
     if not ((size >= 0.0).all() and size.any()):
         raise ValueError("`H`: expected finite values of at least 0, not all of them 0")
+    size[[0, -1]] *= 0.5
     data = Slopes.of(
         size[size > 0.0], tau[size > 0.0], EARLY * rtol * over[0] / MARGIN, over[1] * MARGIN
     )
-    return _fewest(data, rtol)
+    unresolved = data.deviation(Series(0.0, 2.0 * size[::2], tau[::2]))
+    if unresolved > rtol:
+        raise ValueError(
+            f"`H` changes too fast: sums over {DENSE // 2} and {DENSE} times a decade differ by "
+            f"{unresolved:.2g} of them, above `rtol`; give a narrow peak as an arm"
+        )
+    return _fewest(data, rtol, unresolved)
 
 
 def value_of(name: str, function: Callable[[Any], Any], time: float) -> float:
@@ -108,9 +115,12 @@ def value_of(name: str, function: Callable[[Any], Any], time: float) -> float:
     return value
 
 
-def _fewest(data: Slopes, rtol: float) -> tuple[Series, float]:
+def _fewest(data: Slopes, rtol: float, known: float = 0.0) -> tuple[Series, float]:
+    """Return the fewest arms within rtol of data that are themselves within `known`, and eps."""
+
     def off(series: Series) -> float:
-        return (1.0 + data.deviation(series)) / (1.0 - EARLY * rtol) ** 2 - 1.0
+        within = (1.0 - EARLY * rtol) ** 2 * (1.0 - known)
+        return (1.0 + data.deviation(series)) / within - 1.0
 
     low, high = np.log10([data.x.min(), data.x.max()]) + BEYOND * np.array([-1.0, 1.0])
     series = solved(data, np.logspace(low, high, int((high - low) * GRID) + 1))
