@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,11 +16,13 @@ Runs = dict[str, list[tuple[float, float]]]
 """Time (s) and achieved error of each run, by method."""
 
 
-def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
+def read_runs(
+    path: Path, taken: Collection[str], most: int, drawable: Callable[[str], bool]
+) -> Runs:
     """Read a CSV with the columns method, seconds and error, a row for each run.
 
-    There may be `most` methods, and none with one of the names that are `taken`. Anything else raises
-    `ValueError` with the line.
+    There may be `most` methods, and none with one of the names that are `taken`, or that is not
+    `drawable`. Anything else raises `ValueError` with the line.
     """
     where = f'`add` "{path}"'
     try:
@@ -44,9 +46,13 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
                 raise ValueError(
                     f"{here}: {len(cells)} cells below {len(head)} names; quote a name with commas"
                 )
-            if row["method"] in ("", *taken) or not row["method"].isprintable():
+            if row["method"] in ("", *taken):
                 raise ValueError(
                     f'{here}: method "{row["method"]}": expected a name that no method of the chart has'
+                )
+            if not drawable(row["method"]):
+                raise ValueError(
+                    f'{here}: method "{row["method"]}": has letters that the font of the chart lacks'
                 )
             values = [_number(f"{here}: {name}", row[name], name) for name in COLUMNS[1:]]
             found.setdefault(row["method"], []).append((values[0], values[1]))

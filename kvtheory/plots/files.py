@@ -18,6 +18,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.font_manager import FontProperties, findfont, get_font
 
 from kvtheory.export import PICTURES, check_path, replace_file, replace_files
 from kvtheory.plots.style import STYLE
@@ -89,6 +90,17 @@ def _save(drawn: Any, suffix: str, messages: list[str], part: Path) -> None:
     drawn.savefig(part, metadata=METADATA.get(suffix))
     if messages:
         raise ValueError(messages[0])
+
+
+def drawable(text: str) -> bool:
+    r"""Whether the font of the package has all letters of a text.
+
+    >>> drawable("Euler, µs"), drawable("\u4e2d")
+    (True, False)
+    """
+    with mpl.rc_context({**STYLE}):
+        font = get_font(findfont(FontProperties()))
+    return all(font.get_char_index(ord(letter)) for letter in text)
 
 
 def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
