@@ -50,7 +50,7 @@ def read_runs(
                 raise ValueError(
                     f'{here}: method "{row["method"]}": expected a name that no method of the chart has'
                 )
-            if not drawable(row["method"]):
+            if row["method"] not in found and not drawable(row["method"]):
                 raise ValueError(
                     f'{here}: method "{row["method"]}": has letters that the font of the chart lacks'
                 )
