@@ -33,7 +33,11 @@ test: $(VENV)/.installed-test
 
 # One file of tests, or FILE=tests/test_x.py::test_y, with no more than it needs; a few files need all of `test`.
 test-one: $(VENV)/.installed-one
-	$(BIN)/python -m pytest -q $(or $(FILE),$(error give a file: make test-one FILE=tests/test_exact.py))
+	$(BIN)/python -m pytest -q $(FILE)
+
+ifeq ($(FILE)$(filter test-one,$(MAKECMDGOALS)),test-one)
+$(error give a file: make test-one FILE=tests/test_exact.py)
+endif
 
 # What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them. Their Numba keeps its own
 # kernels: two versions with one cache would each compile everything anew.

@@ -274,11 +274,16 @@ def test_command(tmp_path, monkeypatch):
         ("method,seconds,error\na,0,1\n", 'seconds "0": expected a number above 0'),
         ("method,seconds,error\nexact,1,1\n", 'method "exact": expected a name that no method'),
         ("method,seconds,error\n" + "".join(f"{k},1,1\n" for k in range(9)), "has 9 methods"),
+        ("method,seconds,error,error\na,1,1,2\n", "the first line has a column twice"),
+        ("method,seconds,error\na,1,1e300\n", "expected a number of at least 0 (1e-30 to 1e+30)"),
+        ("method,seconds,error\na\0,1,1\n", "has letters that the font of the chart lacks"),
+        ("method,seconds,error\n\u4e2d,1,1\n", "has letters that the font of the chart lacks"),
+        ("method,seconds,error\n" + 1001 * "a,1,1\n", "has 1001 runs; expected at most 1000"),
     ],
 )
 def test_runs_that_cannot_be_added_are_refused_before_anything_is_measured(tmp_path, text, why):
     path = tmp_path / "mine.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     words = "chart", "work-precision", "--quick", "--add", path, "-o", tmp_path / "x.png"
     refused(words, [f'--add "{path}"', why])
     assert list(tmp_path.iterdir()) == [path]

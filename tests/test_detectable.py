@@ -106,6 +106,14 @@ def test_the_mean_of_settled_friction_shows_the_sine_of_a_slope_in_the_place_of_
     assert failed == ["steady limit"] * sine
 
 
+def test_forces_that_are_zero_wherever_they_should_not_be_are_judged():
+    """The rows left are those in which theory has no contact either, where no ratio of forces exists."""
+    pressed = kv.Fixed(history=[(0.0, 0.0), (0.1, 3e-4), (0.2, 0.0)])
+    scene = kv.Scene(support=pressed, drive=kv.Drive(0.0), run=kv.Run(0.2))
+    time = np.linspace(0.0, 0.2, 41)
+    assert kv.compare(scene, {"time": time, "normal_force": 0.0 * time}).verdict == "disagrees"
+
+
 @pytest.mark.parametrize("name", FORCES)
 def test_a_force_that_is_off_by_a_fiftieth_is_named(name):
     case = cased({**simulated(), name: 0.98 * simulated()[name]})

@@ -313,6 +313,9 @@ def test_a_figure_in_ones_own_style_with_its_data(tmp_path):
         ("font.size", "Missing colon in file"),
         ("font.size: 9\nfont.size: 8", "Duplicate key in file"),
         ("figure.figsize: 0.5, 0.5", "Try making figure larger"),
+        ("figure.figsize: 0, 0", "matplotlib cannot draw with it: divide by zero"),
+        ("savefig.dpi: 1e9", "matplotlib cannot draw with it"),
+        ("font.family: NoSuchFont", "Font family 'NoSuchFont' not found"),
     ],
 )
 def test_a_style_that_cannot_be_read_is_refused(tmp_path, text, why):
@@ -338,6 +341,9 @@ def test_a_style_that_cannot_be_read_is_refused(tmp_path, text, why):
             "holds for the parabola only",
         ),
         ("fig6", ["drive.velocity=0 m/s"], "no place on a logarithmic axis"),
+        ("fig4", ["drive.stiffness=1 MN/m^2"], "holds for a rigid drive only"),
+        ("fig3", ["start.gap=5 mm"], "begins at rest at the static depth"),
+        ("fig3", ['drive.velocity=["0.1 m/s", "1 m/s"]'], "a figure of the paper is for one scene"),
         ("table2", ['drive.velocity=["0.1 m/s", "1 m/s"]'], "for one scene"),
     ],
 )
@@ -345,6 +351,10 @@ def test_a_scene_without_such_a_figure_is_refused(tmp_path, name, own, why):
     sets = [word for each in own for word in ("--set", each)]
     refused(("chart", name, *sets, "-o", tmp_path / "x.png"), [why])
     assert not list(tmp_path.iterdir())
+
+
+def test_the_list_of_charts_says_what_each_figure_shows():
+    assert "Draw Fig. 3: the onset of sliding" in run("chart", "--help").stdout
 
 
 @pytest.mark.parametrize("missing", [True, False])

@@ -60,6 +60,31 @@ def test_a_relaxation_function_is_met_within_the_range(G):
     assert relaxed == pytest.approx(exact, rel=0.021)
 
 
+def peak(width, beside):
+    return lambda tau: beside + 4e9 * math.exp(-0.5 * (math.log10(tau / 1.0234e-2) / width) ** 2)
+
+
+def test_a_narrow_peak_of_a_spectrum_is_within_the_bound_or_refused():
+    H = peak(0.005, 1e8)
+    found = kv.GeneralizedMaxwell.from_spectrum(1e9, H, rtol=0.05, over=OVER)
+    tau, t = np.logspace(-8, 3, 110_001), np.geomspace(*OVER, 7)
+    exact = (np.exp(-t[:, None] / tau) / tau) @ [H(x) for x in tau] * np.log(tau[1] / tau[0])
+    slopes = sum(
+        arm.stiffness / arm.relaxation_time * np.exp(-t / arm.relaxation_time) for arm in found.arms
+    )
+    assert np.abs(slopes / exact - 1.0).max() < found.deviation
+    with pytest.raises(ValueError, match="`H` changes too fast"):
+        kv.GeneralizedMaxwell.from_spectrum(1e9, peak(0.001, 0.0), rtol=0.05, over=OVER)
+
+
+def test_one_arm_is_found_wherever_its_time_is():
+    found = kv.GeneralizedMaxwell.from_relaxation(
+        lambda t: 1e9 + 3e9 * math.exp(-t / 1e-2), over=OVER
+    )
+    ((stiffness, time),) = [(arm.stiffness, arm.relaxation_time) for arm in found.arms]
+    assert (stiffness, time) == pytest.approx((3e9, 1e-2), rel=1e-4)
+
+
 @pytest.mark.parametrize(
     ("G", "how", "told"),
     [
@@ -69,6 +94,13 @@ def test_a_relaxation_function_is_met_within_the_range(G):
         (lambda t: 1.0 + math.exp(-t), {"over": 1.0}, "the shortest and the longest time"),
         (lambda t: 1.0 + math.exp(-t), {"over": OVER, "rtol": 2.0}, "`rtol` = 2.0"),
         (lambda t: 1.0 + math.exp(-(t**1.5)), {"over": (0.1, 2.0), "rtol": 0.01}, "no series was found"),
+        (lambda t: 1.0 + math.exp(-t) + (t < 0.5), {"over": (0.1, 2.0)}, "no series was found"),
+        (lambda t: math.inf, {"over": OVER}, "`G` is inf at inf s: expected a finite number"),
+        (lambda t: None, {"over": OVER}, "`G` is None at inf s"),
+        (lambda t: 1.0, {"over": OVER, "stiffness": "1 mm"}, '`stiffness` = "1 mm": the unit'),
+        (lambda t: 1.0, {"over": (0.0, 1.0)}, "`over` = 0.0: is out of range"),
+        (lambda t: 1.0, {"over": (1e-300, 1e300)}, "by a factor of at most 1e\\+30"),
+        (lambda t: 1.0, {"over": OVER, "rtol": "much"}, "`rtol` = 'much'"),
     ],
 )  # fmt: skip
 def test_mistakes_are_messages(G, how, told):

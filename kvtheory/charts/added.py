@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,15 +10,19 @@ from kvtheory.charts.work_precision import Chart, Point, Series
 from kvtheory.scene.tables import read_text
 
 COLUMNS = "method", "seconds", "error"
+LEAST, GREATEST, MOST_RUNS = 1e-30, 1e30, 1000
+"""Range of times (s) and errors, and number of runs, beyond which a chart cannot be drawn."""
 Runs = dict[str, list[tuple[float, float]]]
 """Time (s) and achieved error of each run, by method."""
 
 
-def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
+def read_runs(
+    path: Path, taken: Collection[str], most: int, drawable: Callable[[str], bool]
+) -> Runs:
     """Read a CSV with the columns method, seconds and error, a row for each run.
 
-    There may be `most` methods, and none with one of the names that are `taken`. Anything else raises
-    `ValueError` with the line.
+    There may be `most` methods, and none with one of the names that are `taken`, or that is not
+    `drawable`. Anything else raises `ValueError` with the line.
     """
     where = f'`add` "{path}"'
     try:
@@ -31,6 +35,8 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
             f"{where}: the first line has no column {missing[0]}; expected "
             f'"{",".join(COLUMNS)}" with commas between, and below it a row for each run'
         )
+    if len(set(head)) < len(head):
+        raise ValueError(f"{where}: the first line has a column twice")
     found: Runs = {}
     for number, cells in enumerate(lines[1:], start=2):
         row = dict(zip(head, map(str.strip, cells), strict=False))
@@ -44,10 +50,16 @@ def read_runs(path: Path, taken: Collection[str], most: int) -> Runs:
                 raise ValueError(
                     f'{here}: method "{row["method"]}": expected a name that no method of the chart has'
                 )
+            if row["method"] not in found and not drawable(row["method"]):
+                raise ValueError(
+                    f'{here}: method "{row["method"]}": has letters that the font of the chart lacks'
+                )
             values = [_number(f"{here}: {name}", row[name], name) for name in COLUMNS[1:]]
             found.setdefault(row["method"], []).append((values[0], values[1]))
     if not 1 <= len(found) <= most:
         raise ValueError(f"{where}: has {len(found)} methods; expected 1 to {most}")
+    if (runs := sum(map(len, found.values()))) > MOST_RUNS:
+        raise ValueError(f"{where}: has {runs} runs; expected at most {MOST_RUNS}")
     return found
 
 
@@ -56,10 +68,12 @@ def _number(where: str, text: str, name: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if 0.0 < value < math.inf or (value == 0.0 and name == "error"):
+    if LEAST <= value <= GREATEST or (value == 0.0 and name == "error"):
         return value
     least = "of at least" if name == "error" else "above"
-    raise ValueError(f'{where} "{text}": expected a number {least} 0, with a decimal point')
+    raise ValueError(
+        f'{where} "{text}": expected a number {least} 0 ({LEAST:g} to {GREATEST:g}), with a decimal point'
+    )
 
 
 def with_runs(chart: Chart, runs: Runs, error: str) -> Chart:

@@ -112,6 +112,7 @@ def work_precision(
     with console.progress_bar("methods") as report:
         from kvtheory.charts.added import read_runs, with_runs
         from kvtheory.charts.collection import ALL, chosen, measure
+        from kvtheory.plots.files import drawable
         from kvtheory.plots.work_precision import (
             LOOKS,
             MARKS,
@@ -123,7 +124,7 @@ def work_precision(
         standards = standard or []
         if add and (len(standards) > 1 or ALL in standards):
             raise ValueError("--add is for one scene: give SCENE, or --standard with one name")
-        runs = read_runs(add, LOOKS, len(MARKS)) if add else {}
+        runs = read_runs(add, LOOKS, len(MARKS), drawable) if add else {}
         jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
         charts = measure(jobs, quick=quick, progress=report, announce=_say_time)
         if runs:
@@ -162,7 +163,7 @@ def paper_command(name: str) -> None:
     )
 
     @chart.command(
-        name, help=f"{PAPER[name]}\n\n{whose}",
+        name, help=f"{PAPER[name]}\n\n{whose}", short_help=PAPER[name],
         example=f"kvtheory chart {name} my-scene.toml --style mine.mplstyle -o {name}.pdf",
     )  # fmt: skip
     @console.scene_options

@@ -8,8 +8,8 @@ import math
 import os
 import platform
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import metadata
 from importlib.resources import files
@@ -18,6 +18,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.font_manager import FontProperties, findfont, get_font
 
 from kvtheory.export import PICTURES, check_path, replace_file, replace_files
 from kvtheory.plots.style import STYLE
@@ -26,6 +27,8 @@ PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
 """The packages whose versions are recorded with a chart."""
 METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 """No dates, so that the same figure is the same file."""
+LONGEST = 300
+"""Characters of a message that are shown: LaTeX adds all of its output."""
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
@@ -50,27 +53,54 @@ def save_figure(
 ) -> None:  # fmt: skip
     """Draw a figure and write it in the formats of the suffixes, and the columns of its data as CSV.
 
-    All files are written, or none. A size in the style replaces that of the figure. Where matplotlib warns,
-    of axes without room or of letters that a font lacks, `ValueError` is raised.
+    All files are written, or none. A size in the style replaces that of the figure. Where matplotlib fails or
+    warns, of axes without room or of fonts and letters that are missing, `ValueError` is raised.
     """
-    with mpl.rc_context({**STYLE, **style}), warnings.catch_warnings():
+    with mpl.rc_context({**STYLE, **style}), warnings.catch_warnings(), _logged() as messages:
         warnings.simplefilter("error", UserWarning)
+        warnings.simplefilter("error", RuntimeWarning)
         try:
             drawn = draw(data)
             if "figure.figsize" in style:
                 drawn.set_size_inches(style["figure.figsize"])
             if layout := drawn.get_layout_engine():
                 layout.execute(drawn)
-            drawn.set_layout_engine(
-                None
-            )  # laid out once, or each format would draw everything twice
+            # laid out once, or each format would draw everything twice
+            drawn.set_layout_engine(None)
             writers: dict[Path, Callable[[Path], Any]] = {
-                path: partial(drawn.savefig, metadata=METADATA.get(path.suffix.lower()))
-                for path in pictures
+                path: partial(_save, drawn, path.suffix.lower(), messages) for path in pictures
             }
             replace_files({**writers, table: lambda part: _write_csv(part, data.columns)})
-        except UserWarning as warning:
-            raise ValueError(f"`style`: {warning}") from None
+        except (
+            ArithmeticError,
+            MemoryError,
+            RuntimeError,
+            TypeError,
+            ValueError,
+            Warning,
+        ) as error:
+            if style is STYLE or not style:
+                raise
+            words = " ".join(str(error).split())[:LONGEST]
+            raise ValueError(f"`style`: matplotlib cannot draw with it: {words}") from None
+
+
+def _save(drawn: Any, suffix: str, messages: list[str], part: Path) -> None:
+    """Write a figure, or raise `ValueError` with what matplotlib has to say about it."""
+    drawn.savefig(part, metadata=METADATA.get(suffix))
+    if messages:
+        raise ValueError(messages[0])
+
+
+def drawable(text: str) -> bool:
+    r"""Whether the font of the package has all letters of a text.
+
+    >>> drawable("Euler, µs"), drawable("\u4e2d")
+    (True, False)
+    """
+    with mpl.rc_context({**STYLE}):
+        font = get_font(findfont(FontProperties()))
+    return all(font.get_char_index(ord(letter)) for letter in text)
 
 
 def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
@@ -82,18 +112,28 @@ def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
             writer.writerow("" if no else cell for no, cell in zip(missing, row, strict=True))
 
 
-def read_style(path: Path) -> Any:
-    """Return the settings of a style sheet of matplotlib, or raise `ValueError` with what it cannot read."""
+@contextmanager
+def _logged() -> Iterator[list[str]]:
+    """Give the messages that matplotlib logs, which are not printed then."""
     messages: list[str] = []
-    handler, log = logging.Handler(), logging.getLogger("matplotlib")
+    handler, log = logging.Handler(logging.WARNING), logging.getLogger("matplotlib")
     handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
     log.addHandler(handler)
     try:
-        found = mpl.rc_params_from_file(path, fail_on_error=True, use_default_template=False)
-    except (ValueError, KeyError, UnicodeDecodeError) as error:
-        messages.append(str(error))
+        yield messages
     finally:
         log.removeHandler(handler)
+
+
+def read_style(path: Path) -> Any:
+    """Return the settings of a style sheet of matplotlib, or raise `ValueError` with what it cannot read."""
+    with _logged() as messages:
+        try:
+            found = mpl.rc_params_from_file(
+                str(path), fail_on_error=True, use_default_template=False
+            )
+        except (ValueError, KeyError, UnicodeDecodeError) as error:
+            messages.append(str(error))
     if messages:
         raise ValueError(f'`style` "{path}": {" ".join(messages[0].split())}')
     return found

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass, fields
+from numbers import Real
 from typing import Any, ClassVar
 
 import numpy as np
@@ -466,10 +467,22 @@ class Arm(Part):
             object.__setattr__(self, "relaxation_time", time)
 
 
+WIDEST = 1e30
+"""Longest over shortest time in which a contact is passed, of a series from a function."""
+
+
 def _share(rtol: float) -> float:
-    if not 0.0 < rtol < 1.0:
+    if not (isinstance(rtol, Real) and 0.0 < rtol < 1.0):
         raise ValueError(f"`rtol` = {rtol!r}: expected a number above 0 and below 1")
     return rtol
+
+
+def _si(name: str, value: Any, spec: Any) -> float:
+    """Return an argument in SI, or raise the error that names it."""
+    try:
+        return convert(value, spec)
+    except ValueError as error:
+        raise mistake(name, value, str(error)) from None
 
 
 def _range(over: Any) -> tuple[float, float]:
@@ -477,9 +490,12 @@ def _range(over: Any) -> tuple[float, float]:
     spec = quantities(Arm)["relaxation_time"]
     if not _is_pair(over):
         raise ValueError(f"`over` = {over!r}: expected the shortest and the longest time")
-    shortest, longest = (convert(each, spec) for each in over)
-    if not shortest < longest:
-        raise ValueError(f"`over` = {over!r}: expected the shortest time first, then a longer one")
+    shortest, longest = (_si("`over`", each, spec) for each in over)
+    if not 1.0 < longest / shortest <= WIDEST:
+        raise ValueError(
+            f"`over` = {over!r}: expected the shortest time first, then one that is longer, "
+            f"by a factor of at most {WIDEST:g}"
+        )
     return shortest, longest
 
 
@@ -539,13 +555,12 @@ class GeneralizedMaxwell(_Relaxed):
         >>> found.stiffness, found.deviation < 0.1, 5 <= len(found.arms) <= 12
         (1000000000.0, True, True)
         """
-        K = (
-            float(G(math.inf))
-            if stiffness is None
-            else convert(stiffness, quantities(cls)["stiffness"])
-        )
-        over = _range(over)
-        return cls._of(K, over, *above("fitting.relaxation").arms_of(G, K, _share(rtol), over))
+        fitting, over = above("fitting.relaxation"), _range(over)
+        if stiffness is None:
+            K = fitting.value_of("G", G, math.inf)
+        else:
+            K = _si("`stiffness`", stiffness, quantities(cls)["stiffness"])
+        return cls._of(K, over, *fitting.arms_of(G, K, _share(rtol), over))
 
     @classmethod
     def from_spectrum(
@@ -561,7 +576,7 @@ class GeneralizedMaxwell(_Relaxed):
         >>> found.deviation < 0.1
         True
         """
-        K = convert(stiffness, quantities(cls)["stiffness"])
+        K = _si("`stiffness`", stiffness, quantities(cls)["stiffness"])
         over = _range(over)
         return cls._of(
             K, over, *above("fitting.relaxation").arms_of_spectrum(H, _share(rtol), over)
