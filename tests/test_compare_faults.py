@@ -276,6 +276,28 @@ def test_too_few_elements_of_a_line_are_still_an_error():
     assert "elements enough" in failed(kv.compare(data=data, per_length="10 /mm"))
 
 
+@pytest.mark.parametrize("per_length", ["50 /mm", "10 /mm"])
+def test_elements_are_enough_or_not_beside_the_load_that_sliding_has(per_length):
+    """A fixed indenter presses harder in sliding than at rest. Elements alone are wrong, and no column is."""
+    found = kv.compare(kv.problem("paper-fixed"), per_length=per_length)
+    if per_length == "50 /mm":
+        assert found.verdict == "agrees"
+        return
+    assert failed(found) == ["elements enough"]
+    assert [each.name for each in found.explanations] == ["too few elements"]
+    assert "take 15 /mm or more rather than 10 /mm" in found.diagnosis
+
+
+@pytest.mark.parametrize("factor", [1.00003, 0.99997])
+def test_a_factor_close_to_one_is_told_with_the_digits_that_it_needs(factor):
+    scene = kv.problem("paper-fixed")
+    data = exact(scene, 51)
+    found = kv.compare(
+        scene, {**data, "friction_force": factor * data["friction_force"]}, per_length="1e6 /mm"
+    )
+    assert f"{factor} times theory" in first_of(found, "scale of friction_force").text
+
+
 TO_AND_FRO = [(0.0, 0.1), (0.04, 0.1), (0.04, -0.1), (0.06, -0.1)]
 ARMS = [(3e10, 1e-2), (5e9, 0.5)]
 ENGINE = {
