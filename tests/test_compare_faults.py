@@ -298,6 +298,16 @@ def test_a_factor_close_to_one_is_told_with_the_digits_that_it_needs(factor):
     assert f"{factor} times theory" in first_of(found, "scale of friction_force").text
 
 
+def test_a_mean_that_is_off_less_than_rows_may_be_is_too_small_to_name_a_fault():
+    at = np.linspace(0.0, 0.2, 101).tolist()
+    run = kv.elements(per_length="100 /mm", scheme="semi-implicit", at=at, certify=False)
+    data = {name: getattr(run, name) for name in MEASURED}
+    data["friction_force"] = 0.995 * data["friction_force"]
+    found = kv.compare(data=data, per_length="100 /mm")
+    assert failed(found) == ["steady limit"]
+    assert found.diagnosis.startswith("Each row is within its allowance")
+
+
 TO_AND_FRO = [(0.0, 0.1), (0.04, 0.1), (0.04, -0.1), (0.06, -0.1)]
 ARMS = [(3e10, 1e-2), (5e9, 0.5)]
 ENGINE = {

@@ -303,7 +303,10 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     """Say what explains the disagreement, what else would, and which checks failed."""
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
     if not named:
-        return f"No single known fault explains most of the difference. Failed: {which}."
+        small = all((case.excess(name) <= case.limit(name)).all() for name in case.names)
+        why = "Each row is within its allowance, and their mean too little off to name a fault"
+        none = "No single known fault explains most of the difference"
+        return f"{why if small else none}. Failed: {which}."
     first, *rest = named
     symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
     alike = {WRONG + name for name in first.alike} | {*first.alike}
