@@ -276,6 +276,38 @@ def test_too_few_elements_of_a_line_are_still_an_error():
     assert "elements enough" in failed(kv.compare(data=data, per_length="10 /mm"))
 
 
+@pytest.mark.parametrize("per_length", ["50 /mm", "10 /mm"])
+def test_elements_are_enough_or_not_beside_the_load_that_sliding_has(per_length):
+    """A fixed indenter presses harder in sliding than at rest. Elements alone are wrong, and no column is."""
+    found = kv.compare(kv.problem("paper-fixed"), per_length=per_length)
+    if per_length == "50 /mm":
+        assert found.verdict == "agrees"
+        return
+    assert failed(found) == ["elements enough"]
+    assert [each.name for each in found.explanations] == ["too few elements"]
+    assert "take 15 /mm or more rather than 10 /mm" in found.diagnosis
+
+
+@pytest.mark.parametrize("factor", [1.00003, 0.99997])
+def test_a_factor_close_to_one_is_told_with_the_digits_that_it_needs(factor):
+    scene = kv.problem("paper-fixed")
+    data = exact(scene, 51)
+    found = kv.compare(
+        scene, {**data, "friction_force": factor * data["friction_force"]}, per_length="1e6 /mm"
+    )
+    assert f"{factor} times theory" in first_of(found, "scale of friction_force").text
+
+
+def test_a_mean_that_is_off_less_than_rows_may_be_is_too_small_to_name_a_fault():
+    at = np.linspace(0.0, 0.2, 101).tolist()
+    run = kv.elements(per_length="100 /mm", scheme="semi-implicit", at=at, certify=False)
+    data = {name: getattr(run, name) for name in MEASURED}
+    data["friction_force"] = 0.995 * data["friction_force"]
+    found = kv.compare(data=data, per_length="100 /mm")
+    assert failed(found) == ["steady limit"]
+    assert found.diagnosis.startswith("Each row is within its allowance")
+
+
 TO_AND_FRO = [(0.0, 0.1), (0.04, 0.1), (0.04, -0.1), (0.06, -0.1)]
 ARMS = [(3e10, 1e-2), (5e9, 0.5)]
 ENGINE = {

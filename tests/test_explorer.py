@@ -411,6 +411,13 @@ def test_every_scene_fits_a_phone_and_its_copies_are_what_is_shown(session, page
     with watched(session, page, state, 375, 812, phone=True) as browser:
         assert browser.run("document.documentElement.scrollWidth") <= 375
         assert browser.run("document.querySelector('#problem').hidden")
+        bounds = "[...document.querySelectorAll('{}')].map(e => e.getBoundingClientRect())"
+        card = browser.run(bounds.format("#curve-card") + ".map(r => [r.right, r.bottom])[0]")
+        words = browser.run(
+            bounds.format("#curve-legend > span") + ".map(r => [r.right, r.bottom])"
+        )
+        assert (np.array(words) < card).all()  # none is cut off
+        assert card[1] < browser.run(bounds.format(".controls") + "[0].top")
         assert "NaN" not in browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
         written = browser.run("as_toml(state)")
         path = tmp_path / "scene.toml"

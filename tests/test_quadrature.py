@@ -210,6 +210,15 @@ def test_failure_is_an_error_with_its_reason(name):
         at_depth(indenter, K, TAU, 0.1, DEPTH)
 
 
+@pytest.mark.parametrize("rounding", [2e-22, -2e-22])
+def test_rounding_of_the_height_of_the_lowest_point_is_allowed(rounding):
+    rounded = Profile(lambda x: plain(x) + rounding, tilt)
+    expected = at_depth(Profile(plain, tilt), K, TAU, 0.1, DEPTH)
+    assert at_depth(rounded, K, TAU, 0.1, DEPTH).load == pytest.approx(expected.load, rel=1e-12)
+    loaded = at_load(rounded, K, TAU, 0.1, expected.load)
+    assert loaded.depth == pytest.approx(DEPTH, rel=1e-12)
+
+
 def test_weight_that_the_reach_cannot_carry():
     short = Profile(plain, tilt, reach=1e-3)
     assert at_load(short, K, TAU, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)

@@ -61,7 +61,7 @@ class Mean(NamedTuple):
     rows: NDArray[np.bool_]
     expected: float
     allowed: float
-    words: str = ""
+    words: str = ""  # with the mean as {0}, what theory gives as {1}
 
     def off(self, columns: Curves) -> float:
         """Return how far the mean is from theory."""
@@ -73,7 +73,7 @@ def worst_mean(case: Case, means_of: Callable[[Case], Sequence[Mean]]) -> Measur
     """Compare the mean that is worst relative to its allowance."""
     worst = max(means_of(case), key=lambda each: abs(each.off(case.columns)) / each.allowed)
     name, off = next(iter(worst.weights)), worst.off(case.columns)
-    note = f"{name} {worst.expected + off:.6g}, {worst.words} {worst.expected:.6g} in SI"
+    note = f"{name} {worst.words.format(worst.expected + off, worst.expected)} in SI"
     scale = case.theory.scales[name]
     return abs(off) / scale, worst.allowed / scale, note if worst.words else ""
 
@@ -248,7 +248,7 @@ def steady_limit(case: Case) -> list[Mean]:
         random = SURE * rms(case.bands[curve].noise[late]) / math.sqrt(late.sum())
         smooth = float(case.bands[curve].systematic[late].max()) + SMALLEST * theory.scales[curve]
         allowed = case.tolerance * (smooth + left + random)
-        found.append(Mean({curve: 1.0}, late, float(exact[curve]), allowed, "exact"))
+        found.append(Mean({curve: 1.0}, late, float(exact[curve]), allowed, "{:.6g}, exact {:.6g}"))
     line = theory.scene.indenter.per_width and not theory.scene.foundation.arms
     if line and theory.scene.drive.rigid and "friction_force" in case.columns:
         found.append(_settled_friction(case, time > settled))
@@ -286,7 +286,9 @@ def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
     sigma = rms(noise(case.time, data - theirs, case.now["friction_force"])[late])
     allowed = float(smooth[late].max()) + SURE * sigma / math.sqrt(late.sum())
     allowed += SMALLEST * theory.scales["friction_force"]
-    words = f"less F_z a/R in the mean after {case.time[late][0] * 1e3:.4g} ms, theory"
+    what = "less F_z a/R" if lever else "alone"
+    since = f"{case.time[late][0] * 1e3:.4g} ms"
+    words = f"{what}, mean after {since}: {{:.6g}}, theory {{:.6g}}"
     return Mean(weights, late, float(theirs[late].mean()), case.tolerance * allowed, words)
 
 

@@ -9,7 +9,15 @@ import numpy as np
 from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
 from kvtheory.checks.checklist import PHASE, SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSE, SAWTOOTH, UNKNOWN, UNSTABLE, Case, make_case
+from kvtheory.checks.comparison_case import (
+    COARSE,
+    NUMBER,
+    SAWTOOTH,
+    UNKNOWN,
+    UNSTABLE,
+    Case,
+    make_case,
+)
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.detectable import detectable
 from kvtheory.checks.hypotheses import WRONG, Bench, Hypothesis, Pair, Trial, bench, scaled_scene
@@ -55,6 +63,8 @@ INCONCLUSIVE = {
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
+NOT_OF_CURVES = COARSE, NUMBER
+"""Checks of elements and steps, after which no fault is tried: the curves agree."""
 LARGER = 1.5
 """Factor on a quantity that must show in the data, for the quantity to count as tested."""
 NEEDED = "depth", "normal_force", "friction_force"
@@ -210,7 +220,8 @@ def diagnose(
     if known == "cannot tell":
         why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
-    tried, skipped = explanations(case, families)
+    of_curves = any(check.name not in NOT_OF_CURVES for check in failed)
+    tried, skipped = explanations(case, families) if of_curves else ([], [])
     seen = case_of.symptoms(case, failed) if families is FAMILIES else ()
     found = sorted([*seen, *tried], key=_order)
     named = [each for each in found if each.rank >= NAMED or each.enough]
@@ -292,7 +303,10 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     """Say what explains the disagreement, what else would, and which checks failed."""
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
     if not named:
-        return f"No single known fault explains most of the difference. Failed: {which}."
+        small = all((case.excess(name) <= case.limit(name)).all() for name in case.names)
+        why = "Each row is within its allowance, and their mean too little off to name a fault"
+        none = "No single known fault explains most of the difference"
+        return f"{why if small else none}. Failed: {which}."
     first, *rest = named
     symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
     alike = {WRONG + name for name in first.alike} | {*first.alike}

@@ -244,7 +244,10 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
 
 def elements(case: Case) -> tuple[float, float, str]:
     """Compare one element at the leading edge with the load."""
-    fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
+    fine, load = case.resolution, case.theory.static.load
+    if case.theory.scene.held:  # sliding presses it, at a given depth, harder than rest does
+        load = max(load, float(np.median(case.now["normal_force"])))
+    b = float(np.median(case.edge_force)) / load
     chance = fine.spacing_read == SAWTOOTH and not alike(case)
     unread = not fine.spacing_read or chance or "normal_force" not in case.names
     if not fine.spacing_known and unread:
@@ -259,9 +262,9 @@ def elements(case: Case) -> tuple[float, float, str]:
         b /= IN_STEP
     else:  # edges may jump by noise too: what counts is the smooth part of the difference
         force = "normal_force"
-        off = rms(case.excess(force))
-        random = rms(case.bands[force].noise) / case.theory.static.load
-        b = math.sqrt(max(off * off - random * random, 0.0))
+        off = rms(case.excess(force)) * case.theory.scales[force]
+        random = rms(case.bands[force].noise)
+        b = math.sqrt(max(off * off - random * random, 0.0)) / load
     return b, limit, f"about {_density(case):.2g} /mm, estimated from {fine.spacing_read}"
 
 
@@ -269,6 +272,12 @@ def _density(case: Case) -> float:
     """Return the elements per mm, as known or estimated."""
     fine = case.resolution
     return 1e-3 * (IN_STEP if fine.spacing_read == SAWTOOTH else 1.0) / fine.spacing
+
+
+def _at_least(density: float) -> float:
+    """Return a density with two digits, rounded up."""
+    digit = 10.0 ** (math.floor(math.log10(density)) - 1)
+    return math.ceil(density / digit) * digit
 
 
 def _stability_number(case: Case, step: float) -> float:
@@ -306,8 +315,8 @@ def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
         elif check.name == COARSE:
             text = (
                 f"too few elements (F15): one that enters at the leading edge changes the normal force by "
-                f"{2.0 * measured:.2g} of the load; take {density * measured / allowed:.2g} /mm or more "
-                f"rather than {density:.3g} /mm"
+                f"{2.0 * measured:.2g} of the load; take {_at_least(density * measured / allowed):.4g} /mm "
+                f"or more rather than {density:.3g} /mm"
             )
             yield Explanation(FEW, text, 1.0 if known else READ, True)
     if (drops := _drops(case)).size >= SEVERAL:

@@ -21,6 +21,7 @@ from kvtheory.checks.hypotheses import (
     fixed,
     power_of_ten,
     scaled_scene,
+    times,
 )  # fmt: skip
 from kvtheory.checks.theory import CURVES, Array
 from kvtheory.scene import Scene
@@ -154,7 +155,7 @@ def parameters(bench: Bench) -> Iterator[Hypothesis]:
         si = scene.replaceable[key].unit
         unit, per_si = USUAL.get(si, (si.replace("*", " "), 1.0))
         old = values[key] * per_si
-        size = f"{{1:.4g}} {unit} rather than {old:.4g} {unit}, {{0:.4g}} times"
+        size = f"{{1:.4g}} {unit} rather than {old:.4g} {unit}, {{2}}"
         yield Hypothesis(
             f"{WRONG}{symbol}", f"the data fit {symbol} = {size}{words}", partial(scaled, powers=powers),
             [0.0], shown=old, log=True, remote=remote, powers=powers,
@@ -249,7 +250,7 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     for title, factor, exact, pair in _factors(bench):
         if power_of_ten(factor) in (None, 0) and factor > 0.0:
             words = title.replace("_", " ")
-            text = f"{words}: {1.0 / exact:.4g} times theory, while the rest agrees"
+            text = f"{words}: {times(1.0 / exact)} theory, while the rest agrees"
             yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
     share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
     added = [

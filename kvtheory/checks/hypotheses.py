@@ -53,7 +53,7 @@ class Hypothesis(NamedTuple):
     """A possible fault; with `starts` it has an unknown x, and `number`, from x, goes to `make`."""
 
     name: str
-    text: str  # the description, with the number as {0}, and `shown` times it as {1}
+    text: str  # the description, with the number as {0} or as `times`, {2}, and `shown` times it as {1}
     make: Callable[[float], Pair | None]  # the data and theory that it compares
     starts: Sequence[float] = ()  # x is fitted by least squares from the best of them
     unit: float = 1.0  # the number is `unit` times x, or e^x with `log`
@@ -73,7 +73,7 @@ class Hypothesis(NamedTuple):
         number = self.number(x) or 0.0
         ten = bool(self.powers) and power_of_ten(number)
         remark = " (a power of ten: check its unit)" if ten else ""
-        return self.text.format(number, number * self.shown) + remark
+        return self.text.format(number, number * self.shown, times(number)) + remark
 
     def pair(self, x: float) -> Pair | None:
         """Return the data and theory for the unknown."""
@@ -83,6 +83,12 @@ class Hypothesis(NamedTuple):
 def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) -> Hypothesis:
     """Return a hypothesis without an unknown."""
     return Hypothesis(name, text, lambda _number: pair, factor=factor)
+
+
+def times(factor: float) -> str:
+    """Return a factor in words, with as many digits as its difference from 1 needs."""
+    small = math.floor(math.log10(abs(factor - 1.0) or 1.0))
+    return f"{factor:.{max(4, 2 - small)}g} times"
 
 
 def power_of_ten(factor: float) -> int | None:

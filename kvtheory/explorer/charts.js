@@ -135,4 +135,6 @@ function draw_curve(scene, state, data) {
   tops.forEach((top, k) => parts.push(dot("top", `${k ? "another" : "maximum"} ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`)));
   parts.push(dot("present", "this scene"));
   document.getElementById("curve-legend").innerHTML = parts.join("");
+  const { offsetHeight } = document.getElementById("curve-card");
+  document.documentElement.style.setProperty("--curve", `${offsetHeight}px`);  // on a phone the sliders begin below it
 }

@@ -45,7 +45,7 @@ NEAREST, FARTHEST = 2.0**-200, 2.0**200
 AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11
-"""Discrepancy between h and h' that a check allows, relative to the depth."""
+"""Discrepancy between h and h', and h(0) beside 0, that a check allows, relative to the depth."""
 
 HOLLOW, FLAT, BEND = 1e-9, 1e-15, 2.0**-5
 """Decrease of h' of a convex shape, and its last coefficients, over h', that count as rounding; and width of
@@ -87,8 +87,6 @@ class Surface:
         self.jumps: list[float] = []
         self._cells: tuple[float, Cells] | None = None
         self._length = 0.0
-        if self.height(0.0) != 0.0:
-            raise QuadratureError(f"h(0) = {self.height(0.0):.6g} m: expected 0, the lowest point")
 
     def height(self, x: float) -> float:
         """Return h, or raise where it is not a number."""
@@ -150,6 +148,10 @@ class Surface:
     def cells(self, depth: float) -> Cells:
         """Return the cells in which h may be below a depth; they are reused for depths near it."""
         if self._cells is None or not self._cells[0] / AHEAD**2 <= depth <= self._cells[0]:
+            if abs(self.height(0.0)) > CHECK_RTOL * depth:
+                raise QuadratureError(
+                    f"h(0) = {self.height(0.0):.6g} m: expected 0, the lowest point"
+                )
             self._cells = AHEAD * depth, self._resolved(AHEAD * depth)
         return self._cells[1]
 
