@@ -360,6 +360,24 @@ def test_energy_is_kept_where_a_contact_opens_beside_the_place_where_it_closed()
     assert motion.ledger(0.8).balance == pytest.approx(0.0, abs=1e-10)
 
 
+def test_a_contact_withdraws_from_ground_on_which_it_opened_in_one_step():
+    """The pressure there seems largest beside the middle, within a width that counts as closed."""
+    law = kv.GeneralizedMaxwell(1e10, [(2.756e10, 0.694)])
+    times = [0.0, 0.075, 0.225, 0.4, 0.425, 0.475]
+    depths = [3.948e-4, 2.266e-4, -1e-4, 1.87e-4, 3.99e-4, 3.74e-5]
+    scene = kv.Scene(
+        foundation=law, support=kv.Fixed(history=list(zip(times, depths, strict=True))),
+        drive=kv.Drive(0.0), run=kv.Run(0.475),
+    )  # fmt: skip
+    at = [0.41, 0.425, 0.44, 0.4456]
+    found, known = (kv.transient(scene, at=at, rtol=r, certify=False) for r in (1e-6, 1e-7))
+    one, two = ([e.time for e in run.events if e.kind == "take-off"] for run in (found, known))
+    assert len(one) == 2
+    assert one == pytest.approx(two, rel=1e-8)
+    least = 1e-8 * known.normal_force.max()
+    assert found.normal_force == pytest.approx(known.normal_force, rel=1e-6, abs=least)
+
+
 @pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.1), ARMS], ids=["damper", "arms"])
 @pytest.mark.parametrize("velocity", [0.0, 0.05])
 def test_a_contact_that_is_opened_and_closed_agrees_with_elements_and_keeps_energy(law, velocity):
