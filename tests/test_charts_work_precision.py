@@ -97,6 +97,28 @@ def test_reference_of_a_users_scene_without_and_with_memory():
     assert 1e-9 < found.agreement["depth, maximum"] < 1e-3
 
 
+@pytest.mark.parametrize(
+    ("start", "other", "agreed"),
+    [
+        (kv.Start(depth=4e-4, depth_rate=5e-3), "two states", 1e-8),
+        (kv.Start(gap=1e-5, depth_rate=0.01), "elements", 2e-3),
+    ],
+    ids=["release", "drop"],
+)
+def test_references_agree_on_other_starts_and_methods_that_know_rest_only_are_left_out(
+    start, other, agreed
+):
+    found, suited = chosen(kv.Scene(start=start, run=kv.Run(0.03)), (), quick=True)[-1]
+    reference = found.reference()
+    assert reference.methods[1].startswith(other)
+    assert reference.agreement["depth, maximum"] < agreed
+    assert reference.agreement["friction, maximum"] < agreed
+    names = {method.name for method in suited if method.suits(found)}
+    assert "elements, paper" in names
+    assert not names & {"slow manifold", "method of lines"}
+    assert ("two states, Radau" in names) == (other == "two states")
+
+
 def test_errors_by_hand():
     right = Curves(np.array([1.0, 0.5, 0.25]), np.array([-4.0, 2.0, 1.0]))
     due = {

@@ -9,10 +9,10 @@ import pytest
 import kvtheory as kv
 from kvtheory.checks.trial_elements import Rule, simulate
 from kvtheory.models.continuum import solver
-from kvtheory.models.continuum.prony import trajectory
+from kvtheory.models.continuum.prony import records, trajectory
 from kvtheory.models.continuum.run import Beginning, Spring
 from kvtheory.results.table import scales
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.base_motion import END, START, BaseMotion
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory.drop import drop, number_of
 from tests import start_elements
@@ -358,6 +358,49 @@ def test_energy_is_kept_where_a_contact_opens_beside_the_place_where_it_closed()
     start = Beginning(*drive.depths[0], 0.0)
     motion = trajectory.solve(drive, [(2.0, 0.6)], (1.0, math.inf), 0.8, 1e-7, start=start)
     assert motion.ledger(0.8).balance == pytest.approx(0.0, abs=1e-10)
+
+
+def test_a_contact_withdraws_from_ground_on_which_it_opened_in_one_step():
+    """The pressure there seems largest beside the middle, within a width that counts as closed."""
+    law = kv.GeneralizedMaxwell(1e10, [(2.756e10, 0.694)])
+    times = [0.0, 0.075, 0.225, 0.4, 0.425, 0.475]
+    depths = [3.948e-4, 2.266e-4, -1e-4, 1.87e-4, 3.99e-4, 3.74e-5]
+    scene = kv.Scene(
+        foundation=law, support=kv.Fixed(history=list(zip(times, depths, strict=True))),
+        drive=kv.Drive(0.0), run=kv.Run(0.475),
+    )  # fmt: skip
+    at = [0.41, 0.425, 0.44, 0.4456]
+    found, known = (kv.transient(scene, at=at, rtol=r, certify=False) for r in (1e-6, 1e-7))
+    one, two = ([e.time for e in run.events if e.kind == "take-off"] for run in (found, known))
+    assert len(one) == 2
+    assert one == pytest.approx(two, rel=1e-8)
+    least = 1e-8 * known.normal_force.max()
+    assert found.normal_force == pytest.approx(known.normal_force, rel=1e-6, abs=least)
+
+
+def test_at_a_jump_of_the_rate_of_the_depth_on_a_damper_beside_arms_values_are_those_just_after():
+    """The clock pauses there; by rounding, no time may lie between the pause and what follows."""
+    points = [
+        (0.0, 1.0),
+        (0.17, 1.1),
+        (0.23, 0.9),
+        (0.29, 1.0),
+        (0.37, 0.8),
+        (0.41, 1.0),
+        (0.7, 0.9),
+    ]
+    drive, start = BaseMotion.constant(0.0, end=0.7).holding(points), Beginning(1.0, 0.0, 0.0)
+    times, depths = np.array(points).T
+    rates = np.diff(depths) / np.diff(times)
+    for unit in np.linspace(0.3, 1.3, 11):
+        pieces, *_ = records.with_pauses(drive.scaled(unit, 1.0), 0.7 / unit, needed=True)
+        assert np.array_equal(pieces[1:, START], pieces[:-1, END])
+    motion = trajectory.solve(
+        drive, [(2.0, 0.6)], (1.0, math.inf), 0.7, 1e-4, damper=0.3, start=start
+    )
+    found = motion.states(times[:-1], peaks=False)
+    assert found["depth_rate"] == pytest.approx(rates, rel=1e-9)
+    assert found["depth"] == pytest.approx(depths[:-1], rel=1e-12)
 
 
 @pytest.mark.parametrize("law", [kv.Foundation(1e10, 0.1), ARMS], ids=["damper", "arms"])

@@ -25,6 +25,7 @@ from kvtheory.scene.capabilities import (
 )
 from kvtheory.scene.mistakes import nearest
 from kvtheory.scene.model import Run, Scene
+from kvtheory.scene.start import REST
 
 DIGITS = 40
 """Correct digits of the reference solutions; they are computed with three times as many decimals."""
@@ -173,7 +174,7 @@ def _elements(problem: SteadyProblem, density: float, clock: Clock) -> tuple[Any
     end = TIME_CONSTANTS * (slow + fast)
     rest = steady(replace(scene, drive=replace(scene.drive, velocity=0.0)))
     found = elements(
-        replace(scene, run=Run(end)), per_length=density / rest.half_length, certify=False,
+        replace(scene, run=Run(end), start=REST), per_length=density / rest.half_length, certify=False,
         at=end * np.arange(1, CHECKS + 1) / CHECKS, progress=clock.check,
     )  # fmt: skip
     if found.normal_force[-1] == 0.0:
@@ -196,8 +197,6 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
     require(lacks_one_scene, scene, "the chart")
     require(lacks_rigid_continuum, scene, "the chart of transients")
-    if not scene.start.at_rest:
-        raise ValueError("the chart of transients is for a start at rest: leave out [start]")
     jobs: list[Job] = []
     for name in STANDARD if ALL in standard else standard or ("this scene",):
         sliding = scene if suits(scene) and not standard else None

@@ -41,25 +41,25 @@ def transient_methods() -> dict[str, Method]:
         *(Method(f"continuum, {how}", "rtol", TOLERANCES, "evaluations", partial(by_continuum, fast=fast))
           for how, fast in (("interpreted", False), ("compiled", True)) if not fast or available()),
         *(Method(f"two states, {name}", "rtol", TOLERANCES[:-1], "evaluations",
-                 partial(by_two_states, method=name, solve=solve), suits=_two_states)
+                 partial(by_two_states, method=name, solve=solve), suits=lambda problem: problem.two_states)
           for name, solve in solvers.items()),
-        Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_two_states),
+        Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_from_rest),
         *(Method(f"elements, {name}", "elements per a_0", DENSITIES, "element updates",
                  partial(by_elements, scheme=name)) for name in SCHEMES),
     ]  # fmt: skip
     return {method.name: method for method in found}
 
 
-def _two_states(problem: Problem) -> bool:
-    """Whether the indenter moves, on Kelvin-Voigt: two states, and the method of lines, require it."""
-    return not problem.scene.held and not problem.arms
+def _from_rest(problem: Problem) -> bool:
+    """Whether two states suit, and the motion starts at rest, as the method of lines requires."""
+    return problem.two_states and problem.scene.start.at_rest
 
 
 def _starts_forward(problem: Problem) -> bool:
     """Whether the drive number is positive and constant, as the slow manifold requires."""
     numbers = [number for _, _, number in problem.pieces]
     return (
-        _two_states(problem) and len(numbers) == 1 and not callable(numbers[0]) and numbers[0] > 0.0
+        _from_rest(problem) and len(numbers) == 1 and not callable(numbers[0]) and numbers[0] > 0.0
     )
 
 

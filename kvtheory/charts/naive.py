@@ -88,10 +88,10 @@ def solve_by_scipy(
 
 def without_memory(
     pieces: Iterable[Piece], s: Array, law_of: Callable[[Any], Law], method: str, rtol: float,
-    solve: Callable[..., tuple[Array, int]] = solve_by_scipy,
+    solve: Callable[..., tuple[Array, int]] = solve_by_scipy, start: Sequence[float] = (1.0, 0.0),
 ) -> tuple[Array, int]:  # fmt: skip
     """Return d, f_z and f_x by the two states, restarted at each jump, and the number of evaluations."""
-    y, rows, evaluations, pieces = np.array([1.0, 0.0]), [], 0, list(pieces)
+    y, rows, evaluations, pieces = np.array(start), [], 0, list(pieces)
     for a, b, number in pieces:
         inside = s[(s >= a) & ((s < b) | (b == pieces[-1][1]))]
         values, count = solve(law_of(number), (a, b), y, inside, method, rtol)

@@ -19,7 +19,8 @@ from kvtheory.charts.naive import Array, Piece, scaled_scene
 from kvtheory.charts.work_precision import MISSED, NO_LIMIT, WRONG, Clock, Reference
 from kvtheory.models.continuum import solver
 from kvtheory.models.continuum.prony import trajectory
-from kvtheory.models.continuum.solved_scene import scaled_drive
+from kvtheory.models.continuum.run import Beginning
+from kvtheory.models.continuum.solved_scene import beginning, scaled_drive
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.foundations import Arm, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
@@ -97,6 +98,16 @@ class Problem:
         return scaled_drive(self.scene, self.units)
 
     @cached_property
+    def start(self) -> Beginning:
+        """The scaled state just after s = 0."""
+        return beginning(self.scene, self.units, self.drive)
+
+    @property
+    def two_states(self) -> bool:
+        """Whether the indenter moves, on Kelvin-Voigt, from a contact; else they are none or too few."""
+        return not self.scene.held and not self.arms and self.start.depth > 0.0
+
+    @cached_property
     def times(self) -> Array:
         """Instants (s) at which errors are measured; where the drive jumps, just after the jump."""
         end, jumps = self.scene.run.duration, self._jumps
@@ -136,7 +147,7 @@ class Problem:
         if known and np.array_equal(known["times"], self.times):
             curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
             return curves, "stored solution, see the tests"
-        if not self.scene.held and not self.arms:  # else two states are none or too few
+        if self.two_states:
             try:
                 curves = by_two_states(self, INDEPENDENT_RTOL, method="Radau")[0]
             except ArithmeticError:
@@ -190,7 +201,7 @@ def by_continuum(
     units, drive = problem.units, problem.drive
     numbers = units.inertia_number, units.support_number
     s = np.minimum(problem.times / units.time, drive.end)
-    how: Any = {"fast": fast, "progress": clock.check}
+    how: Any = {"fast": fast, "progress": clock.check, "start": problem.start}
     if problem.arms:
         foundation = problem.scene.foundation
         how["damper"] = foundation.damping / (foundation.stiffness * units.time)
@@ -218,6 +229,7 @@ def by_two_states(
         return watched
 
     s = problem.times / units.time
+    how = {"start": problem.start[:2], **how}
     (d, _, f_x), count = naive.without_memory(problem.pieces, s, law_of, rtol=rtol, **how)
     return Curves(d, f_x), count
 

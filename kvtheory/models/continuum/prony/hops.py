@@ -20,9 +20,12 @@ from kvtheory.models.continuum.prony.step import prepare, solve
 from kvtheory.models.continuum.run import FREE, SIDES, TOUCHING
 
 CLOSED = 0.03
-"""Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens at a
-penetration of the square of this width. The pressure on ground that is met again there is wrong in proportion
-to it, the forces as its cube."""
+"""Width of a contact that counts as closed, relative to the cubic root of the tolerance; a contact opens to
+it in one step. The pressure on ground that is met again there is wrong in proportion to it, the forces as its
+cube. As edges move uniformly in that step, the pressure may seem largest beside the middle, but within half
+of the width: a contact that withdraws is closed before."""
+SHORTEST_OPENING = 4e-13
+"""Least step in which a contact opens, relative to the run."""
 BRIEF = 100.0
 """A contact that closes within so many of the shortest steps is closed too."""
 SAMPLES, REFINED, BISECTIONS = 3, 40, 60
@@ -291,8 +294,26 @@ def far_end(segment: Any, k: int) -> float:
     return float(segment.X_a if segment.edge == k else segment.X_b)
 
 
-def open_contact(run: Run, span: float) -> bool:
-    """Take the step of length `span` in which a contact opens; return whether it is solved."""
+def open_contact(run: Run, longest: float) -> bool:
+    """Take the step in which a contact opens, on ground that fits the indenter a shorter one than `longest`.
+
+    Return whether it is solved.
+    """
+    now, first = run.now, (int(run.now.sides[0].segment), int(run.now.sides[1].segment))
+    now.span = longest
+    opened = _open(run, longest)
+    width = run.stages.edges[run.given.stages - 1, 1] - run.stages.edges[run.given.stages - 1, 0]
+    if opened and width > closed(run):
+        for k in range(2):
+            aim(run, k, first[k])
+        share = closed(run) / width  # it grows as the root of the time
+        now.span = max(share * share * longest, SHORTEST_OPENING * run.given.end)
+        opened = _open(run, now.span)
+    return opened
+
+
+def _open(run: Run, span: float) -> bool:
+    """Try the step of length `span` in which a contact opens; return whether it is solved."""
     now, n, xi = run.now, run.given.stages, run.now.sides[0].xi
     prepare(run, span)
     if not _without_forces(run, xi):

@@ -258,6 +258,8 @@ def with_pauses(
             last = end + lost
         moved = row.copy()
         moved[[b_.START, b_.END]] += lost
+        if found:  # without a gap by rounding, in which there would be no step
+            moved[b_.START] = found[-1][b_.END]
         found.append(moved)
         pauses.append((False, start))
         depths.append((depth, rate, 0.0))

@@ -380,9 +380,8 @@ def _fly(run: Run, until: float) -> int:
         now.steps += 1
     if theta > 1.0:
         return DONE
-    now.span = max((theta - touches) * span, 4.0 * shortest)
     h_.land(run, side, number, x)
-    if not h_.open_contact(run, now.span):
+    if not h_.open_contact(run, max((theta - touches) * span, h_.SHORTEST_OPENING * run.given.end)):
         return STUCK
     _commit(run, now.span, until, 1.0)
     now.steps += 1
