@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.special import j0
+from scipy.special import j0, xlogy
 
 Array = NDArray[np.float64]
 
@@ -114,18 +114,13 @@ def _points(length: float, H: float) -> Any:
 
 def _log_integral(x: Array, b: float) -> Array:
     """Return int log(x^2 + b^2) dx."""
-    return (
-        x * np.log(np.maximum(x * x + b * b, TINY))
-        - 2.0 * x
-        + (2.0 * b * np.arctan(x / b) if b else 0.0)
-    )
+    return xlogy(x, x * x + b * b) - 2.0 * x + 2.0 * b * np.arctan2(x, b)
 
 
 def _box_integral(x: Array, y: Array, b: float) -> Array:
     """Return a double integral of 1/sqrt(x^2 + y^2 + b^2) over x and y, odd in both (Love 1929)."""
     across, along = (np.arcsinh(v / np.maximum(np.hypot(u, b), TINY)) for u, v in ((x, y), (y, x)))
-    found = x * across + y * along
-    return found - (b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b)) if b else 0.0)
+    return x * across + y * along - b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b))
 
 
 def _cell(x: Array, sides: Array, b: float) -> Array:
@@ -134,44 +129,31 @@ def _cell(x: Array, sides: Array, b: float) -> Array:
     return np.diff(after - before, axis=1) / (2.0 * math.pi)
 
 
-def _distances(n: int, per_cell: int, shift: float) -> Array:
-    """Return -n + shift .. n + shift in steps of 1/per_cell; without a shift, one half of them."""
-    return np.arange(0 if shift == 0.0 else -n * per_cell, n * per_cell + 1) / per_cell + shift
-
-
-def _mirrored(found: Array, shift: float) -> Array:
-    return np.concatenate([found[:0:-1], found]) if shift == 0.0 else found
-
-
 @lru_cache(maxsize=32)
-def of_line(n: int, per_cell: int, shift: float, H: float, poisson_ratio: float) -> Array:
-    """Return the displacement at -n + shift .. n + shift, in steps of 1/per_cell, from a strip of one cell.
-
-    Of shape (2 n per_cell + 1, 1); H is finite: the logarithm of the half-plane has no depth.
-    """
-    x = _distances(n, per_cell, shift)
-    return _mirrored(_line(x, H, poisson_ratio, 1.0), shift)[:, None]
-
-
-@lru_cache(maxsize=8)
 def of_cell(
-    n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float
+    n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float | None
 ) -> Array:
-    """Return the displacement at these distances along x and 0 .. m - 1 cells across from a cell."""
-    x, y = _distances(n, per_cell, shift)[:, None], width * np.arange(float(m))
-    found = _cell(x, width * np.arange(-0.5, m), 0.0)
+    """Return the displacement from a cell, or a strip (`width` None), at distances along x and across.
+
+    Along x they are -n + shift .. n + shift, in steps of 1/per_cell; across 0 .. m - 1 cells, of a strip 0
+    only. H of a strip is finite: the logarithm of the half-plane has no depth.
+    """
+    distances = np.arange(-n * per_cell, n * per_cell + 1) / per_cell + shift
+    x, where = np.unique(abs(distances), return_inverse=True)
+    if width is None:
+        return _line(x, H, poisson_ratio, 1.0)[where, None]
+    x, y, sides = x[:, None], width * np.arange(float(m)), width * np.arange(-0.5, m)
+    found = _cell(x, sides, 0.0)
     if math.inf == H:
-        return _mirrored(found, shift)
-    found -= _cell(x, width * np.arange(-0.5, m), 2.0 * H)
+        return found[where]
+    found -= _cell(x, sides, 2.0 * H)
     near = np.hypot(x, y) < REACH * H
     rows, columns = near.any(axis=1), int(np.count_nonzero(near.any(axis=0)))
-    at, rest = x[rows], np.zeros((np.count_nonzero(rows), columns))
     for u, along in zip(*_points(1.0, H), strict=True):
         for v, across in zip(*_points(width, H), strict=True):
-            r = np.hypot(at + u, y[:columns] + v) / H
-            rest += along * across * width / H * _rest_of_point(r, poisson_ratio)
-    found[rows, :columns] += rest
-    return _mirrored(np.where(near, found, 0.0), shift)
+            r = np.hypot(x[rows] + u, y[:columns] + v) / H
+            found[rows, :columns] += along * across * width / H * _rest_of_point(r, poisson_ratio)
+    return np.where(near, found, 0.0)[where]
 
 
 def far_away(x: Array, y: Array, H: float, poisson_ratio: float, width: float | None) -> Array:

@@ -27,21 +27,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
+from scipy.special import factorial, gammainc
 
 from kvtheory.layer import compliance
 
 Array = NDArray[np.float64]
 
-GAUSS = (
-    0.5 * np.polynomial.legendre.leggauss(20)[0] + 0.5,
-    0.5 * np.polynomial.legendre.leggauss(20)[1],
-)
+NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(20))
 STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
 """Cells behind the one reached from which the cubic over the first of them follows."""
 INTERPOLATION = 0.5 * np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]])
 """Powers 0 to 3 in the cubic of the influence in each of these cells."""
-LARGE = 2.0
-"""Decay in a cell from which the moments follow by recurrence, which would lose digits below."""
+SLOWEST_DECAY = 1e-12
+"""Decay in a cell below which the preconditioner takes no less."""
 FORGOTTEN = 40.0
 """Decay after which nothing is remembered."""
 PANELS = 2.0 ** np.arange(60) - 0.5
@@ -78,6 +76,16 @@ class Creep(NamedTuple):
             self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)
         )
 
+    def remembered(self, travelled: Array, n: int) -> Array:
+        """Return what is remembered after 0 .. n - 1 cells, of 1 met in the first, (n,).
+
+        `travelled` is V theta_k in cells.
+        """
+        z = np.maximum(1.0 / travelled, SLOWEST_DECAY)
+        found = np.exp(-np.outer(np.arange(n), z)) @ (self.shares * -np.expm1(-z))
+        found[0] += self.glassy
+        return np.asarray(found)
+
     def phase(self, wave: float, velocity: float) -> float:
         """Return by how many radians the displacement lags the pressure of a moving wave, 0 to pi/2."""
         return -float(
@@ -86,14 +94,9 @@ class Creep(NamedTuple):
 
 
 def moments(z: float) -> Array:
-    """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3."""
-    if z < LARGE:
-        t, weight = GAUSS
-        return np.array([np.sum(weight * z * np.exp(-z * t) * t**n) for n in range(4)])
-    found = [-math.expm1(-z)]
-    for n in range(1, 4):
-        found.append(n / z * found[-1] - math.exp(-z))
-    return np.array(found)
+    """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3: incomplete gamma functions."""
+    n = np.arange(4)
+    return np.asarray(factorial(n) / z**n * gammainc(n + 1, z))
 
 
 def filtered(influence: Array, ahead: Array, z: float) -> Array:
@@ -114,9 +117,8 @@ def average_ahead(n: float, y: Array, z: float, H: float, nu: float, width: floa
     """Return e at the distance n ahead of a cell, for each distance y across."""
     edges = min(1.0 / z, n) * np.concatenate([[0.0], PANELS])
     edges = edges[: 1 + np.searchsorted(edges * z, FORGOTTEN)]
-    t, weight = GAUSS
-    s = (edges[:-1, None] + np.diff(edges)[:, None] * t).ravel()
-    weights = np.outer(np.diff(edges), weight).ravel() * z * np.exp(-z * s)
+    s = (edges[:-1, None] + np.diff(edges)[:, None] * (0.5 + NODES)).ravel()
+    weights = np.outer(np.diff(edges), WEIGHTS).ravel() * z * np.exp(-z * s)
     return weights @ compliance.far_away(n + s[:, None], y, H, nu, width)
 
 
