@@ -40,6 +40,8 @@ KNOTS = 3001
 """Knots of the spline of the rest under a point: 1e-10 of its largest value."""
 TINY = 1e-150
 """Instead of zero where zero times a logarithm of it is zero."""
+HALF_SPACE = 1e3
+"""Kappa of a half-space."""
 SERIES = 1.0
 """Below it sinh y - y is summed: its difference would lose digits."""
 
@@ -60,6 +62,17 @@ def transform(kappa: Any, poisson_ratio: float) -> Any:
     top = (2.0 - 4.0 * nu) * 0.5 * -np.expm1(-2.0 * y) + excess
     bottom = (3.0 - 4.0 * nu) * 0.5 * (1.0 + e * e)
     return top / (bottom + (2.0 * kappa**2 + 5.0 - 12.0 * nu + 8.0 * nu**2) * e)
+
+
+def stiffness(
+    along: Array, across: Array, H: float, poisson_ratio: float, width: float | None
+) -> Array:
+    """Return pressure over displacement of waves, k/T(k H), from their numbers per cell along x and across.
+
+    A half-space yields without bound to a uniform pressure, which counts as half the lowest number.
+    """
+    k = np.maximum(np.hypot(along, across / (width or 1.0)), 0.5 * along[1])
+    return np.asarray(k / transform(np.minimum(k * H, HALF_SPACE), poisson_ratio))
 
 
 def _rest(poisson_ratio: float) -> Array:

@@ -15,11 +15,12 @@ GMRES, with convolutions by Fourier transforms that are padded along x and are o
 periodic.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import dct, idct, irfft, next_fast_len, rfft
+from scipy.fft import dct, idct, irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 from scipy.sparse.linalg import LinearOperator, gmres
 
@@ -28,10 +29,8 @@ Flags = NDArray[np.bool_]
 
 STEPS, RESTARTS = 40, 10
 """Steps of GMRES between restarts, and restarts; 5 to 30 steps in all are usual."""
-LEAST = 1e-3
-"""Least compliance of a wave in the preconditioner, over the largest: some are below 0, by what is cut off."""
 LOOSE, TIGHT = 1e-4, 1e-10
-"""Relative residuals of GMRES: until the set stays, and then, as friction is a small difference of pressures."""
+"""Relative residuals of GMRES, until the set stays and then: friction is a small difference of pressures."""
 MOST_SETS = 500
 CHANCES = 10
 """Steps in a row that need not reduce the number of wrong cells; after them one cell changes at a time."""
@@ -71,20 +70,25 @@ class Influence:
     the slope of the influence by memory.
 
     GMRES starts from a nearly inverse operator. `memory` is what the material remembers after 0, 1, .. cells
-    of sliding, of 1 met in the first. From what is remembered follows what was met, in
-    each row of cells in contact, and from that the pressure, by the inverse of the elastic influence over all
-    cells.
+    of sliding, of 1 met in the first. From what is remembered follows what was met, in each row of cells in
+    contact, and from that the pressure, by the elastic `stiffness` of waves over all cells, whose numbers
+    per cell along x and across are its arguments.
     """
 
     def __init__(
-        self, influence: Array, loss: Array, elastic: Array, m: int, memory: Array
+        self,
+        influence: Array,
+        loss: Array,
+        m: int,
+        memory: Array,
+        stiffness: Callable[[Array, Array], Array],
     ) -> None:
         n = len(memory)
         self.shape, self.folded = (n, m), influence.shape[1] > 1
         self.length = next_fast_len(2 * n - 1, real=True)
         self.transformed, self.loss = self._transformed(influence), loss
-        waves = self._transformed(elastic).real
-        self.inverse = 1.0 / np.maximum(waves, LEAST * waves.max())
+        across = np.pi * np.arange(2 * m if self.folded else 1) / (2 * m)
+        self.inverse = stiffness(2.0 * np.pi * rfftfreq(self.length)[:, None], across)
         self.met = rfft(lfilter([1.0], memory, np.eye(n)[0]), self.length)[:, None]
 
     def _transformed(self, influence: Array) -> Array:

@@ -1,6 +1,7 @@
 """Cells of pressure under the indenter: the contact on one grid, and grids that follow the contact."""
 
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -80,19 +81,17 @@ class Grid(NamedTuple):
         n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
         H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
 
-        def elastic(per_cell: int, shift: float) -> Array:
-            rows = rounded(2 * m + 1)
-            return compliance.of_cell(rounded(n + 1), rows, per_cell, shift, H, nu, self.width)
-
-        found, remembered = elastic(per_cell, shift), np.eye(n)[0]
-        loss = np.zeros_like(found)
+        sizes = rounded(n + 1), rounded(2 * m + 1), per_cell
+        found = compliance.of_cell(*sizes, shift, H, nu, self.width)
+        loss, remembered = np.zeros_like(found), np.eye(n)[0]
         if velocity != 0.0:
             travelled = self.travelled(body, velocity)
             remembered = body.creep.remembered(travelled, n)
             found, loss = memory.influence(
                 found, body.creep, travelled, per_cell, shift, H, nu, self.width
             )
-        return Influence(found, loss, elastic(1, 0.0), m, remembered)
+        stiffness = partial(compliance.stiffness, H=H, poisson_ratio=nu, width=self.width)
+        return Influence(found, loss, m, remembered, stiffness)
 
     def travelled(self, body: Body, velocity: float) -> Array:
         """Return how many cells are travelled in each retardation time."""

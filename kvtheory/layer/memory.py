@@ -95,7 +95,7 @@ class Creep(NamedTuple):
 
 def moments(z: float) -> Array:
     """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3: incomplete gamma functions."""
-    n = np.arange(4)
+    n, z = np.arange(4), min(max(z, 1e-100), 1e100)
     return np.asarray(factorial(n) / z**n * gammainc(n + 1, z))
 
 

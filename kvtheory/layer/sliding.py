@@ -227,21 +227,13 @@ def _require_convex(shape: Any, x: Array) -> None:
 
 
 def depth_under(shape: Any, body: Body, velocity: float, support: Support) -> Found:
-    """Return the contact at nearly the depth of a support on a coarse grid: a secant in the logarithms."""
-    log_depth = math.log(_first_depth(shape, body, support))
-    slope, tried = 1.5, (0.0, 0.0)
+    """Return the contact under the load of a support, on a coarse grid for nearly its depth."""
+    depth = _first_depth(shape, body, support)
     for _ in range(60):
-        depth = math.exp(log_depth)
-        start = first_grid(shape, body, depth)
-        found = start.settled(shape, body, velocity, Support(depth))
-        load = found.values(shape, body, velocity)["load"] + support.spring * depth
-        excess = math.log(load / support.carried)
-        if abs(excess) < CLOSE:
+        found = first_grid(shape, body, depth).settled(shape, body, velocity, support)
+        if abs(math.log(found.contact.depth / depth)) < CLOSE:
             return found
-        if log_depth != tried[0] != 0.0:
-            slope = min(max((excess - tried[1]) / (log_depth - tried[0]), 0.7), 4.0)
-        tried = log_depth, excess
-        log_depth -= excess / slope
+        depth = found.contact.depth
     raise ArithmeticError("no depth was found that carries the load")
 
 
