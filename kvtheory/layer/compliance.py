@@ -41,20 +41,20 @@ KNOTS = 3001
 TINY = 1e-150
 """Instead of zero where zero times a logarithm of it is zero."""
 HALF_SPACE = 1e3
-"""Kappa of a half-space."""
+"""Kappa beyond which T is 1."""
 SERIES = 1.0
 """Below it sinh y - y is summed: its difference would lose digits."""
 
 
 def transform(kappa: Any, poisson_ratio: float) -> Any:
-    """Return T(kappa) of a bonded layer (F30), for numbers or arrays above 0.
+    """Return T(kappa) of a bonded layer (F30), for numbers or arrays above 0; at infinity 1.
 
     Without loss of digits at small kappa and Poisson's ratio 1/2, where T falls as kappa^3.
 
     >>> print(f"{transform(1e-3, 0.5):.6g} {transform(1e-3, 0.3) / 1e-3:.6g} {transform(40.0, 0.2):.6g}")
     6.66665e-10 0.408163 1
     """
-    nu, kappa = poisson_ratio, np.asarray(kappa, dtype=float)
+    nu, kappa = poisson_ratio, np.minimum(kappa, HALF_SPACE)
     y, e = 2.0 * kappa, np.exp(-2.0 * kappa)
     small = np.minimum(y, SERIES)
     series = sum(small ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(1, 9))
@@ -72,12 +72,7 @@ def stiffness(
     A half-space yields without bound to a uniform pressure, which counts as half the lowest number.
     """
     k = np.maximum(np.hypot(along, across / (width or 1.0)), 0.5 * along[1])
-    return np.asarray(k / transform(np.minimum(k * H, HALF_SPACE), poisson_ratio))
-
-
-def _rest(poisson_ratio: float) -> Array:
-    """Return the rest, T - 1 + e^(-2 kappa), at `KAPPA`, times the weights of the rule."""
-    return (transform(KAPPA, poisson_ratio) + np.expm1(-2.0 * KAPPA)) * PER_KAPPA
+    return np.asarray(k / transform(k * H, poisson_ratio))
 
 
 @lru_cache(maxsize=16)
@@ -86,8 +81,9 @@ def _spline(poisson_ratio: float, line: bool) -> CubicSpline:
 
     f = cos(kappa r)/(pi kappa) of a line, J_0(kappa r)/(2 pi) of a point.
     """
-    r, rest = np.linspace(0.0, REACH, KNOTS), _rest(poisson_ratio) / (2.0 * math.pi)
-    wave, rest = (np.cos, 2.0 * rest / KAPPA) if line else (j0, rest)
+    r = np.linspace(0.0, REACH, KNOTS)
+    wave, share = (np.cos, 1.0 / (math.pi * KAPPA)) if line else (j0, 0.5 / math.pi)
+    rest = (transform(KAPPA, poisson_ratio) + np.expm1(-2.0 * KAPPA)) * share * PER_KAPPA
     values = [wave(np.outer(part, KAPPA)) @ rest for part in np.array_split(r, 16)]
     return CubicSpline(r, np.concatenate(values))
 

@@ -73,7 +73,7 @@ class Grid(NamedTuple):
         The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a
         quarter of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
         """
-        lag = body.creep.phase(math.pi / self.length, abs(velocity))
+        lag = float(np.angle(body.creep.modulus(1j * math.pi / self.length * abs(velocity))))
         return math.copysign(lag / math.pi, velocity) if lag > IN_PHASE else 0.0
 
     def influence(self, body: Body, velocity: float) -> Influence:
@@ -129,36 +129,29 @@ class Found(NamedTuple):
 
     def settled(self, shape: Any, body: Body, velocity: float, support: Support) -> "Found":
         """Return the contact on this grid, or on one that is larger if need be."""
-        grid, backward = self.grid, slice(None, None, -1 if velocity < 0.0 else None)
-        unit, shift, influence = (
-            grid.per_pressure(body),
-            grid.shift(body, velocity),
-            grid.influence(body, velocity),
-        )
-        pressure, depth = unilateral(
-            influence,
-            grid.height(shape, shift)[backward],
-            support.balance(unit),
-            self.contact._replace(pressure=self.contact.pressure[backward]),
-        )
-        contact = Contact(pressure[backward], depth)
-        active = contact.active
-        line = grid.width is None
+        grid, way = self.grid, math.copysign(1.0, velocity)
+        unit, shift, line = grid.per_pressure(body), grid.shift(body, velocity), grid.width is None
+        influence, ahead = grid.influence(body, velocity), slice(None, None, int(way))
+        start = Contact(self.contact.pressure[ahead], self.contact.depth)
+        height = grid.height(shape, shift)[ahead]
+        pressure, depth = unilateral(influence, height, support.balance(unit), start)
+        contact = Contact(pressure[ahead], depth)
+        active, pressed = contact.active, contact.pressure[contact.active]
         if active[[0, -1]].any() or (active[:, -1].any() and not line):
             n, m = 2 + len(active) // 5, 0 if line else 2 + grid.rows // 5
             larger = grid._replace(first=grid.first - n, last=grid.last + n, rows=grid.rows + m)
-            wider = np.pad(contact.pressure, ((n, n), (0, m)))
-            return Found(larger, Contact(wider, depth)).settled(shape, body, velocity, support)
+            wider = Contact(np.pad(contact.pressure, ((n, n), (0, m))), depth)
+            return Found(larger, wider).settled(shape, body, velocity, support)
         travelled, lag = grid.travelled(body, velocity), 0.0
         if travelled.max() < SLOW and hasattr(shape, "radius"):
             lag = 2.0 * float(travelled.max()) / np.count_nonzero(active.any(axis=1))
             bent = grid.slope(shape, active, 0.5) - grid.slope(shape, active, -0.5)
-            lost = float(body.creep.shares @ travelled * (contact.pressure[active] @ bent))
+            friction = way * float(body.creep.shares @ travelled * (pressed @ bent))
         elif shift:
-            lost = -float(contact.pressure[active] @ grid.slope(shape, active))
+            friction = -float(pressed @ grid.slope(shape, active))
         else:
-            lost = influence.lost(pressure) / grid.length
-        return Found(grid, contact, unit * math.copysign(lost, velocity), lag)
+            friction = way * influence.lost(pressure) / grid.length
+        return Found(grid, contact, unit * friction, lag)
 
     def values(self, shape: Any, body: Body, velocity: float) -> dict[str, float]:
         """Return the quantities of `Sliding` that are numbers, in SI."""

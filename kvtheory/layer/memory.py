@@ -25,6 +25,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 from scipy.special import factorial, gammainc
@@ -34,10 +35,8 @@ from kvtheory.layer import compliance
 Array = NDArray[np.float64]
 
 NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(20))
-STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
-"""Cells behind the one reached from which the cubic over the first of them follows."""
-INTERPOLATION = 0.5 * np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]])
-"""Powers 0 to 3 in the cubic of the influence in each of these cells."""
+INTERPOLATION = 0.5 * np.array([[0, 0, -1, 1], [0, 1, 4, -3], [2, 0, -5, 3], [0, -1, 2, -1]])
+"""Powers 0 to 3 of the distance back, in a cubic over the middle of three cells, of values at their ends."""
 SLOWEST_DECAY = 1e-12
 """Decay in a cell below which the preconditioner takes no less."""
 FORGOTTEN = 40.0
@@ -71,7 +70,7 @@ class Creep(NamedTuple):
         return cls(np.array([time]), np.ones(1), 0.0)
 
     def modulus(self, rate: Any) -> Any:
-        """Return E(s)/E_0 at real rates s, in 1/s."""
+        """Return E(s)/E_0 at rates s, in 1/s."""
         return 1.0 / (
             self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)
         )
@@ -86,12 +85,6 @@ class Creep(NamedTuple):
         found[0] += self.glassy
         return np.asarray(found)
 
-    def phase(self, wave: float, velocity: float) -> float:
-        """Return by how many radians the displacement lags the pressure of a moving wave, 0 to pi/2."""
-        return -float(
-            np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times)))
-        )
-
 
 def moments(z: float) -> Array:
     """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3: incomplete gamma functions."""
@@ -104,11 +97,9 @@ def filtered(influence: Array, ahead: Array, z: float) -> Array:
 
     `ahead` is e at the second cell, and z = 1/l the decay in a cell.
     """
-    decay, n = math.exp(-z), len(influence)
-    weights = INTERPOLATION @ (moments(z) - [1.0, 0.0, 0.0, 0.0]) + [0.0, 0.0, decay, 0.0]
-    taken = sum(
-        w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True)
-    )
+    decay = math.exp(-z)
+    weights = INTERPOLATION @ (moments(z) - [1.0, 0.0, 0.0, 0.0]) + [0.0, decay, 0.0, 0.0]
+    taken = sliding_window_view(influence, 4, axis=0) @ weights
     begin = decay * (ahead - influence[1])
     return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=begin[None])[0]
 

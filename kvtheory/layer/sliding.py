@@ -42,7 +42,7 @@ SAFETY, SLOWEST = 2.0, 0.95
 """Safety of the errors, and largest ratio of successive changes that is taken for convergence."""
 CONVERGED = "depth", "load", "friction_force"
 CLOSE = 0.1
-"""Difference of the logarithms of loads at which a depth is close to that of a load."""
+"""Difference of the logarithms of depths at which a grid made for the one is good for the other."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,10 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     found = {}
     for name, last in known[-1].items():
         changes = [abs(late[name] - early[name]) for early, late in pairwise(known[-LEVELS - 1 :])]
-        error = 0.0 if math.isinf(last) else SAFETY * max(changes[-2:])
+        if math.isinf(last):
+            found[name] = 0.0
+            continue
+        error = SAFETY * max(changes[-2:])
         if name.endswith("edge"):
             found[name] = max(error, cell)
             continue
@@ -244,8 +247,7 @@ def _first_depth(shape: Any, body: Body, support: Support) -> float:
         depth = math.exp(log_depth)
         a = half_length(shape, depth)
         area = 2.0 * a if shape.per_width else math.pi * a * a * shape.stretch
-        kappa = min(body.thickness / a, 1e3)
-        T = float(compliance.transform(kappa, body.poisson_ratio))
+        T = float(compliance.transform(body.thickness / a, body.poisson_ratio))
         load = area * depth / (body.compliance * T * a) + support.spring * depth
         return math.log(load / support.carried)
 
