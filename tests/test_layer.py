@@ -333,6 +333,24 @@ def test_a_ball_on_a_damper_is_solved_on_fine_grids(H, V, load):
     assert known[-2] == pytest.approx(known[-1], rel=2e-3)
 
 
+def test_a_ball_on_a_stiff_arm_is_solved_where_it_slides_slowly():
+    """Its friction is nearly V tau/R (F28), and needs thousands of cells that were hard to solve for."""
+    V = -2e-6
+    found = slide(Sphere(radius=R), rubber(0.01, 0.49, [(4e7, 1.0)]), V, Support(1e-4), rtol=1e-2)
+    assert 0.9 < found.friction_coefficient * R / (40.0 * V) < 1.0
+    assert found.errors["friction_force"] < 0.01 * abs(found.friction_force)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_stiffness_of_waves_inverts_the_influence(nu):
+    """A wave along x that many cells make, and the shortest one to the order of a cell."""
+    H, n, influence = 3.0, 160, compliance.of_cell(160, 1, 1, 0.0, 3.0, nu, None)[:, 0]
+    for k, tolerance in ((math.pi / 40.0, 2e-3), (math.pi, 0.2)):
+        found = np.sum(influence * np.cos(k * np.arange(-n, n + 1)))
+        right = compliance.stiffness(np.array([0.0, k]), np.zeros(2), H, nu, None)[1]
+        assert found * right == pytest.approx(1.0, rel=tolerance)
+
+
 def test_dimensionality_reduction_is_not_for_sliding():
     """Elements that are exact in normal contact of a ball have twice its friction, and then a wrong load."""
     E = 1e6 / (1 - 0.5**2)

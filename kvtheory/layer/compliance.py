@@ -138,7 +138,7 @@ def _cell(x: Array, sides: Array, b: float) -> Array:
     return np.diff(after - before, axis=1) / (2.0 * math.pi)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=12)
 def of_cell(
     n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float | None
 ) -> Array:
