@@ -1,13 +1,12 @@
 """Steady sliding of scenes on the body itself, as a result with its errors."""
 
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from kvtheory.layer.body import Body, Support
-from kvtheory.layer.sliding import Sliding, slide, slide_at
+from kvtheory.layer.sliding import Sliding, at_rest, slide
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Certificate, PressureField, SteadyState, units_for
 from kvtheory.scene.model import Scene
@@ -42,13 +41,12 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
     scenes = [flat.rows(i) for i in range(math.prod(size))] if size else [scene]
     rows: list[list[float]] = []
     fields: list[PressureField] = []
-    at_rest: dict[tuple[int, float], Sliding] = {}
-    for i, (each, found) in enumerate(zip(scenes, _slidings(scene, scenes), strict=True)):
-        key = 0 if _at_velocities(scene) else i, found.depth
-        if key not in at_rest:
-            shape, body, _ = given(each)
-            at_rest[key] = slide(shape, body, 0.0, Support(found.depth), AT_REST)
-        rows.append(_row(each, found, at_rest[key]))
+    for each in scenes:
+        shape, body = each.indenter, Body.of_foundation(each.foundation)
+        velocity, support = float(each.drive.final_velocity), Support.of_scene(each.support)
+        found = slide(shape, body, velocity, support, RTOL[shape.per_width])
+        held = at_rest(shape, *body[:3], Support(found.depth), AT_REST)
+        rows.append(_row(each, found, held))
         fields = [] if size else [_field(found)]
         report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")
     names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
@@ -67,35 +65,11 @@ def solve(scene: Scene, report: Progress) -> SteadyState:
     )
 
 
-def given(scene: Scene) -> tuple[Any, Body, Support]:
-    """Return shape, body and support of one scene."""
-    return scene.indenter, Body.of_foundation(scene.foundation), Support.of_scene(scene.support)
-
-
-def _slidings(scene: Scene, scenes: list[Scene]) -> Iterable[Sliding]:
-    """Yield steady sliding of each scene; scenes at several velocities share what is at rest."""
-    if not scenes:
-        return ()
-    rtol, V = RTOL[scene.indenter.per_width], [float(each.drive.final_velocity) for each in scenes]
-    if _at_velocities(scene):
-        shape, body, support = given(scenes[0])
-        return slide_at(shape, body, V, support, rtol)
-    return (
-        slide(shape, body, v, support, rtol)
-        for v, (shape, body, support) in zip(V, map(given, scenes), strict=True)
-    )
-
-
-def _at_velocities(scene: Scene) -> bool:
-    """Whether the scenes of arrays differ in their velocities alone."""
-    return scene.arrays().keys() <= {"drive.velocity"}
-
-
-def _row(scene: Scene, found: Sliding, at_rest: Sliding) -> list[float]:
+def _row(scene: Scene, found: Sliding, held: Sliding) -> list[float]:
     """Return the quantities of one scene, and then the relative errors of those `WITH_ERROR`."""
     length = found.trailing_edge - found.leading_edge
-    half_length = 0.5 * (at_rest.trailing_edge - at_rest.leading_edge)
-    half_error = 0.5 * (at_rest.errors["leading_edge"] + at_rest.errors["trailing_edge"])
+    half_length = 0.5 * (held.trailing_edge - held.leading_edge)
+    half_error = 0.5 * (held.errors["leading_edge"] + held.errors["trailing_edge"])
     values = [getattr(found, name) for name in FOUND]
     errors = [
         _relative(found.errors[name], length if name.endswith("edge") else value)

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.special import j0
+from scipy.special import j0, xlogy
 
 Array = NDArray[np.float64]
 
@@ -40,19 +40,21 @@ KNOTS = 3001
 """Knots of the spline of the rest under a point: 1e-10 of its largest value."""
 TINY = 1e-150
 """Instead of zero where zero times a logarithm of it is zero."""
+HALF_SPACE = 1e3
+"""Kappa beyond which T is 1."""
 SERIES = 1.0
 """Below it sinh y - y is summed: its difference would lose digits."""
 
 
 def transform(kappa: Any, poisson_ratio: float) -> Any:
-    """Return T(kappa) of a bonded layer (F30), for numbers or arrays above 0.
+    """Return T(kappa) of a bonded layer (F30), for numbers or arrays above 0; at infinity 1.
 
     Without loss of digits at small kappa and Poisson's ratio 1/2, where T falls as kappa^3.
 
     >>> print(f"{transform(1e-3, 0.5):.6g} {transform(1e-3, 0.3) / 1e-3:.6g} {transform(40.0, 0.2):.6g}")
     6.66665e-10 0.408163 1
     """
-    nu, kappa = poisson_ratio, np.asarray(kappa, dtype=float)
+    nu, kappa = poisson_ratio, np.minimum(kappa, HALF_SPACE)
     y, e = 2.0 * kappa, np.exp(-2.0 * kappa)
     small = np.minimum(y, SERIES)
     series = sum(small ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(1, 9))
@@ -62,9 +64,15 @@ def transform(kappa: Any, poisson_ratio: float) -> Any:
     return top / (bottom + (2.0 * kappa**2 + 5.0 - 12.0 * nu + 8.0 * nu**2) * e)
 
 
-def _rest(poisson_ratio: float) -> Array:
-    """Return the rest, T - 1 + e^(-2 kappa), at `KAPPA`, times the weights of the rule."""
-    return (transform(KAPPA, poisson_ratio) + np.expm1(-2.0 * KAPPA)) * PER_KAPPA
+def stiffness(
+    along: Array, across: Array, H: float, poisson_ratio: float, width: float | None
+) -> Array:
+    """Return pressure over displacement of waves, k/T(k H), from their numbers per cell along x and across.
+
+    A half-space yields without bound to a uniform pressure, which counts as half the lowest number.
+    """
+    k = np.maximum(np.hypot(along, across / (width or 1.0)), 0.5 * along[1])
+    return np.asarray(k / transform(k * H, poisson_ratio))
 
 
 @lru_cache(maxsize=16)
@@ -73,8 +81,9 @@ def _spline(poisson_ratio: float, line: bool) -> CubicSpline:
 
     f = cos(kappa r)/(pi kappa) of a line, J_0(kappa r)/(2 pi) of a point.
     """
-    r, rest = np.linspace(0.0, REACH, KNOTS), _rest(poisson_ratio) / (2.0 * math.pi)
-    wave, rest = (np.cos, 2.0 * rest / KAPPA) if line else (j0, rest)
+    r = np.linspace(0.0, REACH, KNOTS)
+    wave, share = (np.cos, 1.0 / (math.pi * KAPPA)) if line else (j0, 0.5 / math.pi)
+    rest = (transform(KAPPA, poisson_ratio) + np.expm1(-2.0 * KAPPA)) * share * PER_KAPPA
     values = [wave(np.outer(part, KAPPA)) @ rest for part in np.array_split(r, 16)]
     return CubicSpline(r, np.concatenate(values))
 
@@ -114,18 +123,13 @@ def _points(length: float, H: float) -> Any:
 
 def _log_integral(x: Array, b: float) -> Array:
     """Return int log(x^2 + b^2) dx."""
-    return (
-        x * np.log(np.maximum(x * x + b * b, TINY))
-        - 2.0 * x
-        + (2.0 * b * np.arctan(x / b) if b else 0.0)
-    )
+    return xlogy(x, x * x + b * b) - 2.0 * x + 2.0 * b * np.arctan2(x, b)
 
 
 def _box_integral(x: Array, y: Array, b: float) -> Array:
     """Return a double integral of 1/sqrt(x^2 + y^2 + b^2) over x and y, odd in both (Love 1929)."""
     across, along = (np.arcsinh(v / np.maximum(np.hypot(u, b), TINY)) for u, v in ((x, y), (y, x)))
-    found = x * across + y * along
-    return found - (b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b)) if b else 0.0)
+    return x * across + y * along - b * np.arctan2(x * y, b * np.sqrt(x * x + y * y + b * b))
 
 
 def _cell(x: Array, sides: Array, b: float) -> Array:
@@ -134,44 +138,31 @@ def _cell(x: Array, sides: Array, b: float) -> Array:
     return np.diff(after - before, axis=1) / (2.0 * math.pi)
 
 
-def _distances(n: int, per_cell: int, shift: float) -> Array:
-    """Return -n + shift .. n + shift in steps of 1/per_cell; without a shift, one half of them."""
-    return np.arange(0 if shift == 0.0 else -n * per_cell, n * per_cell + 1) / per_cell + shift
-
-
-def _mirrored(found: Array, shift: float) -> Array:
-    return np.concatenate([found[:0:-1], found]) if shift == 0.0 else found
-
-
-@lru_cache(maxsize=32)
-def of_line(n: int, per_cell: int, shift: float, H: float, poisson_ratio: float) -> Array:
-    """Return the displacement at -n + shift .. n + shift, in steps of 1/per_cell, from a strip of one cell.
-
-    Of shape (2 n per_cell + 1, 1); H is finite: the logarithm of the half-plane has no depth.
-    """
-    x = _distances(n, per_cell, shift)
-    return _mirrored(_line(x, H, poisson_ratio, 1.0), shift)[:, None]
-
-
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=12)
 def of_cell(
-    n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float
+    n: int, m: int, per_cell: int, shift: float, H: float, poisson_ratio: float, width: float | None
 ) -> Array:
-    """Return the displacement at these distances along x and 0 .. m - 1 cells across from a cell."""
-    x, y = _distances(n, per_cell, shift)[:, None], width * np.arange(float(m))
-    found = _cell(x, width * np.arange(-0.5, m), 0.0)
+    """Return the displacement from a cell, or a strip (`width` None), at distances along x and across.
+
+    Along x they are -n + shift .. n + shift, in steps of 1/per_cell; across 0 .. m - 1 cells, of a strip 0
+    only. H of a strip is finite: the logarithm of the half-plane has no depth.
+    """
+    distances = np.arange(-n * per_cell, n * per_cell + 1) / per_cell + shift
+    x, where = np.unique(abs(distances), return_inverse=True)
+    if width is None:
+        return _line(x, H, poisson_ratio, 1.0)[where, None]
+    x, y, sides = x[:, None], width * np.arange(float(m)), width * np.arange(-0.5, m)
+    found = _cell(x, sides, 0.0)
     if math.inf == H:
-        return _mirrored(found, shift)
-    found -= _cell(x, width * np.arange(-0.5, m), 2.0 * H)
+        return found[where]
+    found -= _cell(x, sides, 2.0 * H)
     near = np.hypot(x, y) < REACH * H
     rows, columns = near.any(axis=1), int(np.count_nonzero(near.any(axis=0)))
-    at, rest = x[rows], np.zeros((np.count_nonzero(rows), columns))
     for u, along in zip(*_points(1.0, H), strict=True):
         for v, across in zip(*_points(width, H), strict=True):
-            r = np.hypot(at + u, y[:columns] + v) / H
-            rest += along * across * width / H * _rest_of_point(r, poisson_ratio)
-    found[rows, :columns] += rest
-    return _mirrored(np.where(near, found, 0.0), shift)
+            r = np.hypot(x[rows] + u, y[:columns] + v) / H
+            found[rows, :columns] += along * across * width / H * _rest_of_point(r, poisson_ratio)
+    return np.where(near, found, 0.0)[where]
 
 
 def far_away(x: Array, y: Array, H: float, poisson_ratio: float, width: float | None) -> Array:

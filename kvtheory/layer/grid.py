@@ -1,6 +1,7 @@
 """Cells of pressure under the indenter: the contact on one grid, and grids that follow the contact."""
 
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,8 +21,6 @@ IN_PHASE = 0.5
 SLOW = 0.2
 """Cells travelled in a retardation time below which friction under a parabola, circle or ball is its limit at
 low velocity: what edges add, which jump from cell to cell, is larger than what the limit lacks."""
-SLOWEST_DECAY = 1e-12
-"""Decay of the memory in a cell below which the preconditioner takes no less."""
 HALVINGS = 0.5 ** np.arange(1, 100)
 
 
@@ -50,28 +49,23 @@ class Grid(NamedTuple):
         """Centres across, (m,)."""
         return (np.arange(self.rows, dtype=float) + 0.5) * (self.width or 0.0) * self.length
 
-    def height(self, shape: Any, shift: float = 0.0) -> Array:
-        """Return the height of a shape, infinite beyond its reach; `shift` is in cells."""
-        x, y = np.broadcast_arrays(self.x + shift * self.length, self.y)
-        inside = np.hypot(x, y) < shape.reach
-        found = np.full(x.shape, math.inf)
-        where = (x[inside],) if self.width is None else (x[inside], y[inside])
-        found[inside] = shape.height(*where)
-        return found
+    def points(self, shift: float) -> Any:
+        """Return x of all cells, and of a ball y too; `shift` is in cells."""
+        both = np.broadcast_arrays(self.x + shift * self.length, self.y)
+        return both[:1] if self.width is None else both
 
-    def bending(self, shape: Any, inside: Any) -> Array:
-        """Return the change of the slope along x over the cells `inside`, within the reach of a shape."""
-        return self.slope(shape, inside, 0.5) - self.slope(shape, inside, -0.5)
+    def height(self, shape: Any, shift: float) -> Array:
+        """Return the height of a shape, infinite beyond its reach; `shift` is in cells."""
+        points = self.points(shift)
+        inside = np.linalg.norm(points, axis=0) < shape.reach
+        found = np.full(inside.shape, math.inf)
+        found[inside] = shape.height(*(each[inside] for each in points))
+        return found
 
     def slope(self, shape: Any, inside: Any, shift: float = 0.0) -> Array:
-        """Return the slope of a shape along x in the cells `inside`, else zero; `shift` is in cells."""
-        x, y = np.broadcast_arrays(self.x + shift * self.length, self.y)
-        x = np.clip(x, -shape.reach, shape.reach)
-        found = np.zeros(x.shape)
-        found[inside] = shape.slope(
-            *((x[inside],) if self.width is None else (x[inside], y[inside]))
-        )
-        return found
+        """Return the slope of a shape along x in the cells `inside`; `shift` is in cells."""
+        x, *y = (each[inside] for each in self.points(shift))
+        return np.asarray(shape.slope(np.clip(x, -shape.reach, shape.reach), *y))
 
     def shift(self, body: Body, velocity: float) -> float:
         """Return how far behind their middle cells are compared with the indenter, in cells.
@@ -79,94 +73,34 @@ class Grid(NamedTuple):
         The shortest wave of the grid is two cells long. Where its displacement lags its pressure, by a
         quarter of it on Kelvin-Voigt, it is felt in full only that far behind, and hardly in the middle.
         """
-        lag = body.creep.phase(math.pi / self.length, abs(velocity))
+        lag = float(np.angle(body.creep.modulus(1j * math.pi / self.length * abs(velocity))))
         return math.copysign(lag / math.pi, velocity) if lag > IN_PHASE else 0.0
 
     def influence(self, body: Body, velocity: float) -> Influence:
-        """Return the influence of its cells in sliding at a velocity."""
+        """Return the influence of its cells in sliding along +x."""
         n, m, shift = self.last - self.first, self.rows, abs(self.shift(body, velocity))
         H, nu, per_cell = body.thickness / self.length, body.poisson_ratio, FINELY if shift else 1
 
-        def elastic(per_cell: int, shift: float) -> Array:
-            if self.width is None:
-                return compliance.of_line(rounded(n + 1), per_cell, shift, H, nu)
-            sizes = rounded(n + 1), rounded(2 * m + 1)
-            return compliance.of_cell(*sizes, per_cell, shift, H, nu, self.width)
-
-        found, decay = elastic(per_cell, shift), 0.0
-        loss = np.zeros_like(found)
+        sizes = rounded(n + 1), rounded(2 * m + 1), per_cell
+        found = compliance.of_cell(*sizes, shift, H, nu, self.width)
+        loss, remembered = np.zeros_like(found), np.eye(n)[0]
         if velocity != 0.0:
-            travelled = abs(velocity) * body.creep.times / self.length
+            travelled = self.travelled(body, velocity)
+            remembered = body.creep.remembered(travelled, n)
             found, loss = memory.influence(
                 found, body.creep, travelled, per_cell, shift, H, nu, self.width
             )
-            if body.creep.glassy == 0.0:
-                decay = math.copysign(math.exp(-max(1.0 / travelled[0], SLOWEST_DECAY)), velocity)
-        forward = slice(None, None, -1 if velocity < 0.0 else None)
-        still = elastic(1, 0.0) if decay else found
-        return Influence(found[forward], loss[forward], n, m, still, decay)
+        stiffness = partial(compliance.stiffness, H=H, poisson_ratio=nu, width=self.width)
+        return Influence(found, loss, m, remembered, stiffness)
 
-    def adapted(self, contact: Contact, finer: int) -> tuple["Grid", Contact]:
-        """Return a grid with cells `finer` times shorter around a contact, and the contact on it."""
-        spread = contact.pressure
-        for axis in (0, 1)[: 1 if self.width is None else 2]:
-            spread = np.repeat(spread, finer, axis)
-        i, j = (np.flatnonzero((spread > 0.0).any(axis)) for axis in (1, 0))
-        margin = 2 + int(i[-1] - i[0]) // 10
-        low, high = int(i[0]) - margin, int(i[-1]) + 1 + margin
-        rows = 1 if self.width is None else int(j[-1]) + 1 + margin
-        grid = Grid(
-            self.length / finer,
-            self.first * finer + low,
-            self.first * finer + high,
-            rows,
-            self.width,
-        )
-        pressure = np.zeros((high - low, rows))
-        kept = spread[max(low, 0) : high, :rows]
-        pressure[max(-low, 0) :][: len(kept), : kept.shape[1]] = kept
-        return grid, Contact(pressure, contact.depth)
-
-    def grown(self, contact: Contact) -> tuple["Grid", Contact] | None:
-        """Return a larger grid if the contact reaches the rim of this one, and the contact on it."""
-        active = contact.active
-        if not (
-            active[0].any() or active[-1].any() or (self.width is not None and active[:, -1].any())
-        ):
-            return None
-        n, m = (2 + each // 5 for each in active.shape)
-        m = 0 if self.width is None else m
-        larger = self._replace(first=self.first - n, last=self.last + n, rows=self.rows + m)
-        return larger, contact._replace(pressure=np.pad(contact.pressure, ((n, n), (0, m))))
+    def travelled(self, body: Body, velocity: float) -> Array:
+        """Return how many cells are travelled in each retardation time."""
+        return abs(velocity) * body.creep.times / self.length
 
     def per_pressure(self, body: Body) -> float:
         """Return the load for each unit of the sum of pressures of a `Contact`."""
         across = 1.0 if self.width is None else 2.0 * self.width * self.length
         return across / body.compliance
-
-    def settled(
-        self, shape: Any, body: Body, velocity: float, support: Support, start: Contact
-    ) -> "Found":
-        """Return the contact on this grid, or on one that is larger if need be."""
-        unit, shift = self.per_pressure(body), self.shift(body, velocity)
-        influence = self.influence(body, velocity)
-        height = self.height(shape, shift)
-        contact = unilateral(influence, height, support.balance(unit), start)
-        larger = self.grown(contact)
-        if larger is not None:
-            return larger[0].settled(shape, body, velocity, support, larger[1])
-        travelled = abs(velocity) * body.creep.times / self.length
-        lag = 0.0
-        if travelled.max() < SLOW and hasattr(shape, "radius"):
-            lag = 2.0 * float(travelled.max()) / np.count_nonzero(contact.active.any(axis=1))
-            delay = float(np.sum(body.creep.shares * travelled))
-            bent = self.bending(shape, contact.active)
-            friction = math.copysign(delay * float(np.sum(contact.pressure * bent)), velocity)
-        elif shift:
-            friction = -float(np.sum(contact.pressure * self.slope(shape, contact.active)))
-        else:
-            friction = math.copysign(influence.lost(contact.pressure) / self.length, velocity)
-        return Found(self, contact, unit * friction, lag)
 
 
 class Found(NamedTuple):
@@ -181,9 +115,43 @@ class Found(NamedTuple):
     friction: float = 0.0
     lag: float = 0.0
 
-    def finer(self, factor: int = 2) -> "Found":
-        """Return the start on a grid with cells `factor` times shorter."""
-        return Found(*self.grid.adapted(self.contact, factor))
+    def finer(self) -> "Found":
+        """Return the start on a grid with cells half as long, around the contact."""
+        grid, spread = self.grid, 0.5 * self.contact.pressure.repeat(2, 0).repeat(2, 1)
+        i, j = (np.flatnonzero(spread.any(axis)) for axis in (1, 0))
+        margin = 2 + int(np.ptp(i)) // 10
+        low, high = int(i[0]) - margin, int(i[-1]) + 1 + margin
+        rows = 1 if grid.width is None else int(j[-1]) + 1 + margin
+        spread = np.pad(spread, margin)[low + margin : high + margin, margin : margin + rows]
+        first = 2 * grid.first
+        finer = Grid(0.5 * grid.length, first + low, first + high, rows, grid.width)
+        return Found(finer, Contact(spread, self.contact.depth))
+
+    def settled(self, shape: Any, body: Body, velocity: float, support: Support) -> "Found":
+        """Return the contact on this grid, or on one that is larger if need be."""
+        grid, way = self.grid, math.copysign(1.0, velocity)
+        unit, shift, line = grid.per_pressure(body), grid.shift(body, velocity), grid.width is None
+        influence, ahead = grid.influence(body, velocity), slice(None, None, int(way))
+        start = Contact(self.contact.pressure[ahead], self.contact.depth)
+        height = grid.height(shape, shift)[ahead]
+        pressure, depth = unilateral(influence, height, support.balance(unit), start)
+        contact = Contact(pressure[ahead], depth)
+        active, pressed = contact.active, contact.pressure[contact.active]
+        if active[[0, -1]].any() or (active[:, -1].any() and not line):
+            n, m = 2 + len(active) // 5, 0 if line else 2 + grid.rows // 5
+            larger = grid._replace(first=grid.first - n, last=grid.last + n, rows=grid.rows + m)
+            wider = Contact(np.pad(contact.pressure, ((n, n), (0, m))), depth)
+            return Found(larger, wider).settled(shape, body, velocity, support)
+        travelled, lag = grid.travelled(body, velocity), 0.0
+        if travelled.max() < SLOW and hasattr(shape, "radius"):
+            lag = 2.0 * float(travelled.max()) / np.count_nonzero(active.any(axis=1))
+            bent = grid.slope(shape, active, 0.5) - grid.slope(shape, active, -0.5)
+            friction = way * float(body.creep.shares @ travelled * (pressed @ bent))
+        elif shift:
+            friction = -float(pressed @ grid.slope(shape, active))
+        else:
+            friction = way * influence.lost(pressure) / grid.length
+        return Found(grid, contact, unit * friction, lag)
 
     def values(self, shape: Any, body: Body, velocity: float) -> dict[str, float]:
         """Return the quantities of `Sliding` that are numbers, in SI."""

@@ -25,23 +25,20 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.signal import lfilter
+from scipy.special import factorial, gammainc
 
 from kvtheory.layer import compliance
 
 Array = NDArray[np.float64]
 
-GAUSS = (
-    0.5 * np.polynomial.legendre.leggauss(20)[0] + 0.5,
-    0.5 * np.polynomial.legendre.leggauss(20)[1],
-)
-STENCIL = np.array([-1.0, 0.0, 1.0, 2.0])
-"""Cells behind the one reached from which the cubic over the first of them follows."""
-INTERPOLATION = 0.5 * np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]])
-"""Powers 0 to 3 in the cubic of the influence in each of these cells."""
-LARGE = 2.0
-"""Decay in a cell from which the moments follow by recurrence, which would lose digits below."""
+NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(20))
+INTERPOLATION = 0.5 * np.array([[0, 0, -1, 1], [0, 1, 4, -3], [2, 0, -5, 3], [0, -1, 2, -1]])
+"""Powers 0 to 3 of the distance back, in a cubic over the middle of three cells, of values at their ends."""
+SLOWEST_DECAY = 1e-12
+"""Decay in a cell below which the preconditioner takes no less."""
 FORGOTTEN = 40.0
 """Decay after which nothing is remembered."""
 PANELS = 2.0 ** np.arange(60) - 0.5
@@ -73,27 +70,26 @@ class Creep(NamedTuple):
         return cls(np.array([time]), np.ones(1), 0.0)
 
     def modulus(self, rate: Any) -> Any:
-        """Return E(s)/E_0 at real rates s, in 1/s."""
+        """Return E(s)/E_0 at rates s, in 1/s."""
         return 1.0 / (
             self.glassy + np.sum(self.shares / (1.0 + np.multiply.outer(rate, self.times)), axis=-1)
         )
 
-    def phase(self, wave: float, velocity: float) -> float:
-        """Return by how many radians the displacement lags the pressure of a moving wave, 0 to pi/2."""
-        return -float(
-            np.angle(self.glassy + np.sum(self.shares / (1.0 + 1j * wave * velocity * self.times)))
-        )
+    def remembered(self, travelled: Array, n: int) -> Array:
+        """Return what is remembered after 0 .. n - 1 cells, of 1 met in the first, (n,).
+
+        `travelled` is V theta_k in cells.
+        """
+        z = np.maximum(1.0 / travelled, SLOWEST_DECAY)
+        found = np.exp(-np.outer(np.arange(n), z)) @ (self.shares * -np.expm1(-z))
+        found[0] += self.glassy
+        return np.asarray(found)
 
 
 def moments(z: float) -> Array:
-    """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3."""
-    if z < LARGE:
-        t, weight = GAUSS
-        return np.array([np.sum(weight * z * np.exp(-z * t) * t**n) for n in range(4)])
-    found = [-math.expm1(-z)]
-    for n in range(1, 4):
-        found.append(n / z * found[-1] - math.exp(-z))
-    return np.array(found)
+    """Return int_0^1 z e^(-z t) t^n dt for n = 0 .. 3: incomplete gamma functions."""
+    n, z = np.arange(4), min(max(z, 1e-100), 1e100)
+    return np.asarray(factorial(n) / z**n * gammainc(n + 1, z))
 
 
 def filtered(influence: Array, ahead: Array, z: float) -> Array:
@@ -101,11 +97,9 @@ def filtered(influence: Array, ahead: Array, z: float) -> Array:
 
     `ahead` is e at the second cell, and z = 1/l the decay in a cell.
     """
-    decay, n = math.exp(-z), len(influence)
-    weights = INTERPOLATION @ (moments(z) - [1.0, 0.0, 0.0, 0.0]) + [0.0, 0.0, decay, 0.0]
-    taken = sum(
-        w * influence[2 - int(t) : n - 1 - int(t)] for w, t in zip(weights, STENCIL, strict=True)
-    )
+    decay = math.exp(-z)
+    weights = INTERPOLATION @ (moments(z) - [1.0, 0.0, 0.0, 0.0]) + [0.0, decay, 0.0, 0.0]
+    taken = sliding_window_view(influence, 4, axis=0) @ weights
     begin = decay * (ahead - influence[1])
     return lfilter([1.0], [1.0, -decay], taken, axis=0, zi=begin[None])[0]
 
@@ -114,9 +108,8 @@ def average_ahead(n: float, y: Array, z: float, H: float, nu: float, width: floa
     """Return e at the distance n ahead of a cell, for each distance y across."""
     edges = min(1.0 / z, n) * np.concatenate([[0.0], PANELS])
     edges = edges[: 1 + np.searchsorted(edges * z, FORGOTTEN)]
-    t, weight = GAUSS
-    s = (edges[:-1, None] + np.diff(edges)[:, None] * t).ravel()
-    weights = np.outer(np.diff(edges), weight).ravel() * z * np.exp(-z * s)
+    s = (edges[:-1, None] + np.diff(edges)[:, None] * (0.5 + NODES)).ravel()
+    weights = np.outer(np.diff(edges), WEIGHTS).ravel() * z * np.exp(-z * s)
     return weights @ compliance.far_away(n + s[:, None], y, H, nu, width)
 
 

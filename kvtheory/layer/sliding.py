@@ -12,8 +12,9 @@ last three.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -41,7 +42,7 @@ SAFETY, SLOWEST = 2.0, 0.95
 """Safety of the errors, and largest ratio of successive changes that is taken for convergence."""
 CONVERGED = "depth", "load", "friction_force"
 CLOSE = 0.1
-"""Difference of the logarithms of loads at which a depth is close to that of a load."""
+"""Difference of the logarithms of depths at which a grid made for the one is good for the other."""
 
 
 @dataclass(frozen=True)
@@ -82,63 +83,63 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
     support = relaxed(shape, body, support, rtol)
     known: list[dict[str, float]] = []
     errors: dict[str, float] = {}
-    grids, wrong = levels(shape, body, velocity, support), "not begun"
-    while wrong and (found := _next(grids, known)):
+    for found in levels(shape, body, velocity, support):
+        grid = found.grid
         known.append(found.values(shape, body, velocity))
-        finest = found
         if len(known) >= LEVELS:
-            errors = errors_of(known, found.grid.length)
+            errors = errors_of(known, grid.length)
             for name in ("friction_force", "friction_coefficient"):
                 errors[name] += found.lag * abs(known[-1][name])
         wrong = _unconverged(known, errors, velocity, rtol)
-    if wrong:
-        message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
-        raise ToleranceError(f"{message}; the limits that `asymptotes` has need no grid")
-    grid = finest.grid
-    return Sliding(
-        **known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=finest.pressure(body)
-    )
+        if not wrong:
+            x, pressure = grid.x[:, 0], found.pressure(body)
+            return Sliding(**known[-1], errors=errors, x=x, y=grid.y, pressure=pressure)
+    message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
+    raise ToleranceError(f"{message}; the limits that `asymptotes` has need no grid")
 
 
-def slide_at(
-    shape: Any, body: Body, velocities: Iterable[float], support: Support, rtol: float = 1e-3
-) -> Iterator[Sliding]:
-    """Yield steady sliding at several velocities: elastic influences and the depth at rest are shared."""
-    support = relaxed(shape, body, support, rtol)
-    for velocity in velocities:
-        yield slide(shape, body, velocity, support, rtol)
+@lru_cache(maxsize=64)
+def at_rest(
+    shape: Any,
+    modulus: float,
+    thickness: float,
+    poisson_ratio: float,
+    support: Support,
+    rtol: float,
+) -> Sliding:
+    """Return the contact at rest, which needs no memory, and is kept for other velocities."""
+    body = Body.kelvin_voigt(modulus, thickness, poisson_ratio, 0.0)
+    return slide(shape, body, 0.0, support, rtol)
 
 
 def relaxed(shape: Any, body: Body, support: Support, rtol: float) -> Support:
     """Return a support whose spring is relaxed at a depth: unless one is given, that at rest."""
     if not support.spring or support.relaxed_depth is not None:
         return support
-    at_rest = slide(shape, body, 0.0, Support(load=support.load), rtol)
-    return support._replace(relaxed_depth=at_rest.depth)
+    found = at_rest(shape, *body[:3], Support(load=support.load), rtol)
+    return support._replace(relaxed_depth=found.depth)
 
 
 def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterator[Found]:
-    """Yield the contact on grids of cells that become shorter by a factor of two, up to the finest."""
+    """Yield the contact on grids of cells that become shorter by a factor of two.
+
+    They end with the finest, or before the first, but one, on which the contact is not found.
+    """
     if support.depth is None:
         start = depth_under(shape, body, velocity, support)
     else:
         start = first_grid(shape, body, support.depth)
     cells = 0
     while cells < FINEST[shape.per_width]:
-        found = start.grid.settled(shape, body, velocity, support, start.contact)
+        try:
+            found = start.settled(shape, body, velocity, support)
+        except ArithmeticError:
+            if not cells:
+                raise
+            return
         yield found
         cells = int(np.count_nonzero(found.contact.active.any(axis=1)))
         start = found.finer()
-
-
-def _next(grids: Iterator[Found], known: list[dict[str, float]]) -> Found | None:
-    """Return the contact on the next grid, or None if there is no finer one on which it can be found."""
-    try:
-        return next(grids, None)
-    except ArithmeticError:
-        if not known:
-            raise
-        return None
 
 
 def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
@@ -191,18 +192,15 @@ def half_length(shape: Any, depth: float) -> float:
     """Return |x| where the surface is as high as the depth, on the farther side of the lowest point."""
     found = []
     for side in (-1.0, 1.0):
-        far = min(depth, 0.5 * shape.reach)
+
+        def above(x: float, side: float = side) -> float:
+            return float(shape.height(side * x)) - depth
+
         inner = shape.reach * (1.0 - 1e-12)
-        while shape.height(side * 0.5 * far) > depth:
-            far *= 0.5
-        while far < inner and shape.height(side * far) < depth:
+        far = min(depth, inner)
+        while far < inner and above(far) < 0.0:
             far = min(2.0 * far, inner)
-        above = shape.height(side * far) - depth
-        if above > 0.0:
-            far = brentq(
-                lambda x, side=side: shape.height(side * x) - depth, 0.0, far, xtol=1e-6 * far
-            )
-        found.append(far)
+        found.append(brentq(above, 0.0, far, xtol=1e-300, rtol=1e-6) if above(far) > 0.0 else far)
     return max(found)
 
 
@@ -219,7 +217,7 @@ def first_grid(shape: Any, body: Body, depth: float) -> Found:
     width = None if shape.per_width else float(shape.stretch)
     grid = Grid(length, -n, n, 1 if width is None else n, width)
     _require_convex(shape, grid.x[:, 0])
-    return Found(grid, Contact(np.where(grid.height(shape) < depth, 1.0, 0.0), depth))
+    return Found(grid, Contact(np.where(grid.height(shape, 0.0) < depth, 1e-9 * depth, 0.0), depth))
 
 
 def _require_convex(shape: Any, x: Array) -> None:
@@ -232,21 +230,13 @@ def _require_convex(shape: Any, x: Array) -> None:
 
 
 def depth_under(shape: Any, body: Body, velocity: float, support: Support) -> Found:
-    """Return the contact at nearly the depth of a support on a coarse grid: a secant in the logarithms."""
-    log_depth = math.log(_first_depth(shape, body, support))
-    slope, tried = 1.5, (0.0, 0.0)
+    """Return the contact under the load of a support, on a coarse grid for nearly its depth."""
+    depth = _first_depth(shape, body, support)
     for _ in range(60):
-        depth = math.exp(log_depth)
-        start = first_grid(shape, body, depth)
-        found = start.grid.settled(shape, body, velocity, Support(depth), start.contact)
-        load = found.values(shape, body, velocity)["load"] + support.spring * depth
-        excess = math.log(load / support.carried)
-        if abs(excess) < CLOSE:
+        found = first_grid(shape, body, depth).settled(shape, body, velocity, support)
+        if abs(math.log(found.contact.depth / depth)) < CLOSE:
             return found
-        if log_depth != tried[0] != 0.0:
-            slope = min(max((excess - tried[1]) / (log_depth - tried[0]), 0.7), 4.0)
-        tried = log_depth, excess
-        log_depth -= excess / slope
+        depth = found.contact.depth
     raise ArithmeticError("no depth was found that carries the load")
 
 
@@ -257,8 +247,7 @@ def _first_depth(shape: Any, body: Body, support: Support) -> float:
         depth = math.exp(log_depth)
         a = half_length(shape, depth)
         area = 2.0 * a if shape.per_width else math.pi * a * a * shape.stretch
-        kappa = min(body.thickness / a, 1e3)
-        T = float(compliance.transform(kappa, body.poisson_ratio))
+        T = float(compliance.transform(body.thickness / a, body.poisson_ratio))
         load = area * depth / (body.compliance * T * a) + support.spring * depth
         return math.log(load / support.carried)
 
