@@ -54,7 +54,7 @@ def solve(
         ``stick_slip_amplitude`` (0 of steady sliding), ``stick_slip_period`` (NaN of it), and
         ``sliding_velocity`` and ``friction_force`` with ``.cycle_max`` and ``.cycle_min``; or
         ``restitution`` and ``contact_time`` of a drop, ``stopping_time`` and ``stopping_distance`` of an
-        indenter that coasts, NaN where they do not occur.
+        indenter that coasts.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
         the drive is solved.

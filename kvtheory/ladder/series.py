@@ -331,18 +331,13 @@ def _picked(result: Any, request: Request) -> Answer:
 
 
 def _answer(series: Any, own: Certificate, request: Request, result: Any) -> Answer:
-    """Return the series, NaN where a quantity was not requested, and the errors of those that were.
-
-    A landmark that does not occur is NaN too.
-    """
+    """Return the series, NaN where a quantity was not requested, and the errors of those that were."""
     known = {**own.relative_error, **dict.fromkeys(GIVEN, 0.0)}
     if marks := {name: series.get(name) for name in request.units if name in LANDMARKS}:
-        errors = {
-            name: 0.0 if v is None else known.get(name, math.inf) for name, v in marks.items()
-        }
-        found = {name: math.nan if v is None else v for name, v in marks.items()}
-        own = replace(own, relative_error=errors, relative_to=THE_TRUTH)
-        return Answer(found, own, result)
+        missing = " and no ".join(name for name, value in marks.items() if value is None)
+        need(f"there is no {missing} within run.duration" if missing else "")
+        errors = {name: known.get(name, math.inf) for name in marks}
+        return Answer(marks, replace(own, relative_error=errors, relative_to=THE_TRUTH), result)
     wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
     source = {name: name if name in series else ON_RIGID[name] for name in wanted}
     values = {
