@@ -65,10 +65,11 @@ BLOCK = 32
 
 INDENTER = record(
     depth="f8", rate="f8", along="f8", along_rate="f8", mean_force="f8", mean_imbalance="f8",
-    last_step="f8", difference="f8", second_difference="f8",
+    last_step="f8", difference="f8", second_difference="f8", jump="f8",
 )  # fmt: skip
 """Depth of the indenter and its rate, both along x; means over explicit steps of the largest force and of the
-imbalance of forces; the length of the last step, and the backward differences of the rate along x."""
+imbalance of forces; the length of the last step, and the backward differences of the rate along x; the jump
+of a given rate of the depth at this instant."""
 COUNTS = record(
     low="i8", high="i8", strips="i8", begun="i8", ended="i8", inside="i8", updates="i8"
 )  # fmt: skip
@@ -953,10 +954,14 @@ def end_run(row: Row, j: int, i: int, out: int, base: Pair, kink: float, size: i
     if c.law.arm_time.size and not touched:
         outside = 2.0 * inside - within
     peels = max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
+    more = c.law.damping * row.now.jump
     w, far, farthest = -threshold[i + out], -threshold[i + 2 * out], -threshold[i + 3 * out]
     touches, straight = touching((w, far, farthest))
     if not touched and (straight or math.isinf(peels)):
         share = 1.0 - touches
+    if more > 0.0 and not straight and outside < min(more, inside):
+        # It peeled until now, and a jump of the rate moves no edge outward.
+        share = max((inside - more) / (inside - outside), -1.0)
     p_kink = inside + kink * (inside - within) if kink <= share else 0.0
     p_edge = inside + share * (outside - inside) if share < peels else 0.0
     share = min(share, peels)
@@ -1086,6 +1091,7 @@ def advance(
     none, now, instants = law_at(course.law, 0), row.now, course.instants
     while True:
         if len(course.held) > 0:
+            now.jump = course.held[step, 1] - course.held[max(step - 1, 0), 1]
             now.depth, now.rate = course.held[step, 0], course.held[step, 1]
         while reported < instants.after.size and instants.after[reported] == step:
             status = report(row, none, instants, reported, course.unsure, found[reported])
