@@ -350,3 +350,4 @@ def test_an_edge_that_peeled_stands_where_the_rate_of_the_depth_jumps(velocity):
     for name, least in (("leading_edge", 1e-5), ("trailing_edge", 1e-5), ("normal_force", 5e-6)):
         error = np.abs(getattr(found, name) - getattr(known, name))[0] / whole[name]
         assert error < min(least, stated[name])
+    assert stated["normal_force"] < 5e-4

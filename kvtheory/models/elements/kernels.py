@@ -56,6 +56,8 @@ NEAR = 1e-9
 """Share of the spacing: distance from an edge or kink where the slope is taken, since it may jump there."""
 WINDOW = 40
 """Steps over which the balance of forces is averaged: a jump of the drive upsets only a few."""
+BENT = 1.3
+"""Ratio of falls of w from element to element from which on it falls as a square: 1.4 to 3 if it does."""
 FAINT = 1e-100
 """Share to which a mode decays before all are stored anew."""
 TINY = 1e-300
@@ -959,7 +961,8 @@ def end_run(row: Row, j: int, i: int, out: int, base: Pair, kink: float, size: i
     touches, straight = touching((w, far, farthest))
     if not touched and (straight or math.isinf(peels)):
         share = 1.0 - touches
-    if more > 0.0 and not straight and outside < min(more, inside):
+    bent = far - farthest > BENT * (w - far)
+    if more > 0.0 and bent and outside < min(more, inside):
         # It peeled until now, and a jump of the rate moves no edge outward.
         share = max((inside - more) / (inside - outside), -1.0)
     p_kink = inside + kink * (inside - within) if kink <= share else 0.0
