@@ -12,6 +12,7 @@ from kvtheory.models.elements import kernels, simulation
 from kvtheory.models.elements.kernels import touching
 from kvtheory.models.elements.model import Model
 from kvtheory.results.table import scales
+from kvtheory.scene.static_state import StaticState
 from tests import prony_elements
 from tests.spring_random import of_unit_scales, random_case
 from tests.test_transient_random import SCENES
@@ -334,3 +335,19 @@ def test_where_an_edge_is_between_two_elements():
             assert 1.0 - share == pytest.approx(place - 3.0)
             assert straight
         assert not touching(-((x - place) ** 2)[4:7])[1]
+
+
+@pytest.mark.parametrize("velocity", [0.0, 0.02])
+def test_an_edge_that_peeled_stands_where_the_rate_of_the_depth_jumps(velocity):
+    """On a damper the pressure there jumps: the edge is where it vanished before."""
+    points = [(0.0, 3e-4), (0.05, 1e-4), (0.06, 1.3e-4)]
+    scene = kv.Scene(
+        foundation=kv.Foundation(1e10, 0.01), support=kv.Fixed(history=points),
+        drive=kv.Drive(velocity), run=kv.Run(0.06),
+    )  # fmt: skip
+    found, known = kv.elements(scene, at=[0.05]), kv.transient(scene, at=[0.05], certify=False)
+    stated, whole = found.certificate.relative_error, scales(StaticState.of(scene))
+    for name, least in (("leading_edge", 1e-5), ("trailing_edge", 1e-5), ("normal_force", 5e-6)):
+        error = np.abs(getattr(found, name) - getattr(known, name))[0] / whole[name]
+        assert error < min(least, stated[name])
+    assert stated["normal_force"] < 5e-4

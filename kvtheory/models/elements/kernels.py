@@ -56,6 +56,8 @@ NEAR = 1e-9
 """Share of the spacing: distance from an edge or kink where the slope is taken, since it may jump there."""
 WINDOW = 40
 """Steps over which the balance of forces is averaged: a jump of the drive upsets only a few."""
+BENT = 1.3
+"""Ratio of falls of w from element to element from which on it falls as a square: 1.4 to 3 if it does."""
 FAINT = 1e-100
 """Share to which a mode decays before all are stored anew."""
 TINY = 1e-300
@@ -65,10 +67,11 @@ BLOCK = 32
 
 INDENTER = record(
     depth="f8", rate="f8", along="f8", along_rate="f8", mean_force="f8", mean_imbalance="f8",
-    last_step="f8", difference="f8", second_difference="f8",
+    last_step="f8", difference="f8", second_difference="f8", jump="f8",
 )  # fmt: skip
 """Depth of the indenter and its rate, both along x; means over explicit steps of the largest force and of the
-imbalance of forces; the length of the last step, and the backward differences of the rate along x."""
+imbalance of forces; the length of the last step, and the backward differences of the rate along x; the jump
+of a given rate of the depth at this instant."""
 COUNTS = record(
     low="i8", high="i8", strips="i8", begun="i8", ended="i8", inside="i8", updates="i8"
 )  # fmt: skip
@@ -953,10 +956,15 @@ def end_run(row: Row, j: int, i: int, out: int, base: Pair, kink: float, size: i
     if c.law.arm_time.size and not touched:
         outside = 2.0 * inside - within
     peels = max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
+    more = c.law.damping * row.now.jump
     w, far, farthest = -threshold[i + out], -threshold[i + 2 * out], -threshold[i + 3 * out]
     touches, straight = touching((w, far, farthest))
     if not touched and (straight or math.isinf(peels)):
         share = 1.0 - touches
+    bent = far - farthest > BENT * (w - far)
+    if more > 0.0 and bent and outside < min(more, inside):
+        # It peeled until now, and a jump of the rate moves no edge outward.
+        share = max((inside - more) / (inside - outside), -1.0)
     p_kink = inside + kink * (inside - within) if kink <= share else 0.0
     p_edge = inside + share * (outside - inside) if share < peels else 0.0
     share = min(share, peels)
@@ -1086,6 +1094,7 @@ def advance(
     none, now, instants = law_at(course.law, 0), row.now, course.instants
     while True:
         if len(course.held) > 0:
+            now.jump = course.held[step, 1] - course.held[max(step - 1, 0), 1]
             now.depth, now.rate = course.held[step, 0], course.held[step, 1]
         while reported < instants.after.size and instants.after[reported] == step:
             status = report(row, none, instants, reported, course.unsure, found[reported])
