@@ -6,6 +6,7 @@ yet, no process then does what another one does. What a file sets up is shared b
 are files.
 """
 
+import gc
 import os
 import shutil
 import sys
@@ -123,6 +124,11 @@ def pytest_collection_modifyitems(items):
     """Put scopes in order."""
     ranks = {scope: rank for rank, scope in enumerate(FIRST)}
     items.sort(key=lambda item: ranks.get(scope_of(item.nodeid), len(FIRST)))
+
+
+def pytest_collection_finish():
+    """Let the garbage collector pass over all that the tests have imported."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -24,13 +24,13 @@ def test_the_notebook_is_of_format_4_5():
 
 
 def test_every_step_is_checked_again():
-    """Cells that have run as they are may be left out, but for every tenth and one of each kind of check."""
+    """Cells that have run as they are may be left out, but for every thirtieth and one of each kind."""
     derivations, kept = catalogue(), json.loads(rechecked.PATH.read_text(encoding="utf-8"))
     now, kinds, again = rechecked.digests(derivations), set(), []
     for number, each in enumerate(derivations):
         new = {step.claim.check for step in each.steps if step.claim} - kinds
         kinds |= new
-        if new or number % 10 == 0 or kept.get(each.label) != now[each.label]:
+        if new or number % 30 == 0 or kept.get(each.label) != now[each.label]:
             again.append(each)
     asked, told = rechecked.counted(again)
     assert told == asked

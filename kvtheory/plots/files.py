@@ -79,7 +79,7 @@ def save_figure(
             ValueError,
             Warning,
         ) as error:
-            if style is STYLE or not style:
+            if not style or STYLE.keys() <= style.keys():  # that of the package
                 raise
             words = " ".join(str(error).split())[:LONGEST]
             raise ValueError(f"`style`: matplotlib cannot draw with it: {words}") from None
