@@ -295,14 +295,20 @@ def test_fig5_and_table2_are_those_of_the_scene():
 
 def test_a_figure_in_ones_own_style_with_its_data(tmp_path):
     style, picture = tmp_path / "mine.mplstyle", tmp_path / "t.png"
-    style.write_text("figure.figsize: 6, 3\nsavefig.dpi: 50\nfont.family: serif\n")
+    style.write_text("figure.figsize: 9, 3\nsavefig.dpi: 50\nfont.family: serif\n")
     words = "chart", "table2", "--style", str(style), "-o", str(picture)
     for _ in range(2):  # it may be replaced
         assert run(*words).stdout.split() == [str(picture), str(tmp_path / "t.csv")]
-    assert mpl.image.imread(picture).shape[:2] == (150, 300)
+    assert mpl.image.imread(picture).shape[:2] == (150, 450)
     assert (tmp_path / "t.csv").read_text().startswith("quantity,fixed,dead-weight\n")
     (tmp_path / "t.csv").write_text("a,b\n1,2\n")
     refused(words, ["t.csv", "is not what this command writes"])
+    style.write_text("figure.figsize: 6, 3")
+    refused(
+        (*words[:-1], str(tmp_path / "u.png")),
+        ["the table needs a figure.figsize of", "in at least"],
+    )
+    assert not (tmp_path / "u.png").exists()
 
 
 @pytest.mark.parametrize(

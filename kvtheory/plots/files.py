@@ -65,6 +65,7 @@ def save_figure(
                 drawn.set_size_inches(style["figure.figsize"])
             if layout := drawn.get_layout_engine():
                 layout.execute(drawn)
+            _check_tables(drawn)
             # laid out once, or each format would draw everything twice
             drawn.set_layout_engine(None)
             writers: dict[Path, Callable[[Path], Any]] = {
@@ -83,6 +84,14 @@ def save_figure(
                 raise
             words = " ".join(str(error).split())[:LONGEST]
             raise ValueError(f"`style`: matplotlib cannot draw with it: {words}") from None
+
+
+def _check_tables(drawn: Any) -> None:
+    """Raise `ValueError` if a table, which no layout makes narrower, is wider than its figure."""
+    for table in (each for ax in drawn.axes for each in ax.tables):
+        needed = table.get_window_extent().width / drawn.dpi
+        if needed > drawn.get_figwidth():
+            raise ValueError(f"the table needs a figure.figsize of {needed + 0.05:.1f} in at least")
 
 
 def _save(drawn: Any, suffix: str, messages: list[str], part: Path) -> None:
