@@ -67,7 +67,7 @@ def compute(scene: Scene | None = None) -> Data:
 
 def draw(data: Data) -> Figure:
     """Draw the table."""
-    drawn = Picture(8.0, 1.9)
+    drawn = Picture(8.4, 1.9)
     ax = drawn.subplots()
     ax.axis("off")
     heads = ["", SUPPORTS["fixed"], data.whose, SUPPORTS["dead-weight"], data.whose]
