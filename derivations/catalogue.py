@@ -1,7 +1,8 @@
 """All derivations, in the order in which the document prints them."""
 
 import gc
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from itertools import pairwise
@@ -61,16 +62,9 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     if known is not None:
         restore(known)
         return tuple(each.derivation for each in known.values())
-    collects = gc.isenabled()
-    gc.disable()  # to look for cycles among so many objects would take a sixth of the time
-    try:
-        derived: tuple[Derivation, ...] = chapter.result.derive()
-        _ask_dimensions(derived)
-        keep(name, _digests()[name], finished(each.label for each in derived))
-    finally:
-        if collects:
-            gc.freeze()  # what was made stays in SymPy's caches
-            gc.enable()
+    derived: tuple[Derivation, ...] = chapter.result.derive()
+    _ask_dimensions(derived)
+    keep(name, _digests()[name], finished(each.label for each in derived))
     return derived
 
 
@@ -99,11 +93,24 @@ def catalogue(
     derived: list[Derivation] = []
     total = wanted_up_to(until)
     following = {one: other.result.section for one, other in pairwise(CHAPTERS)}
-    for chapter in CHAPTERS:
-        derived += _chapter(chapter)
-        if report is not None:
-            report(min(len(derived) / total, 1.0), f"{len(derived)} records")
-        ends = following.get(chapter) != chapter.result.section
-        if until and ends and set(until) <= {derivation.label for derivation in derived}:
-            break  # a section is derived to its end, for its letters follow from all of it
+    with _no_collection():
+        for chapter in CHAPTERS:
+            derived += _chapter(chapter)
+            if report is not None:
+                report(min(len(derived) / total, 1.0), f"{len(derived)} records")
+            ends = following.get(chapter) != chapter.result.section
+            if until and ends and set(until) <= {derivation.label for derivation in derived}:
+                break  # a section is derived to its end, for its letters follow from all of it
     return tuple(derived)
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Look for no cycles among the many objects that SymPy keeps, which would take a third of the time."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()

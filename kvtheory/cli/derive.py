@@ -1,5 +1,6 @@
 """`kvtheory derive`: the derivations, checked and printed."""
 
+import gc
 import math
 import os
 import re
@@ -131,6 +132,7 @@ def derive(
         deriving = lambda share, words: report(DERIVING * share, words)  # noqa: E731
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
         edition = _edition(labels, closure, shape, letters, label_prefix, columns, given, deriving)
+        gc.freeze()  # what was proved stays to the end
         paths = write_edition(edition, output, wanted, writing)
     _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
 
