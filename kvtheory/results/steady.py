@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from html import escape
 from typing import Any
 
@@ -113,13 +114,12 @@ class Stability(Presented):
     )
     over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
-    @property
+    @cached_property
     def motions(self) -> Any:
         """Growth (1/s) and frequency (Hz), along the last axis, of each motion; a pair of rates is one."""
         rates = np.asarray(self.rates)
-        if (
-            not rates.shape[-2] or rates.shape[-1] == 1
-        ):  # nothing can move, or they were not requested
+        # nothing can move, or they were not requested
+        if not rates.shape[-2] or rates.shape[-1] == 1:
             return np.full((*rates.shape[:-2], 1, 2), np.nan)
         once = np.where(rates[..., 1:] < 0.0, np.nan, rates / [1.0, math.tau])
         order = np.argsort(np.isnan(once[..., 0]), axis=-1, kind="stable")
