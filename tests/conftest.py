@@ -126,10 +126,16 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: ranks.get(scope_of(item.nodeid), len(FIRST)))
 
 
-def pytest_collection_finish():
-    """Let the garbage collector pass over all that the tests have imported, and come less often."""
-    gc.freeze()
-    gc.set_threshold(50_000)
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Let the garbage collector pass over all that the tests import, and come less often."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+        gc.freeze()
+        gc.set_threshold(50_000)
 
 
 @pytest.hookimpl(optionalhook=True)
