@@ -115,9 +115,10 @@ class Trajectory(Finished):
         spans, rows = steps["span"].tolist(), self.pieces[steps["piece"]].tolist()
         for start, end, span, row in zip(self.starts, ends, spans, rows, strict=True):
             powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
-            roots = polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
-            share = (end - start) / span
-            within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
+            within, share = list[float](), (end - start) / span
+            if abs(powers[0]) <= sum(map(abs, powers[1:])):  # else there is no root up to 1
+                roots = polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
+                within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
             for low, high in pairwise([0.0, *within, share]):
                 number = b_.evaluate(row, start + 0.5 * (low + high) * span)[1]
                 if number * before < 0.0:
