@@ -150,44 +150,55 @@ class Elements:
         """
         depth, rate, moved, speed = (each[:, None, None] for each in state)
         rule, having, R = self.rule, self.having, self.scene.indenter.radius  # type: ignore[union-attr]
-        x = self.places[near] + moved
-        slope = x / R
-        g = depth - self.heights - 0.5 * x * slope
-        rise = rule.depth_rate * rate - rule.slide_rate * slope * speed
+        rigid = self.scene.drive.rigid  # then all indenters are at the same place
+        at = self.places[near] + (moved[:1] if rigid else moved)
+        slope = at / R
+        g = depth - self.heights - 0.5 * at * slope
+        rise = rule.depth_rate * rate - rule.slide_rate * speed * slope
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         inclined = np.abs(slope) * self.length
         touching = g > -0.5 * inclined  # with a part of the element
         on, p, damping, stiffness, surface, stress = law(h, near, g, rise, touching)
-        area = np.clip(0.5 + g / (inclined + 1e-300), 0.0, 1.0) * self.areas
+        area = np.clip(0.5 + g / (inclined + TINY), 0.0, 1.0) * self.areas
+        x, slopes = (np.broadcast_to(each, (len(g), 1, at.shape[2])) for each in (at, slope))
         for k, weight in ((having.front, rule.front), (having.back, rule.back)):
-            counts = (x[k] < 0.0) == (weight is rule.front)
-            area[k] *= np.where(counts, weight[k], 1.0)
-        k = having.lost
-        reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
-        lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
-        area[k] = np.where(lost, 0.0, area[k])
+            if k.size:
+                counts = (x[k] < 0.0) == (weight is rule.front)
+                area[k] *= np.where(counts, weight[k], 1.0)
+        if (k := having.lost).size:
+            reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
+            lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
+            area[k] = np.where(lost, 0.0, area[k])
 
         def borne(p: Array, k: Any = slice(None)) -> Array:
-            pushes = p > 0.0
-            return np.where(on[k] & (pushes | (rule.tension[k] > 0.0)), p, 0.0)
+            return np.where(on[k], np.maximum(p, np.where(rule.tension[k], -np.inf, 0.0)), 0.0)
 
-        k = having.friction
-        change = (1.0 - rule.friction[k]) * np.broadcast_to(damping, p.shape)[k]
-        rubbed = borne(p[k] + change * slope[k] * speed[k], k)
+        if (rubs := having.friction).size:
+            change = (1.0 - rule.friction[rubs]) * np.broadcast_to(damping, p.shape)[rubs]
+            rubbed = (
+                borne(p[rubs] + change * slopes[rubs] * speed[rubs], rubs)
+                * slopes[rubs]
+                * area[rubs]
+            )
         p = borne(p)
         force = p * area
-        normal, friction = force.sum(axis=(1, 2)), -(force * slope).sum(axis=(1, 2))
-        friction[k] = -(rubbed * slope[k] * area[k]).sum(axis=(1, 2))
-        k, lift = having.stale, normal.copy()
-        kept = 1.0 - rule.stale[k] * (g[k] < self.surface[k][:, :, near])
-        lift[k] = (force[k] * kept).sum(axis=(1, 2))
-        k = having.central
-        friction[k] = -normal[k] * np.nan_to_num(sum(_edges(p[k], x[k]))) / (2.0 * R)
-        held, drag = np.where(p != 0.0, area, 0.0), 0.0
-        stiff = (held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0)).sum(axis=(1, 2))
-        if not self.scene.drive.rigid:
+        normal, friction = _total(force), -_total(force * slope)
+        lift = normal
+        if rubs.size:
+            friction[rubs] = -_total(rubbed)
+        if (k := having.stale).size:
+            missed = rule.stale[k] * (g[k] < self.surface[k][:, :, near])
+            lift = normal.copy()
+            lift[k] = _total(force[k] * (1.0 - missed))
+        if (k := having.central).size:
+            friction[k] = -normal[k] * np.nan_to_num(sum(_edges(p[k], x[k]))) / (2.0 * R)
+        held = area * (p != 0.0)
+
+        stiff = _total(held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0))
+        drag = 0.0
+        if not rigid:
             drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
-            drag = (held * drag * slope * slope).sum(axis=(1, 2))
+            drag = _total(held * drag * (slope * slope))
         return Pressed(normal, lift, friction, stiff, drag, p, x, surface, stress, on)
 
     def _kelvin_voigt(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
@@ -200,16 +211,17 @@ class Elements:
             np.where(forgets | (rule.tension > 0.0), 0.0, np.exp(-age)) if h else np.ones_like(age)
         )
         free = kept * old
-        on = np.where(old == 0.0, touching, g >= free)
-        k = having.tension
-        on[k] = g[k] > 0.0
-        damping, k = np.full(g.shape, foundation.damping), having.hunt_crossley
-        damping[k] *= rule.hunt_crossley[k] * g[k] / StaticState.of(self.scene).depth
-        p = foundation.stiffness * g + damping * rise
-        k = having.freezes
-        on[k] = (g[k] > 0.0) & np.where(self.on[k][:, :, near], p[k] >= 0.0, g[k] >= old[k])
-        free[k] = old[k]
-        surface = np.where(on, np.maximum(g, 0.0), free)
+        on = (g >= free) | (touching & (old == 0.0))
+        if (k := having.tension).size:
+            on[k] = g[k] > 0.0
+        damping: Any = foundation.damping
+        if (k := having.hunt_crossley).size:
+            damping = np.full(g.shape, damping)
+            damping[k] *= rule.hunt_crossley[k] * g[k] / StaticState.of(self.scene).depth
+        p, surface = foundation.stiffness * g + damping * rise, np.maximum(g, free)
+        if (k := having.freezes).size:
+            on[k] = (g[k] > 0.0) & np.where(self.on[k][:, :, near], p[k] >= 0.0, g[k] >= old[k])
+            surface[k] = np.where(on[k], g[k], old[k])
         return on, p, damping, foundation.stiffness, surface, self.stress[:, :, :, near]
 
     def _arms(self, h: float, near: slice, g: Any, rise: Any, touching: Any) -> Any:
@@ -273,6 +285,11 @@ class Elements:
                 tau = self.scene.foundation.retardation_time
                 self.surface[..., k] *= np.exp(-decay[..., 0] * gap / tau)
         self.seen[late] = time
+
+
+def _total(values: Array) -> Array:
+    """Return the sum over the elements, by rule."""
+    return values.sum(axis=(1, 2))
 
 
 def _edges(pressure: Array, x: Array) -> tuple[Array, Array]:
