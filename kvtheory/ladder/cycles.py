@@ -6,18 +6,9 @@ from functools import partial
 from typing import Any
 
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
-from kvtheory.ladder.series import (
-    DIMENSIONS,
-    LEAST_FINER,
-    LOOSEST,
-    MOST_FINER,
-    MOST_UPDATES,
-    SPARE,
-    TIGHTEST,
-    Models,
-)
+from kvtheory.ladder.series import LOOSEST, TIGHTEST, Models, refined
 from kvtheory.models.continuum.error_estimate import MARGIN
-from kvtheory.models.steady.stable_sliding import ended
+from kvtheory.models.steady.stable_sliding import ended, lasts, rates_of
 from kvtheory.results import Certificate
 from kvtheory.results.cycles import cycle_statement
 from kvtheory.scene.capabilities import lacks_arms, lacks_continuum
@@ -25,11 +16,13 @@ from kvtheory.scene.model import Scene
 
 STEP = 1e-2
 """Tolerance of a step of the continuum over that of the cycle."""
-ELEMENTS = 120.0
-"""Elements in the contact at rest in the first run."""
 GAINS = 0.7
 """Share to which a finer run must reduce the error: else it is that of the limit, for a longer run."""
 STEADY = "The motion ends in steady sliding: there is no stick-slip."
+EITHER = (
+    "Steady sliding is stable as well, against small disturbances: from a gentle start the motion may end "
+    "there."
+)
 UNSURE = (
     "runs with fewer elements end otherwise, as happens near the onset of instability; choose a velocity or "
     "stiffness farther from it"
@@ -57,26 +50,28 @@ def _continuum(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _elements(models: Models, scene: Scene, request: Request) -> Offer:
-    """Refine until the errors are within the tolerance, no longer fall, or the work would be too much."""
+    """Refine; where the run approaches a cycle too slowly, find that from short runs on both sides of it."""
     need(lacks_arms(scene))
 
     def run() -> Answer:
         # They are slow to import.
+        from kvtheory.models.elements.limit_cycle import limit_cycle
         from kvtheory.models.elements.model import Model
         from kvtheory.models.elements.simulation import SAFETY
 
-        line = scene.indenter.per_width
-        density, before = ELEMENTS / (2.0 * Model.of(scene).at_rest.half_length), math.inf
-        while True:
-            result = models.elements(scene, per_length=density, at=[scene.run.duration])
-            answer = _answer(scene, result, request, SAFETY)
-            error = max(answer.certificate.relative_error[name] for name in request.quantities)
-            finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER[line])
-            work = result.element_updates * finer ** DIMENSIONS[line]
-            if error <= request.rtol or error > GAINS * before or work > MOST_UPDATES[line]:
-                need(UNSURE if error == math.inf else "")
-                return answer
-            density, before = density * finer, error
+        length, rates = 2.0 * Model.of(scene).at_rest.half_length, rates_of(scene)
+
+        def solved(count: float, finer: float) -> tuple[Answer, float]:
+            result = models.elements(scene, per_length=count / length, at=[scene.run.duration])
+            cycle = ended(scene, result.cycle)
+            if result.ripples and not cycle.settles:
+                result = replace(result, cycle=limit_cycle(scene, result, rates))
+            return _answer(scene, result, request, SAFETY), result.element_updates
+
+        answer = refined(scene, request, solved, gains=GAINS)
+        errors = answer.certificate.relative_error
+        need(UNSURE if max(errors[name] for name in request.quantities) == math.inf else "")
+        return answer
 
     return Offer(math.nan, run)
 
@@ -89,7 +84,9 @@ def _answer(scene: Scene, result: Any, request: Request, safety: float) -> Answe
     errors = {name: found.relative_errors[name] for name in request.quantities}
     certificate = Certificate("estimated", cycle_statement(safety), errors, "the cycle itself")
     if found.amplitude == 0.0:
-        result = replace(result, notes=(*result.notes, STEADY))
+        result = replace(result, notes=(STEADY,))
+    elif lasts(scene):
+        result = replace(result, notes=(*result.notes, EITHER))
     return Answer(
         {name: found.quantities[name] for name in request.quantities}, certificate, result
     )

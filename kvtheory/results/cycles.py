@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,6 +112,29 @@ class Cycle(Recorded):
         return replace(self, errors=tuple(errors.tolist()))
 
 
+class Ripple(NamedTuple):
+    """The ripple along x in the last periods of a motion: its amplitudes, and the last period."""
+
+    sizes: Array
+    period: float
+    centre: float  # of x
+    depth: float
+    values: Array  # as those of a `Cycle`
+
+
+def ripple(times: Array, states: States) -> Ripple | None:
+    """Return the ripple of a motion, or None of fewer than `RECENT` periods."""
+    turns, x = _turns(states, times, states(times)["offset_rate"])
+    sizes = 0.5 * (x[:-1:2] - x[1::2])
+    if sizes.size < RECENT:
+        return None
+    depth = states(np.linspace(turns[-3], turns[-1], POINTS))["depth"].mean()
+    centre, period = float(0.25 * (x[-3] + 2.0 * x[-2] + x[-1])), turns[-1] - turns[-3]
+    return Ripple(
+        sizes, float(period), centre, float(depth), _measured(states, turns[-3], turns[-1])
+    )
+
+
 def _scale(values: Array) -> Array:
     """Return what errors of the values are relative to."""
     amplitude, period, *extremes = values
@@ -132,7 +156,7 @@ def cycle(times: Array, states: States) -> Cycle:
         ]
         drifts = [DRIFTS * np.ptp(each) / (abs(each[-1]) or 1.0) for each in late]
         slide, force = (each[-1] for each in late)
-        return _found(
+        return known_cycle(
             [0.0, math.nan, slide, slide, force, force], [0.0, 0.0, *np.repeat(drifts, 2)]
         )
     turns, x = _turns(states, times, rates)
@@ -147,10 +171,10 @@ def cycle(times: Array, states: States) -> Cycle:
     values = now + share * step
     # As far as the amplitude is in doubt, so is how far the others go on.
     beside = abs(step / change) * limit / _scale(values) if change else 1.0
-    return _found(values, doubt * np.maximum(1.0, beside) * np.ones(6))
+    return known_cycle(values, doubt * np.maximum(1.0, beside) * np.ones(6))
 
 
-def _found(values: Sequence[float] | Array, errors: Sequence[float] | Array) -> Cycle:
+def known_cycle(values: Sequence[float] | Array, errors: Sequence[float] | Array) -> Cycle:
     """Return a cycle, or steady sliding, that is known."""
     amplitude, period, fast, slow, strong, weak = map(float, values)
     return Cycle(1.0, amplitude, period, fast, slow, strong, weak, tuple(map(float, errors)))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from kvtheory.results.cycles import Cycle
+from kvtheory.results.cycles import Cycle, Ripple
 from kvtheory.results.errors import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
@@ -184,3 +184,4 @@ class SprungSimulation(Simulation):
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
     cycle: Cycle | None = field(default=None, repr=False, compare=False)
+    ripples: tuple[Ripple, ...] = field(default=(), repr=False, compare=False)
