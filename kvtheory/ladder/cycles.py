@@ -8,7 +8,7 @@ from typing import Any
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.ladder.series import LOOSEST, TIGHTEST, Models, refined
 from kvtheory.models.continuum.error_estimate import MARGIN
-from kvtheory.models.steady.stable_sliding import ended, lasts, rates_of
+from kvtheory.models.steady.stable_sliding import lasts, rates_of
 from kvtheory.results import Certificate
 from kvtheory.results.cycles import cycle_statement
 from kvtheory.scene.capabilities import lacks_arms, lacks_continuum
@@ -63,8 +63,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 
         def solved(count: float, finer: float) -> tuple[Answer, float]:
             result = models.elements(scene, per_length=count / length, at=[scene.run.duration])
-            cycle = ended(scene, result.cycle)
-            if result.ripples and not cycle.settles:
+            if result.ripples and not result.cycle.settles:
                 result = replace(result, cycle=limit_cycle(scene, result, rates))
             return _answer(scene, result, request, SAFETY), result.element_updates
 
@@ -78,7 +77,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 
 def _answer(scene: Scene, result: Any, request: Request, safety: float) -> Answer:
     """Return the requested quantities of the cycle of a motion, or raise ValueError if it shows none."""
-    found = ended(scene, result.cycle)
+    found = result.cycle
     if not found.settles:
         raise ValueError(". ".join([UNSETTLED, *result.notes]))
     errors = {name: found.relative_errors[name] for name in request.quantities}

@@ -14,12 +14,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.presented import Recorded
+from kvtheory.results.presented import Recorded, record
 
 Array = NDArray[np.float64]
 States = Callable[[Array], Mapping[str, Array]]
@@ -98,6 +98,10 @@ class Cycle(Recorded):
         found = zip(self.values, self.errors, strict=True)
         errors = [0.0 if math.isnan(value) else error for value, error in found]
         return dict(zip(CYCLE, [0.0, *errors], strict=True))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the quantities, and their errors, by the names of `CYCLE`, ready for JSON."""
+        return dict(record({**self.quantities, "relative_error": self.relative_errors}))
 
     def beside(self, others: Sequence["Cycle"], safety: float) -> "Cycle":
         """Return the cycle with `safety` times the largest difference to others added to its errors.

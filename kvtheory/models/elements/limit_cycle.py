@@ -4,8 +4,8 @@ The ripple along x is then the only slow motion, and how much it grows in a peri
 alone: G(A) = ln(A_n+1/A_n) = g - c A^2 - e A^4. Runs of a few periods, from starts with the spring drawn,
 measure G at any amplitude. The cycle is where G falls through zero: it is approached from both sides.
 
-Near the onset g vanishes, and the error of elements in g does not. So g is also taken from theory, where it is
-known, and only c and e from elements; of both cycles that with the smaller error is the answer.
+Near the onset g vanishes, and the error of elements in g does not. So g is also taken from theory, where it
+is known, and only c and e from elements; of both cycles that with the smaller error is the answer.
 """
 
 import math
@@ -92,7 +92,9 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
         known = [follow(HALF * tried), *pair]
         size, tried = tried, _amplitude([each[0] for each in known], rate)
         if abs(tried - size) <= NEAR * size:
-            ways = [[_cycle(each, g) for each in zip(*known, strict=True)] for g in (rate, math.nan)]
+            ways = [
+                [_cycle(each, g) for each in zip(*known, strict=True)] for g in (rate, math.nan)
+            ]
             cycles = [first.beside(others, SAFETY) for first, *others in ways]
             return min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
     fainter = [follow(share * size) for share in FAINTER]
