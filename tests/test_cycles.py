@@ -86,9 +86,9 @@ def test_solve_gives_the_cycle_or_says_why_not():
         kv.solve(BALL, quantity=[AMPLITUDE, "load"])
 
 
-def ripple(t, growth):
+def ripple(t, growth, size=2e-5):
     """Return a ripple that grows, as a motion."""
-    grown, turns = 2e-5 * np.exp(growth * t), 30.0
+    grown, turns = size * np.exp(growth * t), 30.0
     x, rate = (
         grown * np.sin(turns * t),
         grown * (turns * np.cos(turns * t) + growth * np.sin(turns * t)),
@@ -100,6 +100,22 @@ def test_a_ripple_that_still_grows_is_not_steady_sliding_however_small_it_is():
     t = np.linspace(0.0, 10.0, 5000)
     assert cycle(t, ripple(t, -0.2)).amplitude == 0.0
     assert cycle(t, ripple(t, 0.2)).settles == 0.0
+
+
+@pytest.mark.parametrize("growth", [-1e-4, -1e-5, -1e-6, 1e-6, 1e-5])
+@pytest.mark.parametrize("duration", [2.0, 10.0])
+def test_a_ripple_that_changes_slowly_is_no_cycle(growth, duration):
+    t = np.linspace(0.0, duration, 3000)
+    assert cycle(t, ripple(t, growth, 0.1)).settles == 0.0
+    assert cycle(t, ripple(t, 0.0, 0.1)).amplitude == pytest.approx(0.1, rel=1e-6)
+
+
+def test_a_heavy_mass_that_swings_ever_less_is_no_stick_slip():
+    drive = kv.Drive("80 mm/s", stiffness="300 GN/m^2", mass="3e4 kg/mm")
+    scene = kv.Scene(drive=drive, start=kv.Start(sliding_velocity="0 m/s"), run=kv.Run("0.5 s"))
+    assert kv.stability(scene, quantity="stable").stable
+    assert kv.transient(scene, at=[0.5], rtol=1e-5).cycle.settles == 0.0
+    assert kv.elements(scene, at=[0.5], per_length="30 /mm").as_dict()["cycle"] is None
 
 
 def test_a_cycle_in_which_no_other_solution_ends_is_not_known():

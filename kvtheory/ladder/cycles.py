@@ -1,6 +1,7 @@
 """The rungs of the cycle in which a motion on a spring ends: continuum, elements."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,6 +17,8 @@ from kvtheory.scene.model import Scene
 
 STEP = 1e-2
 """Tolerance of a step of the continuum over that of the cycle."""
+LEAST = 0.1
+"""Share to which a ripple has to approach its cycle, at most."""
 GAINS = 0.7
 """Share to which a finer run must reduce the error: else it is that of the limit, for a longer run."""
 STEADY = "The motion ends in steady sliding: there is no stick-slip."
@@ -75,11 +78,20 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
     return Offer(math.nan, run)
 
 
+def _wait(scene: Scene, rtol: float) -> Iterator[str]:
+    """Tell how long small ripples take, to say that a longer run may be long indeed."""
+    rates = rates_of(scene)
+    if rates is not None and (turning := rates[rates[:, 1] > 0.0]).size:
+        rate = float(turning[:, 0].max())
+        wait = -math.log(min(rtol, LEAST)) / abs(rate) if rate else math.inf
+        yield f"Small ripples change at {rate:.3g} 1/s, and the run would have to last about {wait:.3g} s."
+
+
 def _answer(scene: Scene, result: Any, request: Request, safety: float) -> Answer:
     """Return the requested quantities of the cycle of a motion, or raise ValueError if it shows none."""
     found = result.cycle
     if not found.settles:
-        raise ValueError(". ".join([UNSETTLED, *result.notes]))
+        raise ValueError(". ".join([UNSETTLED, *result.notes, *_wait(scene, request.rtol)]))
     errors = {name: found.relative_errors[name] for name in request.quantities}
     certificate = Certificate("estimated", cycle_statement(safety), errors, "the cycle itself")
     if found.amplitude == 0.0:

@@ -51,8 +51,13 @@ FEWEST = 8
 AGREE, DOUBT, FAR = 1e-3, 12.0, 1.5
 """Share of the amplitude by which both limits may differ, how many times that their error may be, and largest
 ratio between amplitude and limit: beyond it, a triple may belong to another stage of the motion."""
-QUIET = 1e-4
-"""Share of the amplitude below which differences between cycles are integration errors."""
+QUIET, FADES = 1e-4, 0.5
+"""Share of the amplitude below which differences between cycles are integration errors, unless all of them go
+one way and do not fade to the second share: the ripple then changes slowly, and may do so for ever."""
+LEVEL = {False: 1e-6, True: 1e-8}
+"""Share below which even those are errors: where they are few, and may go one way by chance, or many (True)."""
+SEVERAL = 4
+"""Differences that are many."""
 POINTS = 4000
 """Samples of a cycle for its extremes, which are parabolic between samples: accurate to 1e-6."""
 
@@ -278,6 +283,10 @@ def _limit(sizes: Array) -> tuple[int, float, float]:
     stride = max(1, count // 4)
     last = sizes[-1 - 2 * stride :: stride]
     if len(last) == 3 and np.ptp(last) <= QUIET * last[-1]:
+        (first, second), steps = np.diff(last), np.diff(sizes[-1 - 2 * stride :])
+        one_way = abs(np.sign(steps).sum()) == steps.size and abs(second) > FADES * abs(first)
+        if one_way and np.ptp(last) > LEVEL[steps.size >= SEVERAL] * last[-1]:
+            return stride, math.nan, math.nan
         return stride, float(last[-1]), DOUBT * float(np.ptp(last) / last[-1])
     if count < FEWEST:
         return stride, math.nan, math.nan
