@@ -1,10 +1,11 @@
 """The rungs of the cycle in which a motion on a spring ends: continuum, elements."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.ladder.series import LOOSEST, TIGHTEST, Models, refined
@@ -27,8 +28,8 @@ EITHER = (
     "there."
 )
 UNSURE = (
-    "runs with fewer elements end otherwise, as happens near the onset of instability; choose a velocity or "
-    "stiffness farther from it"
+    "runs with fewer elements, or another tolerance, end otherwise, as happens near the onset of "
+    "instability; choose a velocity or stiffness farther from it"
 )
 UNSETTLED = (
     "the run shows neither a cycle, in four equal or eight similar periods, nor steady sliding; choose a "
@@ -45,11 +46,12 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 def _continuum(models: Models, scene: Scene, request: Request) -> Offer:
     need(lacks_continuum(scene))
     step = min(max(STEP * request.rtol, TIGHTEST), LOOSEST)
-    end = [scene.run.duration]
-    return Offer(
-        math.nan,
-        lambda: _answer(scene, models.transient(scene, at=end, rtol=step), request, MARGIN),
-    )
+
+    def run() -> Answer:
+        result = models.transient(scene, at=[scene.run.duration], rtol=step)
+        return _known(scene, request, _answer(scene, result, request, MARGIN))
+
+    return Offer(math.nan, run)
 
 
 def _elements(models: Models, scene: Scene, request: Request) -> Offer:
@@ -66,38 +68,46 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 
         def solved(count: float, finer: float) -> tuple[Answer, float]:
             result = models.elements(scene, per_length=count / length, at=[scene.run.duration])
-            if result.ripples and not result.cycle.settles:
+            if not result.cycle.settles:
+                if not (result.ripples and scene.drive.ends):
+                    need(_unsettled(scene, request, result))
                 result = replace(result, cycle=limit_cycle(scene, result, rates))
             return _answer(scene, result, request, SAFETY), result.element_updates
 
-        answer = refined(scene, request, solved, gains=GAINS)
-        errors = answer.certificate.relative_error
-        need(UNSURE if max(errors[name] for name in request.quantities) == math.inf else "")
-        return answer
+        return _known(scene, request, refined(scene, request, solved, gains=GAINS))
 
     return Offer(math.nan, run)
 
 
-def _wait(scene: Scene, rtol: float) -> Iterator[str]:
-    """Tell how long small ripples take, to say that a longer run may be long indeed."""
-    rates = rates_of(scene)
-    if rates is not None and (turning := rates[rates[:, 1] > 0.0]).size:
-        rate = float(turning[:, 0].max())
-        wait = -math.log(min(rtol, LEAST)) / abs(rate) if rate else math.inf
-        yield f"Small ripples change at {rate:.3g} 1/s, and the run would have to last about {wait:.3g} s."
-
-
 def _answer(scene: Scene, result: Any, request: Request, safety: float) -> Answer:
-    """Return the requested quantities of the cycle of a motion, or raise ValueError if it shows none."""
-    found = result.cycle
-    if not found.settles:
-        raise ValueError(". ".join([UNSETTLED, *result.notes, *_wait(scene, request.rtol)]))
-    errors = {name: found.relative_errors[name] for name in request.quantities}
+    """Return the requested quantities of the cycle of a motion; if it shows none, with infinite errors."""
+    found, known = result.cycle, result.cycle.relative_errors
+    errors = {name: known[name] if found.settles else math.inf for name in request.quantities}
     certificate = Certificate("estimated", cycle_statement(safety), errors, "the cycle itself")
     if found.amplitude == 0.0:
         result = replace(result, notes=(STEADY,))
-    elif lasts(scene):
+    elif found.settles and lasts(scene):
         result = replace(result, notes=(*result.notes, EITHER))
     return Answer(
         {name: found.quantities[name] for name in request.quantities}, certificate, result
     )
+
+
+def _known(scene: Scene, request: Request, answer: Answer) -> Answer:
+    """Return the answer, or raise ValueError if it is not known how the motion ends."""
+    infinite = math.inf in answer.certificate.relative_error.values()
+    need(_unsettled(scene, request, answer.result) if infinite else "")
+    return answer
+
+
+def _unsettled(scene: Scene, request: Request, result: Any) -> str:
+    """Return why it is not known how a motion ends, and how long small ripples take."""
+    reasons, rates = [UNSURE if result.cycle.settles else UNSETTLED, *result.notes], rates_of(scene)
+    turning = rates[rates[:, 1] > 0.0] if rates is not None else np.zeros((0, 2))
+    if turning.any():
+        rate = float(turning[:, 0].max())
+        wait = -math.log(min(request.rtol, LEAST)) / abs(rate)
+        reasons.append(
+            f"Small ripples change at {rate:.3g} 1/s, and the run would have to last about {wait:.3g} s"
+        )
+    return ". ".join(each.rstrip(".") for each in reasons)

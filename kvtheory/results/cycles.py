@@ -55,7 +55,7 @@ QUIET, FADES = 1e-4, 0.5
 """Share of the amplitude below which differences between cycles are integration errors, unless all of them go
 one way and do not fade to the second share: the ripple then changes slowly, and may do so for ever."""
 LEVEL = {False: 1e-6, True: 1e-8}
-"""Share below which even those are errors: where they are few, and may go one way by chance, or many (True)."""
+"""Share below which even those are errors: where they are few, and go one way by chance, or many (True)."""
 SEVERAL = 4
 """Differences that are many."""
 POINTS = 4000

@@ -96,7 +96,8 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
                 [_cycle(each, g) for each in zip(*known, strict=True)] for g in (rate, math.nan)
             ]
             cycles = [first.beside(others, SAFETY) for first, *others in ways]
-            return min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
+            best = min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
+            return best if best.settles and best.errors[0] < 1.0 else Cycle(0.0)
     fainter = [follow(share * size) for share in FAINTER]
     off = [
         0.0 if math.isnan(rate) else _fit(each, rate)[-1] - _fit(each, math.nan)[-1]
