@@ -117,7 +117,7 @@ class Cycle(Recorded):
         if not others or len(ways) > 1:
             return replace(self, errors=(math.inf,) * 6)
         apart = np.max([abs(self.values - each.values) for each in others], axis=0)
-        errors = self.errors + safety * apart / _scale(self.values)
+        errors = self.errors + safety * apart / scale_of(self.values)
         return replace(self, errors=tuple(errors.tolist()))
 
 
@@ -144,7 +144,7 @@ def ripple(times: Array, states: States) -> Ripple | None:
     )
 
 
-def _scale(values: Array) -> Array:
+def scale_of(values: Array) -> Array:
     """Return what errors of the values are relative to."""
     amplitude, period, *extremes = values
     high, low = extremes[::2], extremes[1::2]
@@ -179,7 +179,7 @@ def cycle(times: Array, states: States) -> Cycle:
     share = (limit - sizes[-1]) / change if limit != sizes[-1] else 0.0
     values = now + share * step
     # As far as the amplitude is in doubt, so is how far the others go on.
-    beside = abs(step / change) * limit / _scale(values) if change else 1.0
+    beside = abs(step / change) * limit / scale_of(values) if change else 1.0
     return known_cycle(values, doubt * np.maximum(1.0, beside) * np.ones(6))
 
 

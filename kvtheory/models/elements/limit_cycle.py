@@ -17,7 +17,7 @@ import numpy as np
 
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES
 from kvtheory.models.elements.simulation import SAFETY, simulate
-from kvtheory.results.cycles import Cycle, Ripple, known_cycle
+from kvtheory.results.cycles import Cycle, Ripple, known_cycle, scale_of
 from kvtheory.results.transient import SprungSimulation
 from kvtheory.scene.model import Run, Scene
 from kvtheory.scene.start import Drawn
@@ -27,12 +27,12 @@ PERIODS, LATE = 14.0, 10
 """Periods of a short run, and how many of them count: in the others all motions but the ripple fade."""
 HALF, FAINTER = 0.5, (0.2, 0.05)
 """Amplitudes of other runs as shares: of the cycle, for its fit; of the ripple given, if it may fade."""
-BESIDE, NEAR = 0.05, 0.2
-"""Share of the amplitude by which runs start below the cycle and above it, and may be off."""
+BESIDE = 0.08
+"""Share of its amplitude by which runs start below the cycle and above it."""
 FARTHEST, TRIES = 1.5, 6
 """Largest factor from one amplitude to the next, and most of these."""
 BENT = 0.25
-"""Share of the square of the amplitudes between two runs by which a value is bent between both."""
+"""Of the amplitude, by which a value is bent between both, over the square of what they differ by."""
 
 
 class Growth(NamedTuple):
@@ -79,7 +79,9 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
         if not growths:
             raise ArithmeticError("there is no ripple")
         # The contact that forms at first adds to the ripple.
-        scale *= float(growths[0].sizes.mean()) / amplitude
+        first = growths[0]
+        begun = first.sizes[0] * math.exp(-first.growths[0] * (PERIODS - LATE))
+        scale *= float(begun) / amplitude
         return growths
 
     known = [[Growth.of(each) for each in found.ripples], follow(HALF * size)]
@@ -88,10 +90,10 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
         if not tried > 0.0:
             break
         tried = min(max(tried, size / FARTHEST), size * FARTHEST)
-        pair = [follow(share * tried) for share in (1.0 - BESIDE, 1.0 + BESIDE)]
-        known = [follow(HALF * tried), *pair]
+        known = [follow(share * tried) for share in (HALF, 1.0 - BESIDE, 1.0 + BESIDE)]
         size, tried = tried, _amplitude([each[0] for each in known], rate)
-        if abs(tried - size) <= NEAR * size:
+        low, high = (float(each[0].sizes.mean()) for each in known[1:])
+        if low < tried < high:
             ways = [
                 [_cycle(each, g) for each in zip(*known, strict=True)] for g in (rate, math.nan)
             ]
@@ -148,7 +150,9 @@ def _cycle(runs: Sequence[Growth], rate: float) -> Cycle:
     low, high = (each.last.values for each in runs[-2:])
     apart = high[0] - low[0]
     values = low + (high - low) * (amplitude - low[0]) / apart
-    return known_cycle(values, np.full(6, scatter / steep + BENT * (apart / amplitude) ** 2))
+    change = np.abs(high - low) / apart * amplitude / scale_of(values)
+    doubt, bent = scatter / steep, BENT * (apart / amplitude) ** 2
+    return known_cycle(values, change * (doubt + np.array([0.0, *[bent] * 5])))
 
 
 def _steady(faint: Growth) -> Cycle:
