@@ -102,7 +102,9 @@ def _known(scene: Scene, request: Request, answer: Answer) -> Answer:
 
 def _unsettled(scene: Scene, request: Request, result: Any) -> str:
     """Return why it is not known how a motion ends, and how long small ripples take."""
-    reasons, rates = [UNSURE if result.cycle.settles else UNSETTLED, *result.notes], rates_of(scene)
+    reasons, rates = [UNSURE], rates_of(scene)
+    if not result.cycle.settles:
+        reasons = [UNSETTLED, *result.notes]
     turning = rates[rates[:, 1] > 0.0] if rates is not None else np.zeros((0, 2))
     if turning.any():
         rate = float(turning[:, 0].max())

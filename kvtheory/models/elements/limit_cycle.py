@@ -26,11 +26,13 @@ from kvtheory.theory.laws import Array
 PERIODS, LATE = 14.0, 10
 """Periods of a short run, and how many of them count: in the others all motions but the ripple fade."""
 HALF, FAINTER = 0.5, (0.2, 0.05)
-"""Amplitudes of other runs as shares: of the cycle, for its fit; of the ripple given, if it may fade."""
+"""Amplitudes of other runs as shares: of the cycle, for its fit; of the first ripple, if it fades."""
 BESIDE = 0.08
 """Share of its amplitude by which runs start below the cycle and above it."""
 FARTHEST, TRIES = 1.5, 6
 """Largest factor from one amplitude to the next, and most of these."""
+TINY = 1e-300
+"""Replaces amplitudes that are none, where a ripple is rounding."""
 BENT = 0.25
 """Of the amplitude, by which a value is bent between both, over the square of what they differ by."""
 
@@ -45,7 +47,7 @@ class Growth(NamedTuple):
     @classmethod
     def of(cls, ripple: Ripple) -> "Growth":
         """Return the growths of a ripple in the last periods of a run."""
-        sizes = ripple.sizes[-LATE:]
+        sizes = np.maximum(ripple.sizes[-LATE:], TINY)
         return cls(np.sqrt(sizes[1:] * sizes[:-1]), np.diff(np.log(sizes)), ripple)
 
 
@@ -81,10 +83,14 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
         # The contact that forms at first adds to the ripple.
         first = growths[0]
         begun = first.sizes[0] * math.exp(-first.growths[0] * (PERIODS - LATE))
-        scale *= float(begun) / amplitude
+        scale = min(max(scale * float(begun) / amplitude, 1.0 / FARTHEST), FARTHEST)
         return growths
 
-    known = [[Growth.of(each) for each in found.ripples], follow(HALF * size)]
+    ended = [Growth.of(each) for each in found.ripples]
+    fainter = [share * given.sizes.max() for share in FAINTER if share * given.sizes.max() < size]
+    if not fainter:
+        return _faded([ended], rate, np.zeros(len(ended)))
+    known = [ended, follow(HALF * size)]
     tried = _amplitude([each[0] for each in known], rate)
     for _ in range(TRIES):
         if not tried > 0.0:
@@ -100,16 +106,17 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
             cycles = [first.beside(others, SAFETY) for first, *others in ways]
             best = min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
             return best if best.settles and best.errors[0] < 1.0 else Cycle(0.0)
-    fainter = [follow(share * size) for share in FAINTER]
-    off = [
-        0.0 if math.isnan(rate) else _fit(each, rate)[-1] - _fit(each, math.nan)[-1]
-        for each in zip(*known, strict=True)
-    ]
-    means = np.array([[each.growths.mean() for each in runs] for runs in (*known, *fainter)]) + off
+    off = [_fit(each, rate)[-1] - _fit(each, math.nan)[-1] for each in zip(*known, strict=True)]
+    return _faded([*known, *map(follow, fainter)], rate, np.nan_to_num(off) * (rate < 0.0))
+
+
+def _faded(runs: Sequence[list[Growth]], rate: float, off: Array) -> Cycle:
+    """Return steady sliding if ripples fade at all amplitudes of the runs; `off` is added to growths."""
+    means = np.array([[each.growths.mean() for each in run] for run in runs]) + off
     apart = np.abs(means[:, 1:] - means[:, :1]).max(axis=1)
     if rate >= 0.0 or np.any(means[:, 0] + SAFETY * apart >= 0.0):
         return Cycle(0.0)
-    steady = [_steady(each) for each in fainter[-1]]
+    steady = [_steady(each) for each in runs[-1]]
     return steady[0].beside(steady[1:], SAFETY)
 
 
