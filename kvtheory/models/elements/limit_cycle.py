@@ -107,7 +107,8 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
             best = min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
             return best if best.settles and best.errors[0] < 1.0 else Cycle(0.0)
     off = [_fit(each, rate)[-1] - _fit(each, math.nan)[-1] for each in zip(*known, strict=True)]
-    return _faded([*known, *map(follow, fainter)], rate, np.nan_to_num(off) * (rate < 0.0))
+    larger = [each for each in known if each[0].sizes[0] > fainter[-1]]  # the others are rounding
+    return _faded([*larger, *map(follow, fainter)], rate, np.nan_to_num(off) * (rate < 0.0))
 
 
 def _faded(runs: Sequence[list[Growth]], rate: float, off: Array) -> Cycle:
