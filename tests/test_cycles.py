@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.elements.limit_cycle import limit_cycle
 from kvtheory.results.cycles import CYCLE, Cycle, cycle, sampled
 from kvtheory.scene.static_state import StaticState
 from tests.transient_ball import sheet_on_spring
@@ -69,6 +70,74 @@ def test_a_note_says_by_how_much_the_ripple_changes_in_a_period(follow):
     assert float(factor) == pytest.approx(math.exp(rate * float(period)), rel=2e-2)
 
 
+LINE = kv.Scene(
+    drive=kv.Drive("94.9126514 mm/s", stiffness="1 MN/m^2", mass="0.1 kg/mm"), run=kv.Run("1.2 s")
+)
+"""At 1.02 times the critical velocity, for 16 periods."""
+
+
+def test_the_cycle_near_the_onset_is_found_without_waiting_for_it():
+    found = kv.solve(LINE, quantity=[AMPLITUDE, PERIOD], rtol=0.02)
+    assert found.model == "elements"
+    # The solver without elements in 120 periods (amplitude to 2e-5).
+    for name, expected in ((AMPLITUDE, 2.638309e-4), (PERIOD, 0.07407942)):
+        off = abs(found.values[name] / expected - 1.0)
+        assert off <= found.certificate.relative_error[name] <= 0.02
+    assert abs(found.values[AMPLITUDE] / 2.638309e-4 - 1.0) < 2e-3
+
+
+def test_the_cycle_of_a_ball_near_the_onset_is_that_of_a_long_run_with_more_elements():
+    critical = 0.0832471309555956
+    shares = np.array([1.02, 1.1])
+    found = kv.sweep(BALL, over={"drive.velocity": critical * shares}, quantities=[AMPLITUDE])
+    # 130 elements in a mm: at 1.02 by its growth, at 1.1 in a run of 72 periods.
+    off = np.abs(found[AMPLITUDE] / [2.0744e-4, 4.6766e-4] - 1.0)
+    assert off.max() < found.certificate.relative_error[AMPLITUDE] < 0.25
+    assert off.max() < 0.02
+
+
+@pytest.mark.parametrize("share", [0.97, 1.0 + 1e-4])
+def test_a_ripple_near_the_onset_is_steady_sliding_only_where_it_fades(share):
+    scene = LINE.replace({"drive.velocity": 0.09305161908366982 * share})
+    run = kv.elements(scene, per_length="60 /mm", at=[1.2])
+    assert run.cycle.settles == 0.0
+    for rates in (kv.stability(scene).rates, None):
+        found = limit_cycle(scene, run, rates)
+        assert (found.amplitude == 0.0) == (share < 1.0)
+
+
+def test_a_run_too_short_for_its_cycle_is_told_how_long_it_would_take():
+    with pytest.raises(kv.ToleranceError, match=r"change at 0.386 1/s.* last about 17.9 s"):
+        kv.solve(replace(LINE, run=kv.Run("0.15 s")), quantity=AMPLITUDE)
+
+
+def test_a_cycle_beside_stable_steady_sliding_says_so():
+    slow = replace(kv.Scene().foundation, retardation_time="1 s")
+    drive = kv.Drive("4.3 mm/s", stiffness="0.1 MN/m^2")
+    scene = kv.Scene(foundation=slow, drive=drive, run=kv.Run("60 s"))
+    found = kv.solve(scene, quantity=AMPLITUDE, rtol=0.05)
+    assert found.stick_slip_amplitude > 1e-3
+    assert any("stable as well" in note for note in found.notes)
+    gently = kv.Drive(history=[("0 s", "0 m/s"), ("20 s", "4.3 mm/s")], stiffness="0.1 MN/m^2")
+    scene = replace(scene, drive=gently, run=kv.Run("100 s"))
+    assert kv.solve(scene, quantity=AMPLITUDE, rtol=0.05).stick_slip_amplitude == 0.0
+
+
+@pytest.mark.parametrize("follow", ["transient", "elements"])
+def test_the_cycle_is_in_json_by_the_names_of_solve(follow):
+    drive = kv.Drive("150 mm/s", stiffness="1 MN/m^2", mass="0.1 kg/mm")
+    how = {} if follow == "transient" else {"per_length": "60 /mm"}
+    run = getattr(kv, follow)(kv.Scene(drive=drive, run=kv.Run("0.8 s")), at=[0.8], **how)
+    told = run.as_dict()["cycle"]
+    assert set(told) == {*CYCLE, "relative_error"}
+    assert set(told["relative_error"]) == set(CYCLE)
+    assert told[AMPLITUDE] == run.cycle.amplitude == pytest.approx(1.4916e-3, rel=5e-3)
+    assert told["relative_error"][AMPLITUDE] < 0.05
+    unknown = getattr(kv, follow)(kv.Scene(drive=drive, run=kv.Run("0.1 s")), at=[0.1], **how)
+    assert unknown.as_dict()["cycle"] is None
+    assert "cycle" not in getattr(kv, follow)(at=[0.1], **how).as_dict()
+
+
 def test_solve_gives_the_cycle_or_says_why_not():
     steady = kv.solve(BALL.replace({"drive.velocity": 0.04}), quantity=[AMPLITUDE, PERIOD])
     assert steady.model == "elements"
@@ -86,9 +155,9 @@ def test_solve_gives_the_cycle_or_says_why_not():
         kv.solve(BALL, quantity=[AMPLITUDE, "load"])
 
 
-def ripple(t, growth):
+def ripple(t, growth, size=2e-5):
     """Return a ripple that grows, as a motion."""
-    grown, turns = 2e-5 * np.exp(growth * t), 30.0
+    grown, turns = size * np.exp(growth * t), 30.0
     x, rate = (
         grown * np.sin(turns * t),
         grown * (turns * np.cos(turns * t) + growth * np.sin(turns * t)),
@@ -100,6 +169,22 @@ def test_a_ripple_that_still_grows_is_not_steady_sliding_however_small_it_is():
     t = np.linspace(0.0, 10.0, 5000)
     assert cycle(t, ripple(t, -0.2)).amplitude == 0.0
     assert cycle(t, ripple(t, 0.2)).settles == 0.0
+
+
+@pytest.mark.parametrize("growth", [-1e-4, -1e-5, -1e-6, 1e-6, 1e-5])
+@pytest.mark.parametrize("duration", [2.0, 10.0])
+def test_a_ripple_that_changes_slowly_is_no_cycle(growth, duration):
+    t = np.linspace(0.0, duration, 3000)
+    assert cycle(t, ripple(t, growth, 0.1)).settles == 0.0
+    assert cycle(t, ripple(t, 0.0, 0.1)).amplitude == pytest.approx(0.1, rel=1e-6)
+
+
+def test_a_heavy_mass_that_swings_ever_less_is_no_stick_slip():
+    drive = kv.Drive("80 mm/s", stiffness="300 GN/m^2", mass="3e4 kg/mm")
+    scene = kv.Scene(drive=drive, start=kv.Start(sliding_velocity="0 m/s"), run=kv.Run("0.5 s"))
+    assert kv.stability(scene, quantity="stable").stable
+    assert kv.transient(scene, at=[0.5], rtol=1e-5).cycle.settles == 0.0
+    assert kv.elements(scene, at=[0.5], per_length="30 /mm").as_dict()["cycle"] is None
 
 
 def test_a_cycle_in_which_no_other_solution_ends_is_not_known():

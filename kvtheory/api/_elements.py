@@ -1,11 +1,12 @@
 """The discrete simulator: `elements`."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
-from kvtheory.results import Simulation
+from kvtheory.results import Simulation, SprungSimulation
 from kvtheory.results.table import SIMULATED
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured, times
 from kvtheory.scene.model import Scene
@@ -97,6 +98,7 @@ def elements(
     # They import SciPy, which takes a while.
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
+    from kvtheory.models.steady.stable_sliding import ended
 
     try:
         with double_precision(scene):
@@ -104,6 +106,8 @@ def elements(
                 scene, 1.0 / (per_length or DENSITY), SCHEMES[scheme], at=times_of(scene, at),
                 time_step=time_step, certify=certify, progress=progress, warn=warn,
             )  # fmt: skip
+            if isinstance(found, SprungSimulation) and found.cycle is not None:
+                found = replace(found, cycle=ended(scene, found.cycle))
             return noted(scene, found)
     except ValueError as error:
         key, _, hint = str(error).partition(": ")

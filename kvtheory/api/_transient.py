@@ -1,10 +1,12 @@
 """The whole transient: `transient`."""
 
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from kvtheory.api._edge import double_precision, noted, one_scene, times_of
 from kvtheory.progress import Progress
-from kvtheory.results import Transient
+from kvtheory.results import SprungTransient, Transient
 from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
 from kvtheory.scene.capabilities import lacks_continuum, require
 from kvtheory.scene.model import Scene
@@ -88,8 +90,11 @@ def transient(
     require(lacks_continuum, scene, "the transient")
     with double_precision(scene):
         from kvtheory.models.continuum import solved_scene
+        from kvtheory.models.steady import stable_sliding
 
         found = solved_scene.transient(
             scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )
+        if isinstance(found, SprungTransient):
+            found = replace(found, ended=partial(stable_sliding.ended, scene))
         return noted(scene, found)

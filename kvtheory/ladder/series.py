@@ -1,10 +1,10 @@
 """The rungs of a time series: exact (fixed or at rest), slow manifold, continuum, elements."""
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -147,7 +147,7 @@ def never_steady(scene: Scene) -> str:
     if scene.drive.function is not None:
         return "the drive is a function"
     a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time
-    for (before, fast), (after, slow) in pairwise(scene.drive.points):
+    for (before, fast), (after, slow) in itertools.pairwise(scene.drive.points):
         if abs(slow) >= abs(fast) and fast * slow >= 0.0:
             continue
         l_r = abs(slow) * tau
@@ -254,16 +254,17 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
     def run() -> Answer:
         from kvtheory.models.elements.model import Model  # slow to import
 
-        model, line = Model.of(scene), scene.indenter.per_width
-        length, measures = 2.0 * model.at_rest.half_length, scales(model.at_rest)
-        count, finer, before = ELEMENTS, math.nan, None
-        held, effect, message = scene, dict[str, float](), ""
-        while True:
+        at_rest = Model.of(scene).at_rest
+        length, measures = 2.0 * at_rest.half_length, scales(at_rest)
+        before, held, effect, message = None, scene, dict[str, float](), ""
+
+        def solved(count: float, finer: float) -> tuple[Answer, float]:
+            nonlocal before, held, effect, message
             result = models.elements(held, per_length=count / length, at=request.times)
             answer = _picked(result, request)
             if before is None:
                 held, effect, message = _with_fewer_arms(models, scene, request, answer, result)
-            if before is not None and request.times is not None:
+            elif request.times is not None:
                 own, errors = answer.certificate, dict(answer.certificate.relative_error)
                 for name in errors.keys() & measures.keys():
                     apart = np.abs(np.asarray(answer.values[name]) - before.values[name])
@@ -274,17 +275,36 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
                 answer = answer._replace(certificate=own)
             if message:
                 answer = _widened(answer, message, effect)
-            error = max(answer.certificate.relative_error[name] for name in request.quantities)
-            enough = error <= request.rtol and before is not None
-            needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)
-            finer = min(needed, MOST_FINER[line])
-            ratio = finer if before is None else needed  # the first run may be too coarse to tell
-            work = result.element_updates * (1.0 + OF_AN_ARM * len(held.foundation.arms))
-            if enough or work * ratio ** DIMENSIONS[line] > MOST_UPDATES[line]:
-                return answer
-            count, before = count * finer, answer
+            before = answer
+            return answer, result.element_updates * (1.0 + OF_AN_ARM * len(held.foundation.arms))
+
+        return refined(scene, request, solved, fewest=2)
 
     return Offer(BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan, run)
+
+
+def refined(
+    scene: Scene, request: Request, solved: Callable[[float, float], tuple[Answer, float]], *,
+    fewest: int = 1, gains: float = math.inf,
+) -> Answer:  # fmt: skip
+    """Refine elements until the errors are within the tolerance, or the work would be too much.
+
+    `solved`, of the elements in the contact at rest and of how many times as many they are as before, returns
+    an answer and its work in element updates. There are at least so many runs; the refinement also ends
+    where the error is not reduced to the share `gains`.
+    """
+    line, count, finer, before = scene.indenter.per_width, ELEMENTS, math.nan, math.inf
+    for runs in itertools.count(1):
+        answer, work = solved(count, finer)
+        error = max(answer.certificate.relative_error[name] for name in request.quantities)
+        needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)
+        finer = min(needed, MOST_FINER[line])
+        ratio = finer if runs == 1 else needed  # the first run may be too coarse to tell
+        enough = (error <= request.rtol and runs >= fewest) or error > gains * before
+        if enough or work * ratio ** DIMENSIONS[line] > MOST_UPDATES[line]:
+            break
+        count, before = count * finer, error
+    return answer
 
 
 def _with_fewer_arms(

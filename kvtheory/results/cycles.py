@@ -14,11 +14,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.presented import Recorded
+from kvtheory.results.presented import Recorded, record
 
 Array = NDArray[np.float64]
 States = Callable[[Array], Mapping[str, Array]]
@@ -50,8 +51,13 @@ FEWEST = 8
 AGREE, DOUBT, FAR = 1e-3, 12.0, 1.5
 """Share of the amplitude by which both limits may differ, how many times that their error may be, and largest
 ratio between amplitude and limit: beyond it, a triple may belong to another stage of the motion."""
-QUIET = 1e-4
-"""Share of the amplitude below which differences between cycles are integration errors."""
+QUIET, FADES = 1e-4, 0.5
+"""Share of the amplitude below which differences between cycles are integration errors, unless all of them go
+one way and do not fade to the second share: the ripple then changes slowly, and may do so for ever."""
+LEVEL = {False: 1e-6, True: 1e-8}
+"""Share below which even those are errors: where they are few, and go one way by chance, or many (True)."""
+SEVERAL = 4
+"""Differences that are many."""
 POINTS = 4000
 """Samples of a cycle for its extremes, which are parabolic between samples: accurate to 1e-6."""
 
@@ -98,6 +104,10 @@ class Cycle(Recorded):
         errors = [0.0 if math.isnan(value) else error for value, error in found]
         return dict(zip(CYCLE, [0.0, *errors], strict=True))
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return the quantities, and their errors, by the names of `CYCLE`, ready for JSON."""
+        return dict(record({**self.quantities, "relative_error": self.relative_errors}))
+
     def beside(self, others: Sequence["Cycle"], safety: float) -> "Cycle":
         """Return the cycle with `safety` times the largest difference to others added to its errors.
 
@@ -107,11 +117,34 @@ class Cycle(Recorded):
         if not others or len(ways) > 1:
             return replace(self, errors=(math.inf,) * 6)
         apart = np.max([abs(self.values - each.values) for each in others], axis=0)
-        errors = self.errors + safety * apart / _scale(self.values)
+        errors = self.errors + safety * apart / scale_of(self.values)
         return replace(self, errors=tuple(errors.tolist()))
 
 
-def _scale(values: Array) -> Array:
+class Ripple(NamedTuple):
+    """The ripple along x in the last periods of a motion: its amplitudes, and the last period."""
+
+    sizes: Array
+    period: float
+    centre: float  # of x
+    depth: float
+    values: Array  # as those of a `Cycle`
+
+
+def ripple(times: Array, states: States) -> Ripple | None:
+    """Return the ripple of a motion, or None of fewer than `RECENT` periods."""
+    turns, x = _turns(states, times, states(times)["offset_rate"])
+    sizes = 0.5 * (x[:-1:2] - x[1::2])
+    if sizes.size < RECENT:
+        return None
+    depth = states(np.linspace(turns[-3], turns[-1], POINTS))["depth"].mean()
+    centre, period = float(0.25 * (x[-3] + 2.0 * x[-2] + x[-1])), turns[-1] - turns[-3]
+    return Ripple(
+        sizes, float(period), centre, float(depth), _measured(states, turns[-3], turns[-1])
+    )
+
+
+def scale_of(values: Array) -> Array:
     """Return what errors of the values are relative to."""
     amplitude, period, *extremes = values
     high, low = extremes[::2], extremes[1::2]
@@ -132,7 +165,7 @@ def cycle(times: Array, states: States) -> Cycle:
         ]
         drifts = [DRIFTS * np.ptp(each) / (abs(each[-1]) or 1.0) for each in late]
         slide, force = (each[-1] for each in late)
-        return _found(
+        return known_cycle(
             [0.0, math.nan, slide, slide, force, force], [0.0, 0.0, *np.repeat(drifts, 2)]
         )
     turns, x = _turns(states, times, rates)
@@ -146,11 +179,11 @@ def cycle(times: Array, states: States) -> Cycle:
     share = (limit - sizes[-1]) / change if limit != sizes[-1] else 0.0
     values = now + share * step
     # As far as the amplitude is in doubt, so is how far the others go on.
-    beside = abs(step / change) * limit / _scale(values) if change else 1.0
-    return _found(values, doubt * np.maximum(1.0, beside) * np.ones(6))
+    beside = abs(step / change) * limit / scale_of(values) if change else 1.0
+    return known_cycle(values, doubt * np.maximum(1.0, beside) * np.ones(6))
 
 
-def _found(values: Sequence[float] | Array, errors: Sequence[float] | Array) -> Cycle:
+def known_cycle(values: Sequence[float] | Array, errors: Sequence[float] | Array) -> Cycle:
     """Return a cycle, or steady sliding, that is known."""
     amplitude, period, fast, slow, strong, weak = map(float, values)
     return Cycle(1.0, amplitude, period, fast, slow, strong, weak, tuple(map(float, errors)))
@@ -250,6 +283,10 @@ def _limit(sizes: Array) -> tuple[int, float, float]:
     stride = max(1, count // 4)
     last = sizes[-1 - 2 * stride :: stride]
     if len(last) == 3 and np.ptp(last) <= QUIET * last[-1]:
+        (first, second), steps = np.diff(last), np.diff(sizes[-1 - 2 * stride :])
+        one_way = abs(np.sign(steps).sum()) == steps.size and abs(second) > FADES * abs(first)
+        if one_way and np.ptp(last) > LEVEL[steps.size >= SEVERAL] * last[-1]:
+            return stride, math.nan, math.nan
         return stride, float(last[-1]), DOUBT * float(np.ptp(last) / last[-1])
     if count < FEWEST:
         return stride, math.nan, math.nan

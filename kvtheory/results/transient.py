@@ -1,12 +1,12 @@
 """Motions as time series: a transient, and a simulation by elements."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from kvtheory.results.cycles import Cycle
+from kvtheory.results.cycles import Cycle, Ripple
 from kvtheory.results.errors import Certificate, Value
-from kvtheory.results.presented import Presented
+from kvtheory.results.presented import Presented, record
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 from kvtheory.scene.arguments import checked, instant, instants, positions
 
@@ -138,8 +138,19 @@ class Transient(TimeSeries):
         return self.solution.impulse(time)
 
 
+class Ending:
+    """What a motion on a spring has beside its series: the cycle in which it ends, None if it coasts."""
+
+    cycle: Any
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None, as a cycle not reached."""
+        known = self.cycle is not None and self.cycle.settles
+        return {**record(self), "cycle": self.cycle.as_dict() if known else None}
+
+
 @dataclass(frozen=True, repr=False, kw_only=True)
-class SprungTransient(Transient):
+class SprungTransient(Ending, Transient):
     """A transient with a spring in the drive: also `sliding_velocity` and `spring_force`.
 
     The sliding velocity is that of the base under the indenter, V - dx/dt, with x the displacement of the
@@ -151,11 +162,16 @@ class SprungTransient(Transient):
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
 
+    ended: Callable[[Cycle], Cycle] | None = field(default=None, repr=False, compare=False)
+    """Of a cycle, itself; of steady sliding that is unstable, an unknown end."""
+
     @property
-    def cycle(self) -> Cycle:
+    def cycle(self) -> Cycle | None:
         """The cycle in which the motion ends: steady sliding, or stick-slip."""
+        if self.solution.coasts:
+            return None
         found: Cycle = self.solution.cycle
-        return found
+        return self.ended(found) if self.ended else found
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -177,10 +193,11 @@ class Simulation(TimeSeries):
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
-class SprungSimulation(Simulation):
+class SprungSimulation(Ending, Simulation):
     """A run of the elements on a spring, with the series and the `cycle` that a `SprungTransient` adds."""
 
     sliding_velocity: Value
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
     cycle: Cycle | None = field(default=None, repr=False, compare=False)
+    ripples: tuple[Ripple, ...] = field(default=(), repr=False, compare=False)

@@ -8,7 +8,7 @@ import itertools
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -188,6 +188,11 @@ class BaseMotion:
         last = (self.velocity(self.end), *(0.0 for _ in self.pieces[-1][POWERS + 1 :]))
         found = [(a, b, tuple(coefficients)) for a, b, _, *coefficients in self.pieces]
         return BaseMotion(_joined([*found, (self.end, end, last)]), self.changes)
+
+    def shifted(self, by: float) -> "BaseMotion":
+        """Return the motion of a base that is displaced by so much at t = 0."""
+        pieces = tuple((a, b, Y + by, *V) for a, b, Y, *V in self.pieces)
+        return replace(self, pieces=pieces)
 
     def scaled(self, time: float, length: float, depth: float = 1.0) -> "BaseMotion":
         """Return the motion in units of `time`, `length` and `depth`."""

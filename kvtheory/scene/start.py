@@ -15,11 +15,12 @@ VERTICAL = "gap", "depth", "depth_rate"
 
 
 class StartState(NamedTuple):
-    """Depth, its rate, and the velocity of the indenter along x, just after t = 0."""
+    """Depth, its rate, the velocity of the indenter along x and its place there, just after t = 0."""
 
     depth: float
     rate: float
     along_rate: float
+    along: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,17 @@ class Start(Part):
         gap, rate = self.gap or 0.0, self.depth_rate or 0.0
         pull = support.weight + support.spring * (static_depth + 0.5 * gap)
         return math.sqrt(rate * rate + 2.0 * gap * pull / support.mass)
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn(Start):
+    """A start with the spring in the drive drawn by `along` (m), from which the search for a cycle begins."""
+
+    along: float = 0.0
+
+    def at(self, static_depth: float, velocity: float) -> StartState:
+        """Return the state just after t = 0, when the drive has this `velocity` (m/s)."""
+        return super().at(static_depth, velocity)._replace(along=self.along)
 
 
 REST = Start()

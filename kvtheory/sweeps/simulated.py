@@ -9,10 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from kvtheory.models.elements.limit_cycle import limit_cycle
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES
 from kvtheory.models.elements.simulation import SAFETY, simulate
-from kvtheory.models.steady.stable_sliding import ended
+from kvtheory.models.steady.stable_sliding import ended, rates_of
 from kvtheory.results.cycles import CYCLE, cycle_statement
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
@@ -57,6 +58,8 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
         scale = scales(model.at_rest)
         if cycle := getattr(run, "cycle", None) if cycles else None:
             cycle = ended(scene, cycle).known
+            if run.ripples and not cycle.settles:
+                cycle = limit_cycle(scene, run, rates_of(scene)).known
             found.statements |= {cycle_statement(SAFETY), *[NO_CYCLE] * (not cycle.settles)}
         for column in asked:
             if column.measure in CYCLE:

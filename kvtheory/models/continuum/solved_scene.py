@@ -245,7 +245,7 @@ def spring_of(units: StaticState) -> Spring | None:
 
 def beginning(scene: Scene, units: StaticState, drive: BaseMotion) -> Beginning:
     """Return the scaled state just after t = 0."""
-    depth, rate, along = scene.start.at(units.depth, drive.velocity(0.0) * units.velocity)
+    depth, rate, along, _ = scene.start.at(units.depth, drive.velocity(0.0) * units.velocity)
     if drive.depths:
         return Beginning(*drive.depths[0], along / units.velocity)
     return Beginning(depth / units.depth, rate / units.depth_rate, along / units.velocity)

@@ -23,8 +23,9 @@ from kvtheory.theory.laws import Element
 
 PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
-FEWEST_STRIPS = 16
-"""From the middle plane to the rim at rest."""
+FEWEST_STRIPS = {True: 16, False: 64}
+"""From the middle plane to the rim at rest, on a rigid drive and on a spring: near the onset of stick-slip
+the growth of a ripple is a small difference, to which the rim matters most."""
 FEWEST = 8
 """Elements in contact at rest, at least: fewer do not resolve the contact."""
 MOST = 2_000_000
@@ -100,7 +101,11 @@ class Model:
                 + " along its middle"
                 * c.surface.ball
             )
-        dy = coarser * (1.0 + 0.5 * shift) * strip_width(c.surface, depth, dx)
+        dy = (
+            coarser
+            * (1.0 + 0.5 * shift)
+            * strip_width(c.surface, depth, dx, FEWEST_STRIPS[drive.rigid])
+        )
         c = c._replace(parts=parts, shift=shift, spacing=coarser * dx, across=dy, depth=depth)
         depth = depth if scene.held else sunk_depth(c)
         low, high = span(c.surface, depth)
@@ -118,7 +123,9 @@ class Model:
 
     def path(self, scene: Scene) -> BaseMotion:
         """Return the motion of the base until the end of the run."""
-        return scene.motion(scene.run.duration, self.at_rest.velocity)
+        return scene.motion(scene.run.duration, self.at_rest.velocity).shifted(
+            self.start.at(0.0, 0.0).along
+        )
 
     def fastest(self, path: BaseMotion) -> float:
         """Return the speed of sliding to expect, in m/s: that of the drive, and of a spring let go.
@@ -143,7 +150,7 @@ class Model:
 
     def landing(self, path: BaseMotion) -> float:
         """Return the time (s) at which an indenter lands that starts above the ground, or infinity."""
-        c, (depth, rate, _) = self.constants, self.begun(path)
+        c, (depth, rate, *_) = self.constants, self.begun(path)
         if depth > 0.0 or math.isinf(c.mass):
             return math.inf
         if c.spring * -depth <= NO_SPRING * c.weight:
@@ -213,10 +220,10 @@ def sunk_depth(c: Constants, V: float = 0.0) -> float:
             return depth
 
 
-def strip_width(s: Surface, depth: float, dx: float) -> float:
+def strip_width(s: Surface, depth: float, dx: float, fewest: int = FEWEST_STRIPS[True]) -> float:
     """Return the width of a strip of a ball, and 0 of a line contact."""
     right = span(s, depth)[1]
-    return s.stretch * min(PER_STRIP * dx, right / FEWEST_STRIPS) if s.ball else 0.0
+    return s.stretch * min(PER_STRIP * dx, right / fewest) if s.ball else 0.0
 
 
 @lru_cache(maxsize=64)

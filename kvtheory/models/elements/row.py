@@ -71,11 +71,12 @@ class ElementRow:
         kept_depth: float = KEPT_DEPTH, start: StartState | None = None,
     ) -> None:  # fmt: skip
         self.constants, self.path, self.compiled = constants, path, False
-        depth, rate, along_rate = start or StartState(constants.depth, 0.0, 0.0)
+        depth, rate, along_rate, along = start or StartState(constants.depth, 0.0, 0.0)
         self.deepest = kept_depth * max(constants.depth, depth)
         self.faded, tableau = np.ones(constants.law.rates.size), scheme.table
         (now,), (counts,) = blanks(1, k_.INDENTER), blanks(1, k_.COUNTS)
-        now.mean_force, now.rate, now.along_rate = constants.weight, rate, along_rate
+        now.mean_force, now.rate = constants.weight, rate
+        now.along, now.along_rate = along, along_rate
         self.stored = Row(
             constants=constants, tableau=tableau, fitted=scheme.fitted, deepest=self.deepest, now=now,
             counts=counts, faded=self.faded, rates=Motion(*np.zeros((4, len(tableau)))),

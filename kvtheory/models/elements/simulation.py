@@ -24,7 +24,7 @@ from kvtheory.results import (
     SprungSimulation,
     units_for,
 )
-from kvtheory.results.cycles import States, cycle, note, sampled
+from kvtheory.results.cycles import States, cycle, note, ripple, sampled
 from kvtheory.results.errors import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.results.transient import STOPPED
@@ -358,11 +358,13 @@ def _ending(model: Model, runs: list[Rows]) -> dict[str, Any]:
     for rows in runs:
         rate = rows["velocity"] - rows["sliding_velocity"]
         x = (rows["spring_force"] - c.damping_along * rate) / c.spring_along
-        series = {name: rows[name] for name in ("sliding_velocity", "friction_force")}
+        series = {name: rows[name] for name in ("sliding_velocity", "friction_force", "depth")}
         motions.append(sampled(rows["time"], x, rate, **series))
     cycles = [cycle(rows["time"], states) for rows, states in zip(runs, motions, strict=True)]
     said = note(runs[0]["time"], motions[0])
+    ripples = [ripple(rows["time"], states) for rows, states in zip(runs, motions, strict=True)]
     return {
+        "ripples": () if any(each is None for each in ripples) else tuple(ripples),
         "cycle": cycles[0].beside(cycles[1:], SAFETY),
         "notes": (said,) if said else (),
     }

@@ -56,6 +56,11 @@ def lasts(scene: Scene) -> Any:
     return None if lacks_stability(scene) else solve(scene, {"stable"}).stable
 
 
+def rates_of(scene: Scene) -> Any:
+    """Return the rates of small motions of one scene, see `Stability`; None if they are not known."""
+    return None if lacks_stability(scene) else solve(scene, {"rates"}).rates
+
+
 def ended(scene: Scene, found: Cycle) -> Cycle:
     """Return how a motion ends, unknown if in steady sliding that is unstable: its ripple is still small."""
     unstable = found.amplitude == 0.0 and lasts(scene) is not None and not lasts(scene)
