@@ -43,7 +43,7 @@ def test_notes_say_it_wherever_it_counts(tmp_path):
     (note,) = kv.steady(LINE, over={"drive.velocity": [0.01, 0.1]}).notes
     assert "throughout" in note
     assert kv.steady(LINE, method="layer").notes == ()
-    thin = {"foundation.thickness": 1e-5, "foundation.poisson_ratio": 0.3}
+    thin = {"foundation.thickness": 1e-5, "foundation.poisson_ratio": 0.3, "support.load": 100.0}
     assert max(model_error(LINE.replace(thin))) <= SMALL
     assert kv.steady(LINE, over=thin).notes == ()
     taken = replace(LINE, foundation=replace(RUBBER, stiffness_from="thin"))
