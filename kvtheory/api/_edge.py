@@ -53,7 +53,8 @@ def noted(scene: Scene, series: Any) -> Any:
     if np.isnan(length).all():
         return series
     there = scene.at(np.asarray(series.velocity))
-    numbers = largest(layer_numbers(there, series.depth, 0.5 * length))
+    farther = np.maximum(np.abs(series.leading_edge), np.abs(series.trailing_edge))
+    numbers = largest(layer_numbers(there, series.depth, np.where(length > 0.0, farther, np.nan)))
     notes = [*series.notes, *notes_of(numbers, there), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)

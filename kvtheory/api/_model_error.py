@@ -107,7 +107,7 @@ def largest(numbers: Mapping[str, Any]) -> dict[str, float]:
 
 def _at_rest(scene: Scene) -> tuple[Any, Any]:
     """Return depth and half length at rest, of a given depth over time at the largest one."""
-    support = Fixed(scene.support.depth) if scene.depths else scene.support
+    support = Fixed(+scene.support.depth) if scene.depths else scene.support
     still = replace(scene, drive=Drive(velocity=0.0), start=AT_REST, support=support)
     state = METHODS["quadrature" if lacks_closed_form(still) else "exact"](still)
     return state.depth, state.half_length
