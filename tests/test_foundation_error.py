@@ -220,3 +220,26 @@ def test_arrays_have_the_errors_of_their_scenes():
     assert np.isinf(model_error(LINE.replace(arm))[0]).tolist() == [False, False, True]
     (note,) = kv.steady(LINE, over={"foundation.arms[0].modulus": 1e12}).notes
     assert note.startswith("How far the foundation is from its layer is not known here")
+
+
+def test_a_shape_without_a_contact_at_rest_is_told_of_what_the_command_has():
+    wedge = replace(LINE, indenter=kv.Wedge(inclination=0.1))
+    curve = {"V [m/s]": [0.01, 0.1, 1.0], "mu": [0.01, 0.05, 0.02]}
+    for answer in (
+        lambda: kv.asymptotes(wedge), lambda: kv.steady(wedge),
+        lambda: kv.fit(wedge, curve, free=["foundation.modulus"]),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=r"^steady sliding on independent elements needs the K"):
+            answer()
+    with pytest.raises(ValueError, match=r'^`method` = "quadrature" needs the K'):
+        kv.steady(wedge, method="quadrature")
+
+
+def test_the_friction_maximum_of_a_circle_on_a_layer_with_arms():
+    found = kv.asymptotes(replace(LINE, indenter=kv.Circle("10 mm")))
+    ((velocity, friction),) = found.maxima
+    near = np.array([0.98, 1.0, 1.02]) * velocity
+    below, at, above = kv.steady(
+        replace(LINE, indenter=kv.Circle("10 mm")).at(near)
+    ).friction_coefficient
+    assert max(below, above) < at == pytest.approx(friction, rel=1e-6)

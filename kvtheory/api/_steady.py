@@ -176,9 +176,10 @@ def _on_body(scene: Scene, progress: Progress | None) -> SteadyState:
 def method_for(scene: Scene, method: str | None) -> str:
     """Return the requested method of steady sliding, or by default the one that suits the scene."""
     lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
-    method = method or ("quadrature" if lacking["exact"] else "exact")
+    asked, method = method, method or ("quadrature" if lacking["exact"] else "exact")
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
         hint = f'; use `method` = "{others[0]}"' if others else ""
-        raise ValueError(f'`method` = "{method}" {lacking[method]}{hint}')
+        what = f'`method` = "{asked}"' if asked else "steady sliding on independent elements"
+        raise ValueError(f"{what} {lacking[method]}{hint}")
     return method
