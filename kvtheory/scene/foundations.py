@@ -289,7 +289,8 @@ class _Relaxed(Part):
         """The foundation by its stiffness: of a layer in a scene, the independent elements that it gives."""
         if self.modulus is None:
             return self
-        given = dict.fromkeys((*LAYER, "stiffness_from")) | {"stiffness": +self.stiffness}
+        given: dict[str, Any] = dict.fromkeys((*LAYER, "stiffness_from"))
+        given["stiffness"] = +self.stiffness
         if "arms" in vars(self):
             given["arms"] = [
                 replace(arm, stiffness=+arm.stiffness, modulus=None) for arm in self.arms
