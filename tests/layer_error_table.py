@@ -21,7 +21,7 @@ from kvtheory.theory.contact_at_rest import load_at_rest
 THICKNESS = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0]
 """Over the half length at rest; the last one of a ball is a half-space."""
 RATIOS = [0.0, 0.3, 0.45, 0.49, 0.5]
-STIFFENING = {"dead-weight": [1.05, 3.0, 50.0, 2000.0], "fixed": [3.0, 200.0]}
+STIFFENING = {"dead-weight": [1.05, 3.0, 50.0, 2000.0], "fixed": [3.0, 20.0, 200.0]}
 WIDTHS = {"dead-weight": [0.0, 2.0, 6.0], "fixed": [0.0, 6.0]}
 PLACES = np.array([-1.2, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0, 1.5, 2.2])
 """log10(V/V*) over the half width of the transition in decades."""

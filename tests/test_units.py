@@ -103,5 +103,7 @@ def test_a_part_without_a_shape_says_what_a_line_and_what_a_ball_expects(made, u
 def test_several_values_in_one_text_are_told_to_be_a_list():
     with pytest.raises(ValueError, match=r'a list: \["20 degC", "60 degC"\]'):
         to_si("20 degC, 60 degC", "K")
+    with pytest.raises(ValueError, match=r'a list: \["1 mm", "2 mm"\]'):
+        to_si("1 mm,2 mm", "m")
     with pytest.raises(ValueError, match="decimal mark as a point"):
         to_si("0,5 mm", "m")

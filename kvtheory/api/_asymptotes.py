@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.api._edge import double_precision, layer_note, scene_of
+from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._model_error import layer_notes
 from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results import AsymptoteReport
@@ -83,7 +84,8 @@ def asymptotes(
         if scene.foundation.modulus is not None:  # else no state need be solved again
             from kvtheory.layer.limits import limits
 
-            notes.append(layer_note(scene, METHODS[method](scene).half_length))
+            state = METHODS[method](scene)
+            notes += layer_notes(scene, state.depth, state.half_length)
             report = replace(report, layer=limits(scene))
         return replace(report, notes=tuple(filter(None, notes)))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from kvtheory.api._edge import double_precision, one_scene
 from kvtheory.api._elements import PER_LENGTH, elements
+from kvtheory.api._model_error import layer_notes
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import TRIAL_RTOL, Methods, Theory
@@ -109,7 +111,8 @@ def compare(
     Returns
     -------
     Comparison
-        The verdict, each check with its measured and its allowed value, and a diagnosis in words.
+        The verdict, each check with its measured and its allowed value, and a diagnosis in words, which ends
+        with how far a foundation given by a layer is from the layer.
 
     Raises
     ------
@@ -145,7 +148,7 @@ def compare(
     report = progress or METHODS.tell
     own = 0.5 if data is None else 0.0
     methods = METHODS._replace(tell=lambda share, words: report(own + (1.0 - own) * share, words))
-    theory = Theory(scene, methods)
+    theory = Theory(replace(scene, foundation=scene.foundation.elements), methods)
 
     def begun(share: float, words: str) -> None:
         report(own * share, words)
@@ -156,8 +159,10 @@ def compare(
         return broken_off(theory, error, scheme, tolerance)
     series = read(found, units_for(scene.indenter, SERIES_UNITS))
     if series.curve:
-        return compare_curve(theory, series, tolerance)
-    return compare_series(theory, series, per_length, scheme, tolerance)
+        judged, there = compare_curve(theory, series, tolerance), scene.at(series.time)
+    else:
+        judged, there = compare_series(theory, series, per_length, scheme, tolerance), scene
+    return replace(judged, diagnosis=" ".join([judged.diagnosis, *layer_notes(there)]))
 
 
 def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.api._model_error import model_note
+from kvtheory.api._model_error import largest, layer_numbers, notes_of
 from kvtheory.scene.capabilities import lacks_one_scene, require
 from kvtheory.scene.foundations import beyond, extrapolates
-from kvtheory.scene.layer import THIN_WAY, thick_layer
 from kvtheory.scene.mistakes import mistake
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import out_of_range
@@ -47,23 +46,16 @@ def times_of(scene: Scene, at: list[float] | None) -> Any:
     return at
 
 
-def layer_note(scene: Scene, half_length: Any) -> str:
-    """Return a note if the foundation is not the layer that gives it, or an empty text."""
-    foundation, stretch = scene.foundation, getattr(scene.indenter, "stretch", 1.0)
-    if foundation.stiffness_from == THIN_WAY:
-        shortest = half_length * np.minimum(1.0, stretch)
-        return thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
-    return model_note(scene)
-
-
 def noted(scene: Scene, series: Any) -> Any:
-    """Return a time series with notes: V/c or T leave the measured range; the layer is thick."""
+    """Return a time series with notes: on its layer, and if V/c or T leave the measured range."""
     length = np.abs(series.trailing_edge - series.leading_edge)
     length = np.where(length > 0.0, length, np.nan)
     if np.isnan(length).all():
         return series
     there = scene.at(np.asarray(series.velocity))
-    notes = [*series.notes, layer_note(there, 0.5 * np.nanmin(length)), beyond(scene.foundation)]
+    farther = np.maximum(np.abs(series.leading_edge), np.abs(series.trailing_edge))
+    numbers = largest(layer_numbers(there, series.depth, np.where(length > 0.0, farther, np.nan)))
+    notes = [*series.notes, *notes_of(numbers, there), beyond(scene.foundation)]
     if scene.foundation.lowest_frequency is not None:
         passing = np.nan_to_num(np.abs(series.velocity) / length)
         notes.append(extrapolates(scene.foundation, passing.max(), 1.0))

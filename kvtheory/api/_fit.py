@@ -10,6 +10,7 @@ import numpy as np
 
 from kvtheory.api._compare import METHODS
 from kvtheory.api._edge import one_scene
+from kvtheory.api._model_error import largest, layer_numbers, notes_of
 from kvtheory.api._solve import solve as cheapest
 from kvtheory.api._steady import method_for
 from kvtheory.models.steady.methods import METHODS as STEADY
@@ -200,6 +201,7 @@ def fit(
             *confidence.large(problem, best.point),
             *confidence.unseen(problem, best.point),
             *confidence.others(problem, best, limits),
+            *_on_layer(problem, dict(zip(problem.keys, values, strict=True))),
         ),
         scene=problem.of(dict(zip(problem.keys, values, strict=True))),
         data={
@@ -210,6 +212,17 @@ def fit(
             "units": units_for(scene.indenter, {**STEADY_UNITS, **SERIES_UNITS}), "solve": problem.solve,
         },
     )  # fmt: skip
+
+
+def _on_layer(problem: Any, values: dict[str, float]) -> tuple[str, ...]:
+    """Return notes on the layer of the fitted scene, under the conditions of all data."""
+    numbers: dict[str, float] = {}
+    for data in problem.data:
+        for name, number in largest(
+            layer_numbers(problem.of({**data.conditions, **values}))
+        ).items():
+            numbers[name] = max(number, numbers.get(name, 0.0))
+    return notes_of(numbers, problem.scene, several=True)
 
 
 def _tried(

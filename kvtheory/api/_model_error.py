@@ -1,4 +1,4 @@
-"""How far the foundation of a scene that is given by a layer is from the layer itself, in steady sliding."""
+"""How far the foundation of a scene is from the layer that gives it, and that layer from small strains."""
 
 import math
 from collections.abc import Mapping
@@ -8,11 +8,23 @@ from typing import Any
 import numpy as np
 
 from kvtheory.models.steady import asymptotes
+from kvtheory.models.steady.methods import METHODS
+from kvtheory.scene.capabilities import lacks_closed_form
+from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.layer import REST
-from kvtheory.scene.model import Scene
+from kvtheory.scene.layer import (
+    REST,
+    THIN_WAY,
+    deformation,
+    large_deformation,
+    layer_number,
+    thick_layer,
+)
+from kvtheory.scene.model import Fixed, Scene
+from kvtheory.scene.start import REST as AT_REST
 
 MU = "friction_coefficient"
+LAYER_NUMBER = "layer_number"
 SMALL = 0.03
 """Error of the model up to which it is not worth a note: the map adds 2 % to what it finds."""
 
@@ -52,15 +64,72 @@ def model_error(scene: Scene) -> tuple[Any, Any] | None:
     return friction + none, second + none
 
 
-def model_note(scene: Scene) -> str:
-    """Return how far the foundation is from the layer, or an empty text where that is not worth a note."""
-    return note_of(errors_of(scene), scene, "throughout" if scene.shape else "here")
+def layer_notes(
+    scene: Scene, depth: Any = None, half_length: Any = None, *, on_body: bool = False
+) -> tuple[str, ...]:
+    """Return notes on a scene that is given by a layer; arguments as in `layer_numbers`."""
+    return notes_of(layer_numbers(scene, depth, half_length, on_body=on_body), scene)
 
 
-def note_of(errors: Mapping[str, float] | None, scene: Scene, where: str = "throughout") -> str:
-    """Return the note that gives the errors of `errors_of`."""
+def layer_numbers(
+    scene: Scene, depth: Any = None, half_length: Any = None, *, on_body: bool = False
+) -> dict[str, Any]:
+    """Return the numbers from which notes on a layer follow, by name, or none for a scene without a layer.
+
+    These are strain and slope of a contact, by default of that at rest; and, unless the layer itself is
+    solved (`on_body`), how thin it is for that contact, or the errors of `errors_of`.
+    """
+    foundation = scene.foundation
+    if foundation.modulus is None:
+        return {}
+    if not scene.drive.ends:
+        scene = replace(scene, drive=Drive(velocity=0.0))
+    if (
+        depth is None and foundation.stiffness is None
+    ):  # of a shape whose contact at rest is not known
+        return dict(errors_of(scene) or {})
+    if depth is None:
+        depth, half_length = _at_rest(scene)
+    found = deformation(scene.indenter, foundation.thickness, depth, half_length)
+    if on_body:
+        return found
+    if foundation.stiffness_from == THIN_WAY:
+        shortest = half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
+        given = foundation.thickness, shortest, foundation.poisson_ratio
+        return found | {LAYER_NUMBER: layer_number(*given)}
+    return found | dict(errors_of(scene) or {})
+
+
+def largest(numbers: Mapping[str, Any]) -> dict[str, float]:
+    """Return the largest of each of the numbers of several scenes; NaN, without a contact, does not count."""
+    return {name: float(np.nanmax(values)) for name, values in numbers.items()}
+
+
+def _at_rest(scene: Scene) -> tuple[Any, Any]:
+    """Return depth and half length at rest, of a given depth over time at the largest one."""
+    support = Fixed(+scene.support.depth) if scene.depths else scene.support
+    still = replace(scene, drive=Drive(velocity=0.0), start=AT_REST, support=support)
+    state = METHODS["quadrature" if lacks_closed_form(still) else "exact"](still)
+    return state.depth, state.half_length
+
+
+def notes_of(numbers: Mapping[str, Any], scene: Scene, several: bool = False) -> tuple[str, ...]:
+    """Return the notes that numbers of `layer_numbers` give, or the largest ones of `several` scenes."""
+    if not numbers:
+        return ()
+    where = "throughout" if several or scene.shape else "here"
+    notes = (
+        large_deformation(numbers.get("strain", 0.0), numbers.get("slope", 0.0), several),
+        thick_layer(numbers.get(LAYER_NUMBER, 0.0), several),
+        _error_note(numbers, scene, where) if MU in numbers else "",
+    )
+    return tuple(filter(None, notes))
+
+
+def _error_note(errors: Mapping[str, float], scene: Scene, where: str) -> str:
+    """Return the note that gives the errors of `errors_of`, or an empty text where they are small."""
     second = "load" if scene.held else "depth"
-    mu, other = (errors[name] for name in (MU, second)) if errors else (0.0, 0.0)
+    mu, other = errors[MU], errors[second]
     if max(mu, other) <= SMALL:
         return ""
     layer = "the method `layer` of `steady` solves the layer itself."

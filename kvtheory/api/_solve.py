@@ -1,13 +1,14 @@
 """The cheapest sufficient model: `solve`."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.api._elements import elements
 from kvtheory.api._fewer_arms import fewer_arms
-from kvtheory.api._model_error import errors_of
+from kvtheory.api._model_error import errors_of, layer_notes
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
@@ -134,7 +135,8 @@ def solve(
             rungs = climbing.beside_layer(rungs, error, own)
             names = names if quantity is not None else tuple(error)
     with double_precision(scene):
-        return climbing.climb(scene, climbing.Request(names, rtol, at, units), rungs)
+        found = climbing.climb(scene, climbing.Request(names, rtol, at, units), rungs)
+        return found if found.answer is not None else replace(found, notes=layer_notes(scene))
 
 
 def _names(

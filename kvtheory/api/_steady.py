@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from kvtheory.api._edge import double_precision, layer_note, one_scene, scene_of, varied
+from kvtheory.api._edge import double_precision, one_scene, scene_of, varied
+from kvtheory.api._model_error import layer_notes
 from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
@@ -69,10 +70,10 @@ def steady(
     SteadyState
         Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
         whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, how far a
-        foundation given by a layer is from the layer itself, or, taken as thin, that it is not, and if V/c
-        is outside the frequencies, or the temperature outside the temperatures, at which the foundation was
-        measured. By ``"layer"`` the half length is that of the body at rest at this depth, stability on a
-        spring is not known, and `dissipated_in_contact` is NaN.
+        foundation given by a layer is from the layer itself, or, taken as thin, that it is not, if the layer
+        is strained beyond linear theory, and if V/c is outside the frequencies, or the temperature outside
+        the temperatures, at which the foundation was measured. By ``"layer"`` the half length is that of the
+        body at rest at this depth, stability on a spring is not known, and `dissipated_in_contact` is NaN.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def steady(
         length = state.trailing_edge - state.leading_edge
         notes = [
             extrapolates(scene.foundation, scene.drive.final_velocity, length),
-            "" if method == BODY else layer_note(scene, state.half_length),
+            *layer_notes(scene, state.depth, state.half_length, on_body=method == BODY),
             beyond(scene.foundation),
             _of_function(scene),
         ]
@@ -175,9 +176,10 @@ def _on_body(scene: Scene, progress: Progress | None) -> SteadyState:
 def method_for(scene: Scene, method: str | None) -> str:
     """Return the requested method of steady sliding, or by default the one that suits the scene."""
     lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
-    method = method or ("quadrature" if lacking["exact"] else "exact")
+    asked, method = method, method or ("quadrature" if lacking["exact"] else "exact")
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
         hint = f'; use `method` = "{others[0]}"' if others else ""
-        raise ValueError(f'`method` = "{method}" {lacking[method]}{hint}')
+        what = f'`method` = "{asked}"' if asked else "steady sliding on independent elements"
+        raise ValueError(f"{what} {lacking[method]}{hint}")
     return method

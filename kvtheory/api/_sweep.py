@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
-from kvtheory.api._model_error import errors_of, note_of
+from kvtheory.api._model_error import largest, layer_numbers, notes_of
 from kvtheory.api._steady import BODY, LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
@@ -96,7 +96,7 @@ def sweep(
     -------
     Sweep
         Labelled arrays in SI. With `output`, they are read from the file on access. Its `notes` say how far a
-        foundation given by a layer is from the layer itself.
+        foundation given by a layer is from the layer itself, and if that is strained beyond linear theory.
 
     Raises
     ------
@@ -134,8 +134,12 @@ def sweep(
         found = engine.in_memory(plan, **how)
     else:
         found = engine.into_file(plan, file, overwrite=overwrite, **how)
-    note = note_of(found.model_error, plan.scene)
-    return replace(found, notes=(note,)) if note else found
+    return replace(found, notes=notes_of(found.layer, plan.scene, several=True))
+
+
+def _of_layer(scene: Scene, *contact: Any, **given: Any) -> dict[str, float]:
+    """Return the largest numbers of layers from which notes follow; a function by name, for processes."""
+    return largest(layer_numbers(scene, *contact, **given))
 
 
 @argument.checked(
@@ -161,7 +165,7 @@ def plan_of(
     if quantities is None and at is None and sprung and not (on_body or lacks_stability(scene)):
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
-    plan = Plan(scene, axes, columns, times, method, rtol, errors_of)
+    plan = Plan(scene, axes, columns, times, method, rtol, _of_layer)
     if scene.depths and plan.needed(steady=True):
         method_for(scene, asked)  # it refuses
     if on_body and (plan.transient or any(column.base == STABLE for column in columns)):

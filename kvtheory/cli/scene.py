@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +43,7 @@ def scene(
     """
     import numpy as np  # not needed for help texts
 
+    from kvtheory.api._model_error import layer_notes
     from kvtheory.reference_problems import problem_text, problems
     from kvtheory.results import record
     from kvtheory.results.presented import value_range
@@ -90,7 +90,7 @@ def scene(
             quantities[f"shifted_{name}"] = shifted
     numbers = {} if lacks_quadratic(checked) else _dimensionless(checked)
     quantities |= numbers
-    notes = _notes(checked)
+    notes = layer_notes(checked)
     kinds = {
         "shape": checked.indenter.shape, "foundation": foundation.kind,
         "support": checked.support.kind,
@@ -112,23 +112,6 @@ def scene(
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
     for note in notes:
         click.echo(f"\n{note}")
-
-
-def _notes(scene: Any) -> tuple[str, ...]:
-    """Say how far a foundation is from the layer that it stands for."""
-    from kvtheory.api import steady
-    from kvtheory.api._edge import layer_note
-    from kvtheory.scene import Drive
-    from kvtheory.scene.layer import THIN_WAY
-    from kvtheory.scene.start import REST
-
-    if scene.foundation.modulus is None:
-        return ()
-    still = replace(scene, drive=Drive(velocity=0.0), start=REST)
-    there = scene if scene.drive.ends else still
-    thin = scene.foundation.stiffness_from == THIN_WAY
-    half_length = steady(still).half_length if thin else None  # else of no use
-    return tuple(filter(None, [layer_note(there, half_length)]))
 
 
 def _dimensionless(scene: Any) -> dict[str, Any]:

@@ -16,6 +16,18 @@ function layer_number({ layer, stretch }, { half_length }) {
   return layer?.way === "thin" ? (layer.H / (half_length * Math.min(1, stretch))) ** 2 / (1 - 2 * layer.nu) : 0;
 }
 
+/** What of a contact is beyond linear theory, as kvtheory.scene.layer says it; nothing within it. */
+function large_deformation({ layer, indenter, shape: [size, length, n], stretch }, { depth, half_length: a }) {
+  if (!layer) return "";
+  const strain = depth / layer.H, flat = size * (a / length) ** (n - 1) / Math.min(1, stretch);
+  const slope = indenter === "circle" ? flat / Math.sqrt(Math.max(0, 1 - flat * flat)) : flat;
+  if (strain > 1) return `There is no such contact: depth/thickness = <b>${short(strain, 3)}</b>, so that the indenter would reach the base of the layer.`;
+  const told = [];
+  if (strain > MODEL.large_strain) told.push(`depth/thickness = <b>${short(strain, 3)}</b>, above ${MODEL.large_strain}`);
+  if (slope > MODEL.large_slope) told.push(`the slope of the indenter at the edge of the contact = <b>${short(slope, 3)}</b>, above ${MODEL.large_slope}`);
+  return told.length ? `Strains are large: ${told.join(", and ")}. Foundation and layer follow linear theory, which is then wrong by about 10\u00a0% or more.` : "";
+}
+
 /** How far the curve is from the layer, in words. */
 function told_error(scene) {
   const error = model_error(scene), instead = "<code>kvtheory steady --method layer</code> solves the layer itself.";
@@ -27,10 +39,12 @@ function told_error(scene) {
 
 function show_layer(scene, state) {
   const place = document.getElementById("layer"), number = layer_number(scene, state), body = document.getElementById("body");
-  place.hidden = number <= MODEL.thin;
-  place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
+  const large = large_deformation(scene, state), thick = number <= MODEL.thin ? ""
+    : `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
     + "that it does not act as independent elements of the stiffness of a thin layer. Leave out <code>stiffness_from</code>, or solve the "
     + "body itself: <code>kvtheory steady --method layer</code>.";
+  place.hidden = !large && !thick;
+  place.innerHTML = [large, thick].filter(Boolean).join("<br>");
   const { low, high, critical } = layer_limits(scene);
   body.hidden = !low;
   body.innerHTML = low ? `On the layer itself \u03bc \u2192 <b>${short(low(1))}</b> s/m V at low velocity`

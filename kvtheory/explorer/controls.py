@@ -20,8 +20,8 @@ from kvtheory.scene.foundations import (
     Arm,
 )
 from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.layer import LARGE_SLOPE, LARGE_STRAIN, THIN, THIN_WAY
 from kvtheory.scene.layer import SHAPES as REST_SHAPES
-from kvtheory.scene.layer import THIN, THIN_WAY
 from kvtheory.scene.model import SECTIONS as ALL_SECTIONS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, as_given, given, quantities, required
@@ -129,7 +129,8 @@ def controls(scene: Scene) -> dict[str, Any]:
         "rest": {"shapes": REST_SHAPES, **{name: each.tolist() for name, each in splines().items()}},
         "model_error": None if scene.foundation.modulus is None else _model_error(),
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
-        "thin": THIN, "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
+        "thin": THIN, "large_strain": LARGE_STRAIN, "large_slope": LARGE_SLOPE,
+        "barely": BARELY, "near": NEAR, "glass": GLASS, "gas_constant": GAS_CONSTANT,
         "shift_factors": scene.foundation.shift_factors or [], "same_temperature": SAME_TEMPERATURE,
     }  # fmt: skip
 

@@ -95,6 +95,7 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
                 values=answer.values, rtol=request.rtol, model=rung.name,
                 certificate=answer.certificate, climb=tuple(steps), answer=answer.result,
                 units=units_for(scene.indenter, request.units),
+                notes=getattr(answer.result, "notes", ()),
             )  # fmt: skip
     raise ToleranceError(_failure(request, steps))
 

@@ -160,7 +160,7 @@ class Solution(Presented):
 
     `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,
     `time` first); each is also an attribute: ``solution.friction_force``. Quantities of a series that were
-    not requested are NaN. `answer` is the full result of the model, if it has one.
+    not requested are NaN. `answer` is the full result of the model, if it has one, and `notes` are its notes.
     """
 
     values: Mapping[str, Value]
@@ -170,16 +170,12 @@ class Solution(Presented):
     climb: tuple[ClimbStep, ...]
     answer: Any = field(default=None, repr=False, compare=False)
     units: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     def __getattr__(self, name: str) -> Value:
         if name.startswith("_") or name == "values" or name not in self.values:
             raise AttributeError(f"a {type(self).__name__} of this request has no `{name}`")
         return self.values[name]
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """The notes of the model that was used."""
-        return getattr(self.answer, "notes", ())
 
     @property
     def choosing_share(self) -> float:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from kvtheory.export import above, xarray
 from kvtheory.results.errors import Certificate
 from kvtheory.results.presented import Recorded, record
+from kvtheory.results.table import STEADY_UNITS
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 
@@ -49,7 +50,8 @@ class Sweep(Recorded):
     `units` covers swept keys and quantities. `computed` counts the points that this call solved; the others
     were in the file already. `failed` counts the scenes that failed; `failures` lists them, for a file the
     first hundred. The errors in the certificate are the largest over the sweep. `model_error` holds the
-    largest errors of independent elements against the layer that gives them, which `notes` say in words.
+    largest errors of independent elements against the layer that gives them. `layer` has them and other
+    numbers of the layers, from which `notes` follow.
     `plan` (the request) and `read` (reads the arrays) are internal.
     """
 
@@ -66,8 +68,13 @@ class Sweep(Recorded):
     path: Path | None
     plan: Any = field(repr=False, compare=False)
     read: Callable[[], Mapping[str, Any]] = field(repr=False, compare=False)
-    model_error: Mapping[str, float] = field(default_factory=dict, compare=False)
+    layer: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
+
+    @property
+    def model_error(self) -> Mapping[str, float]:
+        """The largest error of each quantity that independent elements have against their layer."""
+        return {name: error for name, error in self.layer.items() if name in STEADY_UNITS}
 
     @cached_property
     def values(self) -> Mapping[str, Any]:

@@ -10,7 +10,7 @@ import copy
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from numbers import Real
 from typing import Any, ClassVar
 
@@ -283,6 +283,19 @@ class _Relaxed(Part):
         for i, arm in enumerate(vars(self).get("arms", ())):
             own = stiffness * (arm.modulus / self.modulus)
             derive(arm, f"foundation.arms[{i}]", "stiffness", own, "the layer")
+
+    @property
+    def elements(self) -> Any:
+        """The foundation by its stiffness: of a layer in a scene, the independent elements that it gives."""
+        if self.modulus is None:
+            return self
+        given: dict[str, Any] = dict.fromkeys((*LAYER, "stiffness_from"))
+        given["stiffness"] = +self.stiffness
+        if "arms" in vars(self):
+            given["arms"] = [
+                replace(arm, stiffness=+arm.stiffness, modulus=None) for arm in self.arms
+            ]
+        return replace(self, **given)
 
     def under(self, indenter: Any, support: Any) -> Any:
         """Return the foundation under an indenter: of a layer, with the K of its contact at rest if known."""

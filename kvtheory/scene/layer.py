@@ -15,6 +15,12 @@ SHAPES = "parabola", "circle", "sphere"
 THIN = 0.1
 """Largest `layer_number` of a thin layer. Up to it K predicts the load at a depth to 5 % for a parabola and
 11 % for a ball, and the length of the contact to 15 % (by the exact compliance, nu from 0 to nearly 1/2)."""
+LARGE_STRAIN, LARGE_SLOPE = 0.2, 0.3
+"""Depth over thickness, and slope at the edge of a contact, up to which linear theory is within about 10 %.
+
+Rubber in compression is stiffer than its linear law by about the strain (a neo-Hookean one by 12 % at 0.1),
+and the mean over a contact is half of depth/H under a ball, two thirds under a parabola. A parabola differs
+from its circle by the order of the slope squared, 9 % at 0.3."""
 
 
 def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
@@ -88,17 +94,60 @@ def layer_number(thickness: Any, half_length: Any, poisson_ratio: Any) -> Any:
     return (thickness / half_length) ** 2 / (1 - 2 * poisson_ratio)
 
 
-def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
-    """Return a note if a layer is not thin for its contact, or an empty text; numbers or arrays."""
-    number = np.asarray(layer_number(thickness, half_length, poisson_ratio))
-    thick = np.count_nonzero(number > THIN)
-    if not thick:
+def thick_layer(number: Any, several: bool = False) -> str:
+    """Return a note if a layer is not thin for its contact by its `layer_number`, or an empty text.
+
+    It is a number or an array of several scenes; or, of `several`, the largest.
+    """
+    if not (found := _above(number, THIN, several)):
         return ""
-    value = f"= {number:.3g}" if number.ndim == 0 else f"is up to {number.max():.3g}"
-    where = f" in {thick} of {number.size} scenes" if number.ndim else ""
+    where, value = found
     return (
         f"The layer is not thin for its contact{where}: (thickness/half_length)^2/(1 - 2 poisson_ratio) "
-        f"{value}, above {THIN:g}, so that it does not act as independent elements of the stiffness of a "
+        f"{value}, so that it does not act as independent elements of the stiffness of a "
         "thin layer. Leave out foundation.stiffness_from, which takes K from the contact at rest, or solve "
         "the body itself, by the method `layer` of `steady`."
     )
+
+
+def deformation(indenter: Any, thickness: Any, depth: Any, half_length: Any) -> dict[str, Any]:
+    """Return the `strain` depth/thickness of a layer, and the `slope` of the indenter at the edge."""
+    narrow = np.minimum(1.0, getattr(indenter, "stretch", 1.0))
+    with np.errstate(all="ignore"):  # a circle is not wider than its diameter
+        slope = np.maximum(*(abs(indenter.slope(side * half_length)) for side in (-1.0, 1.0)))
+    return {"strain": depth / thickness, "slope": np.nan_to_num(slope / narrow, nan=math.inf)}
+
+
+def large_deformation(strain: Any, slope: Any, several: bool = False) -> str:
+    """Return a note if a contact is beyond linear theory, or an empty text; arguments as in `thick_layer`."""
+    if found := _above(strain, 1.0, several):
+        where, value = found
+        return (
+            f"There is no such contact{where}: depth/thickness {value}, so that the indenter would reach the "
+            "base of the layer. Check load, depth, modulus and thickness."
+        )
+    given = (
+        ("depth/thickness", strain, LARGE_STRAIN),
+        ("the slope of the indenter at the edge of the contact", slope, LARGE_SLOPE),
+    )
+    told = [
+        f"{name} {found[1]}{found[0]}"
+        for name, values, limit in given
+        if (found := _above(values, limit, several))
+    ]
+    if not told:
+        return ""
+    return (
+        f"Strains are large: {', and '.join(told)}. Foundation and layer follow linear theory, which is then "
+        "wrong by about 10 % or more."
+    )
+
+
+def _above(values: Any, limit: float, several: bool) -> tuple[str, str] | None:
+    """Return in which scenes values are above a limit, in words, and the largest; None if there is none."""
+    values = np.asarray(values)
+    if not (count := np.count_nonzero(values > limit)):
+        return None
+    many = several or values.ndim > 0
+    where = " in some scenes" if several else f" in {count} of {values.size} scenes" if many else ""
+    return where, f"{'is up to' if many else '='} {values.max():.3g}, above {limit:g}"

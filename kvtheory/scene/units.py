@@ -121,7 +121,9 @@ def to_si(value: Any, unit: str) -> float:
         if "," in value:
             message = "write the decimal mark as a point, and no thousands separator"
             if all(re.search(r"\d\s*[^\W\d]", each) for each in value.split(",")):
-                message = "is not one value; several are a list: " + json.dumps(value.split(", "))
+                message = "is not one value; several are a list: " + json.dumps(
+                    re.split(r"\s*,\s*", value.strip())
+                )
             raise ValueError(f"{message}; expected {expected(unit)}")
         text = value.strip()
         digits = _NUMBER.match(text)

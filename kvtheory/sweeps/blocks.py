@@ -19,8 +19,10 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.capabilities import lacks_continuum
 from kvtheory.scene.foundations import beyond, extrapolates
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.plan import FAILS, OF_MODEL, REMARKS, STABLE, Array, Measured, Plan, Table
+from kvtheory.sweeps.plan import FAILS, OF_LAYER, REMARKS, STABLE, Array, Measured, Plan, Table
 
+CONTACT = "depth", "half_length"
+"""Quantities of steady sliding from which notes on a layer follow."""
 MEASURED = 50
 """Fewest points of a sweep of which two are solved to see how long that takes."""
 
@@ -75,24 +77,22 @@ def compute(given: Task) -> Block:
             table[name] = motion.values[name]
         table[name][failed] = column.missing
     errors.pop(STABLE, None)
-    errors |= _model_errors(given, failed)
+    errors |= _on_layer(given, failed, steady)
     failures = [(given.start + index, _reason(reasons[index])) for index in failed]
     statements = sorted(steady.statements | motion.statements)
     return Block(given.start, given.start + given.points, table, failures, statements, errors)
 
 
-def _model_errors(given: Task, failed: Sequence[int]) -> dict[str, float]:
-    """Return the largest errors of the model, by the names of their quantities with `OF_MODEL`."""
+def _on_layer(given: Task, failed: Sequence[int], steady: Measured) -> dict[str, float]:
+    """Return the numbers from which notes on a layer follow, by name with `OF_LAYER`."""
     plan, left = given.plan, np.setdiff1d(np.arange(given.points), failed)
-    scene = plan.scene
-    if plan.model_error is None or scene.foundation.modulus is None or plan.method not in METHODS:
+    if plan.layer_numbers is None or plan.scene.foundation.modulus is None or not left.size:
         return {}
-    if not left.size or not scene.drive.ends:
-        return {}
+    contact = {name: steady.values[name][left] for name in CONTACT if name in steady.values}
     with np.errstate(all="ignore"):
-        scene = scene.replace({key: array[left] for key, array in given.over.items()})
-        found = plan.model_error(scene) or {}
-    return {f"{name}{OF_MODEL}": error for name, error in found.items()}
+        scene = plan.scene.replace({key: array[left] for key, array in given.over.items()})
+        found = plan.layer_numbers(scene, **contact, on_body=plan.method not in METHODS)
+    return {f"{name}{OF_LAYER}": number for name, number in found.items()}
 
 
 def _state(scene: Scene, method: str) -> SteadyState:
@@ -112,7 +112,9 @@ def _reason(error: Exception) -> str:
 
 def _steady(given: Task) -> Measured:
     """Solve steady sliding; a part that fails is bisected until the failing scene is isolated."""
-    plan, names = given.plan, given.plan.needed(steady=True)
+    plan, names = given.plan, {*given.plan.needed(steady=True)}
+    if plan.scene.foundation.modulus is not None:
+        names |= {*CONTACT}
     found = Measured({name: np.full(given.points, np.nan) for name in names})
     waiting = [(0, given.points)]
     while waiting:

@@ -21,7 +21,7 @@ from kvtheory.export import check_path, replace_file
 from kvtheory.results.errors import Certificate
 from kvtheory.results.sweep import Failure, Sweep
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import EVENTS, OF_MODEL, Plan, Table, is_csv
+from kvtheory.sweeps.plan import EVENTS, OF_LAYER, Plan, Table, is_csv
 
 FAILURES_LISTED = 100
 """Failures that a result lists when it stays in a file; the file itself has them all."""
@@ -89,7 +89,7 @@ def save_sweep(result: Sweep, path: Path) -> None:
     table = {name: v.reshape(-1, *v.shape[axes:]) for name, v in result.values.items()}
     failures = [(failure.index, failure.reason) for failure in result.failures]
     errors = dict(result.certificate.relative_error)
-    errors |= {f"{name}{OF_MODEL}": error for name, error in result.model_error.items()}
+    errors |= {f"{name}{OF_LAYER}": error for name, error in result.layer.items()}
     whole = [Block(0, plan.points, table, failures, [result.certificate.statement], errors)]
     write(plan, whole, whole, path)
 
@@ -110,14 +110,14 @@ def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None
         point = plan.values_at(index, index + 1).items()
         failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
     errors = summary["relative_error"]
-    own = {name: error for name, error in errors.items() if not name.endswith(OF_MODEL)}
-    of_model = {name[: -len(OF_MODEL)]: errors[name] for name in errors.keys() - own.keys()}
+    own = {name: error for name, error in errors.items() if not name.endswith(OF_LAYER)}
+    on_layer = {name[: -len(OF_LAYER)]: errors[name] for name in errors.keys() - own.keys()}
     return Sweep(
         scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
         units=plan.units, points=plan.points, computed=computed, failed=summary["failed"],
         failures=tuple(failures), version=version("kvtheory"), path=path, plan=plan, read=read,
         certificate=Certificate("estimated", summary["certificate"], own),
-        model_error=of_model,
+        layer=on_layer,
     )  # fmt: skip
 
 

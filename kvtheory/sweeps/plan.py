@@ -65,8 +65,8 @@ REMARKS = (
     f"in some scenes V/c is {EXTRAPOLATED}", f"in some scenes T is {BEYOND}", UNSETTLED, NO_CYCLE,
 )  # fmt: skip
 """What a certificate says of some scenes, for those who do not read it."""
-OF_MODEL = ".model"
-"""Ends the name of a quantity whose error is that of independent elements against the layer."""
+OF_LAYER = ".layer"
+"""Ends the name of a number from which notes on a layer follow, among the errors of a block."""
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 CELL = 21
@@ -189,8 +189,8 @@ class Plan:
     times: tuple[float, ...] | None
     method: str
     rtol: float
-    model_error: Callable[[Scene], Mapping[str, float] | None] | None = None
-    """The largest errors of independent elements against the layer of scenes, by quantity."""
+    layer_numbers: Callable[..., Mapping[str, float]] | None = None
+    """The largest numbers of scenes, by name, from which notes on their layer follow."""
 
     @cached_property
     def points(self) -> int:

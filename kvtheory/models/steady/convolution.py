@@ -87,7 +87,7 @@ class Arms:
 
     def __init__(self, stiffness: Array, length: Array, damper: float = 0.0) -> None:
         self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
-        self.damper = np.full((1, 1), damper)[: damper > 0.0]
+        self.damper = np.full((1, 1), damper)[: int(damper > 0.0)]
         self.impulse = np.concatenate([self.stiffness * self.length, self.damper])
 
     def amount(self, X: Array) -> Array:
