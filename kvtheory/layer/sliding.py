@@ -88,14 +88,21 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
         known.append(found.values(shape, body, velocity))
         if len(known) >= LEVELS:
             errors = errors_of(known, grid.length)
-            for name in ("friction_force", "friction_coefficient"):
-                errors[name] += found.lag * abs(known[-1][name])
+            errors["friction_force"] += SAFETY * found.lag
+            errors["friction_coefficient"] += SAFETY * found.lag / known[-1]["load"]
         wrong = _unconverged(known, errors, velocity, rtol)
         if not wrong:
             x, pressure = grid.x[:, 0], found.pressure(body)
             return Sliding(**known[-1], errors=errors, x=x, y=grid.y, pressure=pressure)
-    message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
-    raise ToleranceError(f"{message}; the limits that `asymptotes` has need no grid")
+    hint = (
+        "an edge presses, where friction falls as V ln(1/V), on cells shorter than what is travelled in the "
+        "longest retardation time"
+        if found.kinked(shape)
+        else "the limits that `asymptotes` has need no grid"
+    )
+    raise ToleranceError(
+        f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}; {hint}"
+    )
 
 
 @lru_cache(maxsize=64)
@@ -194,7 +201,12 @@ def half_length(shape: Any, depth: float) -> float:
     for side in (-1.0, 1.0):
 
         def above(x: float, side: float = side) -> float:
-            return float(shape.height(side * x)) - depth
+            """Return the height over the depth, at most the depth: a steep shape overflows far away."""
+            try:
+                with np.errstate(over="ignore"):
+                    return min(float(shape.height(side * x)) - depth, depth)
+            except OverflowError:
+                return depth
 
         inner = shape.reach * (1.0 - 1e-12)
         far = min(depth, inner)
@@ -222,7 +234,9 @@ def first_grid(shape: Any, body: Body, depth: float) -> Found:
 
 def _require_convex(shape: Any, x: Array) -> None:
     """Raise ValueError if the slope of a shape falls somewhere: it may have more than one contact."""
-    slopes = shape.slope(x[np.abs(x) < shape.reach])
+    with np.errstate(over="ignore"):
+        slopes = shape.slope(x[np.abs(x) < shape.reach])
+    slopes = slopes[np.isfinite(slopes)]
     if np.any(np.diff(slopes) < -1e-9 * np.abs(slopes).max()):
         raise ValueError(
             f"{shape.words} is not convex, as it has to be here: its contact may not be one"
