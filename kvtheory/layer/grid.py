@@ -110,14 +110,19 @@ class Found(NamedTuple):
 
     At low velocity it is from the limit (F28), which takes p - e, e the average of p over the way l that is
     travelled in a retardation time of share c, as l p'. At each edge, where p is P sqrt(x), this adds
-    (pi/8) S P^2 c (1 - c/2) l^2 to friction, exactly so on a half-plane with one time, which is taken off. `lag`
-    is what may be wrong with that, an eighth of it without c/2: P is that of a few cells.
+    (pi/8) S P^2 c (1 - c/2) l^2, exactly so on a half-plane with one time, which is taken off. `lag` is what
+    may be wrong with that, an eighth of it without c/2: P is that of a few cells.
     """
 
     grid: Grid
     contact: Contact
     friction: float = 0.0
     lag: float = 0.0
+
+    @property
+    def cells(self) -> int:
+        """How many cells are in contact along x."""
+        return int(np.count_nonzero(self.contact.active.any(axis=1)))
 
     def finer(self) -> "Found":
         """Return the start on a grid with cells half as long, around the contact."""
