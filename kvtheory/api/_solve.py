@@ -10,9 +10,9 @@ from kvtheory.api._elements import elements
 from kvtheory.api._fewer_arms import fewer_arms
 from kvtheory.api._model_error import errors_of, layer_notes
 from kvtheory.api._stability import stability
-from kvtheory.api._steady import steady
+from kvtheory.api._steady import by_method, steady
 from kvtheory.api._transient import transient
-from kvtheory.progress import Progress
+from kvtheory.progress import Progress, silent
 from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.cycles import CYCLE
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
@@ -129,7 +129,7 @@ def solve(
         if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
             reason = UNSTABLE.format("") if known else UNKNOWN
             raise ToleranceError(f"{reason} Ask for a series, with `at`.")
-        own = partial(steady, progress=progress)
+        own = partial(by_method, progress=progress or silent)
         rungs = climbing.rungs(own)
         if (error := errors_of(scene)) is not None:
             rungs = climbing.beside_layer(rungs, error, own)

@@ -99,9 +99,13 @@ def steady(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 26-49.
     """
     scene = scene_of(scene).replace(over or {})
-    method = method_for(scene, method)
+    return by_method(scene, method_for(scene, method), progress=progress or silent)
+
+
+def by_method(scene: Scene, method: str, **wanted: Any) -> SteadyState:
+    """Return `steady` by a method that applies; `wanted` is what `"layer"` takes beside the scene."""
     with double_precision(scene):
-        state = _on_body(scene, progress) if method == BODY else METHODS[method](scene)
+        state = _on_body(scene, **wanted) if method == BODY else METHODS[method](scene)
         if not scene.drive.rigid:
             state = replace(state, stable=None if method == BODY else lasts(scene))
             state = replace(state, notes=(*state.notes, *filter(None, [state.unstable])))
@@ -166,11 +170,11 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
     )  # fmt: skip
 
 
-def _on_body(scene: Scene, progress: Progress | None) -> SteadyState:
+def _on_body(scene: Scene, progress: Progress, **wanted: Any) -> SteadyState:
     """Solve the body itself."""
     from kvtheory.layer.answer import solve  # SciPy takes a while to import
 
-    return solve(scene, progress or silent)
+    return solve(scene, progress, **wanted)
 
 
 def method_for(scene: Scene, method: str | None) -> str:

@@ -180,12 +180,13 @@ def _added(answer: Answer, error: Mapping[str, float]) -> Answer:
 
 
 def _on_layer(steady: Steady, scene: Scene, request: Request) -> Offer:
-    from kvtheory.layer.answer import RTOL, WITH_ERROR
+    from kvtheory.layer.answer import SMALLEST, WITH_ERROR
 
     need(lacks_body(scene))
     unknown = [name for name in request.quantities if name not in WITH_ERROR]
     need(f"{unknown[0]} on the layer is not known" if unknown else "")
-    return Offer(RTOL[scene.indenter.per_width], partial(_run, steady, "layer", scene, request))
+    within = partial(steady, rtol=request.rtol, names=request.quantities)
+    return Offer(SMALLEST[scene.indenter.per_width], partial(_run, within, "layer", scene, request))
 
 
 def _asymptote(scene: Scene, request: Request) -> Offer:

@@ -62,6 +62,14 @@ class Contact(NamedTuple):
         """The cells in contact."""
         return self.pressure > 0.0
 
+    def rise(self) -> float:
+        """Return the sum over both edges of all rows of d(p^2)/dx, x in cells, behind the first cell."""
+        found = 0.0
+        for row in self.pressure.T:
+            first, third = np.pad(row[row > 0.0] ** 2, 3)[[[3, -4], [5, -6]]]
+            found += 0.5 * float(np.sum(np.maximum(third - first, 0.0)))
+        return found
+
 
 class Influence:
     """Displacement of n x m cells: influence at the distances -(n - 1) .. n - 1 along x, 0 .. 2 m across.

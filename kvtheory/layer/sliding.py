@@ -12,7 +12,7 @@ last three.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -26,6 +26,7 @@ from kvtheory.layer import compliance
 from kvtheory.layer.body import Body, Support
 from kvtheory.layer.contact import Contact
 from kvtheory.layer.grid import Found, Grid
+from kvtheory.progress import Progress, silent
 from kvtheory.results.errors import ToleranceError
 
 Array = NDArray[np.float64]
@@ -41,6 +42,7 @@ LEVELS = 3
 SAFETY, SLOWEST = 2.0, 0.95
 """Safety of the errors, and largest ratio of successive changes that is taken for convergence."""
 CONVERGED = "depth", "load", "friction_force"
+"""Quantities that are to be within the tolerance, unless others are named."""
 CLOSE = 0.1
 """Difference of the logarithms of depths at which a grid made for the one is good for the other."""
 
@@ -67,11 +69,20 @@ class Sliding:
     pressure: Array
 
 
-def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float = 1e-3) -> Sliding:
-    """Return steady sliding at a velocity in m/s: depth, load and friction to a relative error `rtol`.
+def slide(
+    shape: Any,
+    body: Body,
+    velocity: float,
+    support: Support,
+    rtol: float = 1e-3,
+    names: tuple[str, ...] = CONVERGED,
+    report: Progress = silent,
+) -> Sliding:
+    """Return steady sliding at a velocity in m/s, with the quantities `names` to a relative error `rtol`.
 
-    `shape` is a convex one of `kvtheory.scene.indenters`, a line or a ball. Raises ValueError for what the
-    method does not cover, and `ToleranceError` if the finest grid does not reach the tolerance.
+    Edges are relative to the length of the contact. `shape` is a convex one of `kvtheory.scene.indenters`, a
+    line or a ball. Raises ValueError for what the method does not cover, and `ToleranceError` if the finest
+    grid does not reach the tolerance.
 
     >>> from kvtheory.scene.indenters import Parabola
     >>> rubber = Body.of_series(1e6, 1e-3, 0.49, [(4e6, 0.02)])
@@ -82,20 +93,37 @@ def slide(shape: Any, body: Body, velocity: float, support: Support, rtol: float
     _require(shape, body)
     support = relaxed(shape, body, support, rtol)
     known: list[dict[str, float]] = []
-    errors: dict[str, float] = {}
+    wrong, errors = math.inf, dict[str, float]()
     for found in levels(shape, body, velocity, support):
-        grid = found.grid
         known.append(found.values(shape, body, velocity))
         if len(known) >= LEVELS:
-            errors = errors_of(known, grid.length)
-            for name in ("friction_force", "friction_coefficient"):
-                errors[name] += found.lag * abs(known[-1][name])
-        wrong = _unconverged(known, errors, velocity, rtol)
-        if not wrong:
-            x, pressure = grid.x[:, 0], found.pressure(body)
-            return Sliding(**known[-1], errors=errors, x=x, y=grid.y, pressure=pressure)
-    message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
-    raise ToleranceError(f"{message}; the limits that `asymptotes` has need no grid")
+            errors = errors_of(known, found.grid.length)
+            errors["friction_force"] += SAFETY * found.lag
+            errors["friction_coefficient"] += SAFETY * found.lag / known[-1]["load"]
+            relative = {name: relative_error(name, known[-1], errors) for name in names}
+            worst = max(relative, key=relative.__getitem__)
+            wrong = relative[worst]
+        if wrong <= rtol:
+            x, pressure = found.grid.x[:, 0], found.pressure(body)
+            return Sliding(**known[-1], errors=errors, x=x, y=found.grid.y, pressure=pressure)
+        share = min(found.cells / FINEST[shape.per_width], 1.0)
+        report(share, f"{found.cells:,} cells along the contact")
+    hint = (
+        "an edge presses, where friction falls as V ln(1/V), on cells shorter than what is travelled in the "
+        "longest retardation time"
+        if found.kinked(shape)
+        else "the limits that `asymptotes` has need no grid"
+    )
+    what = f"{worst} has a relative error of {wrong:.1e}" if errors else "the error is not known"
+    raise ToleranceError(f"at {velocity:g} m/s, on the finest grid, {what}, above {rtol:g}; {hint}")
+
+
+def relative_error(name: str, values: Mapping[str, float], errors: Mapping[str, float]) -> float:
+    """Return a relative error, of an edge to the length of the contact; of what is known exactly it is 0."""
+    size = values[name]
+    if name.endswith("edge"):
+        size = values["trailing_edge"] - values["leading_edge"]
+    return errors[name] / abs(size) if errors[name] else 0.0
 
 
 @lru_cache(maxsize=64)
@@ -106,10 +134,11 @@ def at_rest(
     poisson_ratio: float,
     support: Support,
     rtol: float,
+    names: tuple[str, ...] = CONVERGED,
 ) -> Sliding:
     """Return the contact at rest, which needs no memory, and is kept for other velocities."""
     body = Body.kelvin_voigt(modulus, thickness, poisson_ratio, 0.0)
-    return slide(shape, body, 0.0, support, rtol)
+    return slide(shape, body, 0.0, support, rtol, names)
 
 
 def relaxed(shape: Any, body: Body, support: Support, rtol: float) -> Support:
@@ -138,7 +167,7 @@ def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterato
                 raise
             return
         yield found
-        cells = int(np.count_nonzero(found.contact.active.any(axis=1)))
+        cells = found.cells
         start = found.finer()
 
 
@@ -166,18 +195,6 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     return found
 
 
-def _unconverged(
-    known: list[dict[str, float]], errors: dict[str, float], velocity: float, rtol: float
-) -> str:
-    """Return which quantity has too large an error, and how large, or an empty text."""
-    names = CONVERGED if velocity else CONVERGED[:-1]
-    relative = {name: errors.get(name, math.inf) / (abs(known[-1][name]) or 1.0) for name in names}
-    worst = max(names, key=relative.__getitem__)
-    return (
-        f"{worst} has a relative error of {relative[worst]:.1e}" if relative[worst] > rtol else ""
-    )
-
-
 def _require(shape: Any, body: Body) -> None:
     """Raise ValueError for what boundary elements do not cover."""
     if shape.per_width and math.isinf(body.thickness):
@@ -194,7 +211,12 @@ def half_length(shape: Any, depth: float) -> float:
     for side in (-1.0, 1.0):
 
         def above(x: float, side: float = side) -> float:
-            return float(shape.height(side * x)) - depth
+            """Return the height over the depth, at most the depth: a steep shape overflows far away."""
+            try:
+                with np.errstate(over="ignore"):
+                    return min(float(shape.height(side * x)) - depth, depth)
+            except OverflowError:
+                return depth
 
         inner = shape.reach * (1.0 - 1e-12)
         far = min(depth, inner)
@@ -222,7 +244,9 @@ def first_grid(shape: Any, body: Body, depth: float) -> Found:
 
 def _require_convex(shape: Any, x: Array) -> None:
     """Raise ValueError if the slope of a shape falls somewhere: it may have more than one contact."""
-    slopes = shape.slope(x[np.abs(x) < shape.reach])
+    with np.errstate(over="ignore"):
+        slopes = shape.slope(x[np.abs(x) < shape.reach])
+    slopes = slopes[np.isfinite(slopes)]
     if np.any(np.diff(slopes) < -1e-9 * np.abs(slopes).max()):
         raise ValueError(
             f"{shape.words} is not convex, as it has to be here: its contact may not be one"
