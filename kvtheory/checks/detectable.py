@@ -5,8 +5,7 @@ of a parameter the change of theory over that of the parameter. All that is comp
 linear in the curves, except root mean squares.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -15,8 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from kvtheory.checks.checklist import Mean, balances, initial_rest, lengths, steady_limit
-from kvtheory.checks.comparison_case import Case, NotMade
+from kvtheory.checks.checklist import balances, lengths, means_of
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.faults import FRICTION, parameters_of
 from kvtheory.checks.hypotheses import VELOCITY, Bench, bench, scaled_scene
 from kvtheory.checks.noise import means
@@ -38,14 +37,12 @@ MOST, PRECISE = 1.0, 0.01
 Bounds = tuple[Callable[[Curves], Array], Array, Array, Array]
 
 
-def detectable(
-    case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]] = (initial_rest, steady_limit)
-) -> tuple[dict[str, float | None], str]:
+def detectable(case: Case) -> tuple[dict[str, float | None], str]:
     """Return the smallest relative error of each quantity that data which agree would have shown, and words.
 
     It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
     """
-    rows, bounds = bench(case), _bounds(case, means_of)
+    rows, bounds = bench(case), _bounds(case)
     powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
     found: dict[str, float | None] = {}
     shown, unseen = [], []
@@ -85,7 +82,7 @@ def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -
     return found
 
 
-def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) -> Bounds:
+def _bounds(case: Case) -> Bounds:
     """Return what is linear in the curves, as a function of these; its values, and the least and greatest."""
     parts: list[tuple[Callable[[Curves], Any], Any, Any]] = []
     for name in case.names:
@@ -94,10 +91,7 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
             allowed = case.limit(name, n) * case.theory.scales[name]
             averages = partial(lambda curves, name, n: means(curves[name], n), name=name, n=n)
             parts.append((averages, band.low - allowed, band.high + allowed))
-    for of in means_of:
-        with suppress(NotMade):
-            made = (each for each in of(case) if each.weights.keys() <= case.columns.keys())
-            parts += [(each.off, -each.allowed, each.allowed) for each in made]
+    parts += [(each.off, -each.allowed, each.allowed) for each in means_of(case)]
     support, depth_0 = case.theory.scene.support, case.theory.static.depth
     free = not (case.series.curve or case.theory.scene.held)
     if free and {"depth", "normal_force"} <= {*case.names}:

@@ -111,6 +111,8 @@ LARGEST_FACTOR = 2e3
 """Largest factor of a fitted parameter, up or down: no wrong unit is farther off."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
+LEAST = {"dry friction": 0.0}
+"""Smallest number of what is added to a column, where a smaller one would be unphysical."""
 NOTHING = 1e-6
 """Largest value, relative to the scale of a column, that counts as zero."""
 FRICTION = "friction_coefficient", "friction_force", "spring_force"
@@ -280,7 +282,9 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
 
     for title, name, unit, by, words in added:
         text, make = f"{name.replace('_', ' ')}: {words}", partial(without, name=name, by=by)
-        yield Hypothesis(f"{title} of {name}", text, make, [0.0], unit)
+        yield Hypothesis(
+            f"{title} of {name}", text, make, [0.0], unit, least=LEAST.get(title, -math.inf)
+        )
     failing = [n for n in bench.names if (bench.excess(n) > bench.limit(n)).any()]
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in failing}
     if any(half.any() for half in digits.values()):

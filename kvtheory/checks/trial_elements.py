@@ -35,6 +35,7 @@ class Rule(NamedTuple):
     hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
+    sine: bool = False  # friction is that of the sine of the slope
     front: float = 1.0  # weight of elements before the lowest point
     back: float = 1.0  # weight of those behind it
     lost: float = 0.0  # part of the half length without elements at the leading edge
@@ -67,8 +68,8 @@ POINTS, HALVINGS = 24, 24
 """Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
 SHALLOWEST, DEEPEST = 1e-3, 4.0
 """Ends of that interval, in static depths."""
-STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "front", "back", "lost",
-          "flat")  # fmt: skip
+STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "sine", "front", "back",
+          "lost", "flat")  # fmt: skip
 EVEN = "depth", "normal_force", "peak_pressure"
 """Fields of a rule that affect steady sliding; and the curves that do not change sign with the velocity."""
 SLOWEST, TINY = 1e-9, 1e-300
@@ -178,6 +179,8 @@ class Elements:
         force = p * area
         normal, friction = force.sum(axis=(1, 2)), -(force * slope).sum(axis=(1, 2))
         friction[k] = -(rubbed * slope[k] * area[k]).sum(axis=(1, 2))
+        k = having.sine
+        friction[k] = -(force[k] * slope[k] / np.sqrt(1.0 + slope[k] ** 2)).sum(axis=(1, 2))
         k, lift = having.stale, normal.copy()
         kept = 1.0 - rule.stale[k] * (g[k] < self.surface[k][:, :, near])
         lift[k] = (force[k] * kept).sum(axis=(1, 2))
