@@ -226,8 +226,8 @@ def root_mean_square(case: Case, name: str) -> Measured:
 def steady_limit(case: Case) -> list[Mean]:
     """Return the means over the part in which sliding is steady, and what theory gives there.
 
-    Friction is that less F_z a/R, free of the leading edge. Theory by elements is as wrong as it is far from
-    exact steady sliding.
+    Friction is that less F_z a/R, free of the leading edge, if less is allowed for it. Theory by elements is
+    as wrong as it is far from exact steady sliding.
     """
     theory, time = case.theory, case.time
     if math.isinf(theory.last_change):
@@ -251,27 +251,27 @@ def steady_limit(case: Case) -> list[Mean]:
              "friction_force": steady.friction_force, "spring_force": steady.friction_force}  # fmt: skip
     since = f"mean after {case.time[late][0] * 1e3:.4g} ms: {{:.6g}}, theory {{:.6g}}"
     for curve in (name for name in exact if name in case.columns):
-        weights, smooth, what = {curve: 1.0}, case.bands[curve].systematic, ""
-        if curve in ALONG:
-            weights, smooth = _friction_alone(case, curve)
-            what = "less F_z a/R, " if len(weights) > 1 else ""
-        data, theirs = (
-            np.sum([by * curves[name] for name, by in weights.items()], axis=0)
-            for curves in (case.columns, case.now)
-        )
-        expected = float(theirs[late].mean())
-        own = abs(expected - sum(by * float(exact[name]) for name, by in weights.items()))
-        random = (
-            SURE * rms(noise(time, data - theirs, case.now[curve])[late]) / math.sqrt(late.sum())
-        )
-        allowed = float(smooth[late].mean()) + random + SMALLEST * theory.scales[curve]
-        allowed = case.tolerance * (allowed + own * theory.by_elements)
-        found.append(Mean(weights, late, expected, allowed, what + since))
+        ways = [({curve: 1.0}, case.bands[curve].systematic, since)]
+        if curve in ALONG and "normal_force" in case.columns:
+            ways.append((*_without_the_edge(case, curve), f"less F_z a/R, {since}"))
+        means = []
+        for weights, smooth, words in ways:
+            data, theirs = (
+                np.sum([by * curves[name] for name, by in weights.items()], axis=0)
+                for curves in (case.columns, case.now)
+            )
+            expected = float(theirs[late].mean())
+            own = abs(expected - sum(by * float(exact[name]) for name, by in weights.items()))
+            sigma = rms(noise(time, data - theirs, case.now[curve])[late])
+            allowed = float(smooth[late].mean()) + SURE * sigma / math.sqrt(late.sum())
+            allowed += own * theory.by_elements + SMALLEST * theory.scales[curve]
+            means.append(Mean(weights, late, expected, case.tolerance * allowed, words))
+        found.append(min(means, key=lambda mean: mean.allowed))
     return found
 
 
-def _friction_alone(case: Case, curve: str) -> tuple[dict[str, float], Array]:
-    """Return the weights of F_x - F_z a/R, and its smooth error; of F_x where F_z is not in the data.
+def _without_the_edge(case: Case, curve: str) -> tuple[dict[str, float], Array]:
+    """Return the weights of F_x - F_z a/R, and its smooth error.
 
     Elements that lack the force b at the leading edge lack the friction b a/R too. A free indenter then sinks
     by b/(K_z + k_s), where F_z grows by K_z and F_x by K_x, the slopes of steady sliding. Where data are in
@@ -290,18 +290,14 @@ def _friction_alone(case: Case, curve: str) -> tuple[dict[str, float], Array]:
     slope = scene.foundation.stiffness * (L - a) + V * theory.damping(L / max(V, off))
     trailing = 0.5 * width * slope * off * off * L / R
     off += (a - arm) * math.sqrt(2.0 * fine.spacing / a) * 2.0 / math.pi
-    weights, rounding = {curve: 1.0}, case.bands[curve].rounding
-    if "normal_force" not in case.columns:
-        off += arm
-    else:
-        weights["normal_force"] = -float(np.sign(theory.final_velocity)) * arm / R
-        rounding = rounding + arm / R * normal.rounding
-        if not scene.held:
-            (K_z, K_x), k_s = theory.slopes, scene.support.spring
-            off += abs(arm - (R * K_x + arm * k_s) / (K_z + k_s))
-            damping = theory.damping(fine.time_step) * width * L
-            off += 0.25 * a * min(fine.time_step * damping / scene.support.mass, 1.0)
-    return weights, ((normal.systematic - normal.rounding) * off + trailing) / R + rounding
+    if not scene.held:
+        (K_z, K_x), k_s = theory.slopes, scene.support.spring
+        off += abs(arm - (R * K_x + arm * k_s) / (K_z + k_s))
+        damping = theory.damping(fine.time_step) * width * L
+        off += 0.25 * a * min(fine.time_step * damping / scene.support.mass, 1.0)
+    smooth = ((normal.systematic - normal.rounding) * off + trailing) / R
+    smooth += case.bands[curve].rounding + arm / R * normal.rounding
+    return {curve: 1.0, "normal_force": -math.copysign(arm / R, theory.final_velocity)}, smooth
 
 
 def column_means(case: Case) -> list[Mean]:

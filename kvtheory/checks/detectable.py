@@ -5,6 +5,7 @@ of a parameter the change of theory over that of the parameter. All that is comp
 linear in the curves, except root mean squares.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -28,9 +29,11 @@ QUANTITIES = {
     "mass": ("M", ("M",)), "velocity": ("V", ("V",)), "radius": ("R", ("R",)),
 }  # fmt: skip
 """Each quantity with its word, and the columns or symbols that stand for it, of which the first counts."""
-STEP, FAR = {False: 0.03, True: 0.2}, 2.0
-"""Change of a parameter for slopes, larger where theory is a simulation by elements; and from how many steps
-on a slope is taken again, at the error that was found."""
+STEP, SMALLEST_STEP = {False: 0.03, True: 0.2}, {False: 1e-6, True: 0.2}
+"""Change of a parameter for slopes, and the smallest one; larger where theory is a simulation by elements."""
+FAR, MOST_STEPS = 2.0, 12
+"""A slope is taken again, so often at most, where the error that is found is so many times the step, or less
+than its part: a force that jumps, as at a landing, is no line."""
 MOST, PRECISE = 1.0, 0.01
 """Largest error that is looked for: as much as the quantity itself; and precision of what is found."""
 
@@ -42,17 +45,14 @@ def detectable(case: Case) -> tuple[dict[str, float | None], str]:
 
     It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
     """
-    rows, bounds = bench(case), _bounds(case)
+    rows, bounds = bench(case, 2 * case.time.size), _bounds(case)
     powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
     found: dict[str, float | None] = {}
     shown, unseen = [], []
     for name, (word, ways) in QUANTITIES.items():
         x, way = MOST, next((way for way in ways if way in (*case.names, *powers)), None)
         if way in powers:
-            step = STEP[case.theory.by_elements]
-            x = _smallest(case, bounds, _slopes(case, rows, powers[way], step))
-            if FAR * step < x < np.inf:
-                x = _smallest(case, bounds, _slopes(case, rows, powers[way], min(x, MOST)))
+            x = _of_parameter(case, rows, bounds, powers[way])
         elif way:
             x = _smallest(case, bounds, {way: case.columns[way]})
         found[name] = x if x < MOST else None
@@ -65,7 +65,26 @@ def detectable(case: Case) -> tuple[dict[str, float | None], str]:
     return found, text
 
 
-def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
+def _of_parameter(case: Case, rows: Bench, bounds: Bounds, powers: Mapping[str, float]) -> float:
+    """Return the smallest error of a parameter that shows, between a step that does not and one that does."""
+    step, least = STEP[case.theory.by_elements], SMALLEST_STEP[case.theory.by_elements]
+    hidden, shown, x = 0.0, np.inf, np.inf
+    for _ in range(MOST_STEPS):
+        x = _smallest(case, bounds, _slopes(rows, powers, step))
+        if step / FAR <= x <= FAR * step or (x == shown == np.inf):
+            return x
+        hidden, shown = (step, shown) if x > step else (hidden, step)
+        if shown <= FAR * hidden:
+            return math.sqrt(hidden * shown)
+        last, step = step, min(max(x, least), MOST)
+        if not hidden < step < shown:
+            step = math.sqrt(max(hidden, least) * min(shown, MOST))
+        if step == last:
+            return x
+    return x
+
+
+def _slopes(rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
     """Return the slope of each curve by a parameter; a velocity in the data would be as wrong as it is."""
     scene, times = rows.theory.scene, None
     if rows.series.curve and VELOCITY in powers:
@@ -78,7 +97,7 @@ def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -
     for name in rows.names:
         change = pair[1][name] - rows.now[name]
         seen = (np.abs(change) > TRIAL_RTOL * rows.theory.scales[name]) & (name not in given)
-        found[name] = np.interp(case.time, rows.time, np.where(seen, change, 0.0) / step)
+        found[name] = np.where(seen, change, 0.0) / step
     return found
 
 

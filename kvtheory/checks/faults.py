@@ -21,7 +21,6 @@ from kvtheory.checks.hypotheses import (
     fixed,
     power_of_ten,
     scaled_scene,
-    times,
 )  # fmt: skip
 from kvtheory.checks.theory import CURVES, Array
 from kvtheory.scene import Scene
@@ -107,8 +106,8 @@ MEASURED = "friction_coefficient", "normal_force", "friction_force", "spring_for
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
 """Remote initial guesses for the factor of a parameter: a diameter for a radius, and wrong units; the first
 two alone where theory is a simulation by elements, which takes longer."""
-LARGEST_FACTOR = 2e3
-"""Largest factor of a fitted parameter, up or down: no wrong unit is farther off."""
+LARGEST_FACTOR, SMALLEST_FACTOR = 2e3, 1e-9
+"""Largest factor of a fitted parameter, up or down: no wrong unit is farther off; smallest of a column."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
 LEAST = {"dry friction": 0.0}
@@ -249,11 +248,11 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     """Fit scale, offset and drift of columns, and what may be added to the friction force."""
     theory, columns, now, friction = bench.theory, bench.columns, bench.now, "friction_force"
-    for title, factor, exact, pair in _factors(bench):
+    for title, factor, _, _ in _factors(bench):
         if power_of_ten(factor) in (None, 0) and factor > 0.0:
-            words = title.replace("_", " ")
-            text = f"{words}: {times(1.0 / exact)} theory, while the rest agrees"
-            yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
+            text = f"{title.replace('_', ' ')}: {{2}} theory, while the rest agrees"
+            make = partial(_multiplied, bench, GROUPS[title])
+            yield Hypothesis(f"scale of {title}", text, make, [1.0 / factor], least=SMALLEST_FACTOR)
     share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
     added = [
         (title, name, theory.scales[name], by, f"off by {{:.4g}} {theory.units.get(name, '')} {where}")
@@ -311,8 +310,13 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
             power = power_of_ten(factor)
             plain = power is None or (power == 0 and factor > 0.0)
             exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
-            scaled = {name: _scaled(bench, name, exact) for name in group}
-            yield title, factor, exact, ({**bench.columns, **scaled}, bench.now)
+            yield title, factor, exact, _multiplied(bench, group, 1.0 / exact)
+
+
+def _multiplied(bench: Bench, group: Sequence[str], factor: float) -> Pair:
+    """Return the data with the columns of a group divided by a factor that they hold, and theory."""
+    scaled = {name: _scaled(bench, name, 1.0 / factor) for name in group}
+    return {**bench.columns, **scaled}, bench.now
 
 
 def _scaled(bench: Bench, name: str, factor: float) -> Array:

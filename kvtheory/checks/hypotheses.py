@@ -322,14 +322,21 @@ def deviation(*slopes: Array) -> float:
     return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 
-def bench(case: Case) -> Bench:
-    """Choose the rows on which faults are tried."""
+def bench(case: Case, most: int = ROWS) -> Bench:
+    """Choose the rows on which faults are tried, at most so many."""
     count, first = case.time.size, int(np.searchsorted(case.time, 0.0))
     rows = np.unique(np.concatenate([
-        np.linspace(0, count - 1, min(count, ROWS // 2)).round().astype(int),
-        np.minimum(first + np.arange(ROWS // 2), count - 1),
+        np.linspace(0, count - 1, min(count, most // 2)).round().astype(int),
+        np.minimum(first + np.arange(most // 2), count - 1),
     ]))  # fmt: skip
-    between = np.array([np.interp(np.arange(count), rows, one) for one in np.eye(rows.size)])
+
+    def shares(of: Array) -> Array:
+        """Return how much the rows count in a mean, if what is between them is on a line."""
+        at = np.interp(np.flatnonzero(of), rows, np.arange(rows.size))
+        near = np.floor(at).astype(int)
+        parts = ((near, near + 1.0 - at), (np.minimum(near + 1, rows.size - 1), at - near))
+        return np.asarray(sum(np.bincount(k, by, rows.size) for k, by in parts) / at.size)
+
     drive = "velocity"
     drives = drive in case.names and bool((case.excess(drive) > case.limit(drive)).any())
     cut = {field.name: getattr(case, field.name) for field in fields(case)} | {
@@ -341,7 +348,7 @@ def bench(case: Case) -> Bench:
         "means": tuple(
             Average(
                 each.weights,
-                between @ each.rows / each.rows.sum(),
+                shares(each.rows),
                 each.off(case.columns),
                 each.allowed,
                 int(each.rows[rows].sum()),
