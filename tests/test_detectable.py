@@ -11,7 +11,7 @@ from kvtheory.checks import comparing
 from kvtheory.checks.checklist import judge, steady_limit
 from kvtheory.checks.comparison_case import COARSEST, make_case, symptoms
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.detectable import QUANTITIES
+from kvtheory.checks.detectable import QUANTITIES, detectable
 from kvtheory.checks.faults import parameters_of
 from kvtheory.checks.hypotheses import scaled_scene
 from kvtheory.checks.theory import Theory
@@ -59,6 +59,61 @@ def test_an_error_of_twice_what_is_told_shows_and_one_of_half_of_it_does_not():
         for part, verdict in ((0.5, "agrees"), (2.0, "disagrees")):
             found = comparing.verdict(judge(cased(with_error(name, sign * part * size))))
             assert found == verdict, (name, sign * part * size)
+
+
+QUICK = {
+    "light": kv.Scene(support=kv.DeadWeight(100.0), drive=kv.Drive(0.05), run=kv.Run(0.1)),
+    "suspended": kv.Scene.table1("suspended"),
+    "landing": kv.Scene(drive=kv.Drive(1.0), run=kv.Run(0.1)),
+    "spring": kv.Scene(drive=kv.Drive(0.02, stiffness=1e6, damping=5e4), run=kv.Run(0.8)),
+    "arms": kv.Scene(kv.Parabola(0.01), kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), kv.Fixed(2.9987e-4)),
+    "ball": kv.Scene(kv.Sphere(0.02), kv.Foundation(2e9, 0.02), kv.Fixed(2.0013e-4), kv.Drive(0.05)),
+}  # fmt: skip
+
+
+@cache
+def quick(name):
+    """Return a theory, to be computed once, elements per m, and a simulation with these."""
+    theory = Theory(QUICK[name], METHODS)
+    per_length = (300 if theory.scene.indenter.per_width else 25) / theory.static.half_length
+    at = np.linspace(0.0, theory.scene.run.duration, 201)
+    run = kv.elements(theory.scene, at=at, per_length=per_length, certify=False)
+    return theory, per_length, {name: getattr(run, name) for name in confusion.FEW}
+
+
+def quickly(name, data):
+    theory, per_length, _ = quick(name)
+    return make_case(theory, read(data), per_length, 1.0, COARSEST)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_what_is_told_holds_for_every_shape_law_and_support(name):
+    theory, _, data = quick(name)
+    case = quickly(name, data)
+    assert comparing.verdict(judge(case)) == "agrees"
+    told, _ = detectable(case)
+    for part, verdict in ((0.5, "agrees"), (2.0, "disagrees")):
+        for column, size in zip(FORCES, (told["load"], told["friction_force"]), strict=True):
+            wrong = {**data, column: (1.0 + part * size) * data[column]}
+            assert comparing.verdict(judge(quickly(name, wrong))) == verdict, (column, size)
+        if name in ("light", "landing"):
+            stiffer = {"foundation.stiffness": 1.0 + part * told["stiffness"]}
+            scene = scaled_scene(theory.scene, dict.fromkeys(stiffer, 1.0), *stiffer.values())
+            other = Theory(scene, METHODS).at(case.time, 1e-7)
+            wrong = {n: x + other[n] - case.now[n] for n, x in data.items() if n != "time"}
+            checks = judge(quickly(name, {"time": data["time"], **wrong}))
+            assert comparing.verdict(checks) == verdict, told["stiffness"]
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_steady_sliding_is_judged_by_its_mean_for_every_shape_law_and_support(name):
+    """Friction that is off by less than a row may be is off by more than a mean of all of them may be."""
+    case = quickly(name, quick(name)[2])
+    *_, friction = steady_limit(case)
+    assert set(friction.weights) == {"friction_force", "normal_force"}
+    assert friction.rows.sum() > 20
+    assert abs(friction.off(case.columns)) < 0.1 * friction.allowed
+    assert friction.allowed < 0.6 * case.allowed("friction_force")[friction.rows].min()
 
 
 def test_what_never_shows_is_told():

@@ -167,7 +167,7 @@ def allowance(
             fewest, grid = GIVEN_DIGITS if name in given else 0, name not in EDGES  # on elements
             rounding = rounded(values, fewest, grid)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
-            sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
+            sigma = np.minimum(noise(time, values - now[name], now[name], rounding), loudest)
             if name in EDGES and not fine.spacing_known:
                 most = COARSEST_EDGE * theory.static.half_length
                 jumps = min(edge_jumps((values - now[name])[calm]), most) - fine.spacing

@@ -236,17 +236,20 @@ def steady_limit(case: Case) -> list[Mean]:
         raise NotMade("the indenter coasts")
     if theory.scene.depths and theory.scene.depths[-1][1] <= 0.0:
         raise NotMade("the indenter is withdrawn")
+    steady, speed = theory.steady_state, abs(theory.final_velocity)
     if theory.rates is not None:
         slow = theory.rates.settling
     else:
         slow = theory.scene.foundation.retardation_time if theory.last_change else 0.0
     if math.isinf(slow):
         raise NotMade("steady sliding is unstable on this spring (F22)")
-    settled = theory.last_change + SETTLED * slow
+    length = abs(float(steady.trailing_edge - steady.leading_edge))
+    passing = length / speed if theory.scene.foundation.arms and speed else 0.0
+    settled = theory.last_change + max(SETTLED * slow, passing)
     late = (time > settled) & ~beside_jumps(theory, time, case.resolution.time_step)
     if late.sum() < FEWEST_LATE:
         raise NotMade(f"the data end before {settled * 1e3:.4g} ms, when the transient is over")
-    steady, found = theory.steady_state, []
+    found = []
     exact = {"depth": steady.depth, "normal_force": steady.load,
              "friction_force": steady.friction_force, "spring_force": steady.friction_force}  # fmt: skip
     since = f"mean after {case.time[late][0] * 1e3:.4g} ms: {{:.6g}}, theory {{:.6g}}"

@@ -46,8 +46,8 @@ distant guess tried: counted, not timed, so that a diagnosis is the same on any 
 REFINED, FLEXIBLE = 3, 0.1
 """Number of distant guesses tried; and the part by which a fault with an unknown must fit better than
 one without. A parameter must fit the better, the further it is from its value."""
-NAMED = 0.5
-"""Part of the difference that a fault must explain to be named."""
+NAMED, TIED = 0.5, 0.02
+"""Part of the difference that a fault must explain to be named; and by how much more, to be named alone."""
 SHOWN = 4
 """Most explanations that are kept, and most parameters that are named as indistinguishable."""
 MOST_NAMED = 20
@@ -308,18 +308,22 @@ def _words(failed: Sequence[Check], named: Sequence[Explanation], small: bool) -
     """
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
     if small and len(named) != 1:
-        text = "Each row is within its allowance, and what is off too little to name a fault"
+        text = "Each row is within its allowance, and too little is off to name one fault"
         if named:
             text += f". Each of these would explain it: {'; '.join(each.text for each in named[:SHOWN])}"
         if (more := len(named) - SHOWN) > 0:
-            text += f"; or {more} other{'s' * (more > 1)}"
+            text += f"; and {more} other{'s' * (more > 1)}"
         return f"{text}. Failed: {which}."
     if not named:
         return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
     symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
     alike = {WRONG + name for name in first.alike} | {*first.alike}
-    others = [each.text for each in rest if each.enough and each.name not in alike]
+    others = [each for each in rest if each.enough and each.name not in alike]
+    tied = [each.text for each in others if first.enough and each.rank > first.rank - TIED]
+    others = [each.text for each in others if each.text not in tied]
+    if tied:
+        text = f"{'; or '.join([text, *tied])}: these data do not tell which"
     also = f" Also possible: {'; '.join(others)}." if others else ""
     if not first.enough:
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
