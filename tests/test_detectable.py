@@ -1,5 +1,6 @@
 """What agreement excludes: errors of twice the size that is told show, and errors of half of it do not."""
 
+import math
 from functools import cache
 
 import numpy as np
@@ -7,13 +8,13 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.api._compare import METHODS
-from kvtheory.checks import comparing
+from kvtheory.checks import comparing, faults
 from kvtheory.checks.checklist import judge, steady_limit
 from kvtheory.checks.comparison_case import COARSEST, make_case, symptoms
-from kvtheory.checks.contact_rules import mistakes
+from kvtheory.checks.contact_rules import MISTAKES, mistakes
 from kvtheory.checks.detectable import QUANTITIES, detectable
 from kvtheory.checks.faults import parameters_of
-from kvtheory.checks.hypotheses import scaled_scene
+from kvtheory.checks.hypotheses import bench, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.fitting.series import read
 from tests import confusion, engine
@@ -159,6 +160,36 @@ def test_the_mean_of_settled_friction_shows_the_sine_of_a_slope_in_the_place_of_
     assert off == pytest.approx(-0.0053 * sine, abs=5e-4)
     failed = [check.name for check in judge(case) if check.ok is False]
     assert failed == ["steady limit"] * sine
+
+
+@pytest.mark.parametrize("factor", [None, 1.01])
+def test_what_a_mean_alone_shows_may_be_every_fault_that_brings_it_back(factor):
+    """Friction of 0.5 % less by the sine, which no dry friction explains; and a percent more."""
+    if factor:
+        data, scene, per_length = dict(simulated()), SCENE, DENSITY
+        data["friction_force"] = factor * data["friction_force"]
+    else:
+        data, scene, per_length = by_engine(sine=True), kv.Scene(run=kv.Run(0.12)), 300 / 2.45e-3
+    found = kv.compare(scene, {name: data[name] for name in confusion.FEW}, per_length=per_length)
+    assert [check.name for check in found.checks if check.ok is False] == ["steady limit"]
+    assert "too little is off to name one fault. Each of these would explain it:" in found.diagnosis
+    listed = {each.name: each.factor for each in found.explanations}
+    assert all(each.enough for each in found.explanations)
+    if factor:
+        assert listed["scale of friction_force"] == pytest.approx(factor, abs=2e-3)
+        assert listed["dry friction of friction_force"] > 0.0
+    else:
+        assert found.explanations[0].name == "sine of the slope in friction"
+        assert "dry friction of friction_force" not in listed
+
+
+def test_no_unphysical_number_is_tried():
+    rows = bench(cased(simulated()))
+    strengths = {each.name for each in MISTAKES if each.strengths}
+    tried = [*faults.scales_and_offsets(rows), *mistakes(rows)]
+    bounded = [each for each in tried if each.name in strengths or each.least > -math.inf]
+    assert len(bounded) > 10
+    assert all(each.pair(-1e-3) is None for each in bounded)
 
 
 def test_forces_that_are_zero_wherever_they_should_not_be_are_judged():

@@ -23,7 +23,7 @@ from kvtheory.checks.hypotheses import (
     scaled_scene,
 )  # fmt: skip
 from kvtheory.checks.theory import CURVES, Array
-from kvtheory.scene import Scene
+from kvtheory.scene import Drive, Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
 
 
@@ -112,6 +112,8 @@ DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
 LEAST = {"dry friction": 0.0}
 """Smallest number of what is added to a column, where a smaller one would be unphysical."""
+RAMPS = (0.01, 0.05, 0.2)
+"""Initial guesses for the time in which the velocity rises, in spans of the data."""
 NOTHING = 1e-6
 """Largest value, relative to the scale of a column, that counts as zero."""
 FRICTION = "friction_coefficient", "friction_force", "spring_force"
@@ -193,6 +195,14 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
             if left:
                 text = f"{which} is missing: {K_i:.4g} N/m^3 with {tau_i * 1e3:.4g} ms"
                 yield other(f"{which} missing", text, foundation=maxwell(K, left))
+    if scene.drive.constant and scene.drive.rigid and scene.start.at_rest:
+        text = "the velocity of the data rises to V within {1:.4g} ms: that of the scene jumps at the start"
+        V = scene.drive.velocity
+        yield Hypothesis(
+            "drive that starts slowly", text,
+            lambda time: bench.against(replace(scene, drive=Drive(history=[(0.0, 0.0), (time, V)]))),
+            np.log(RAMPS).tolist(), float(bench.time[-1]), log=True,
+        )  # fmt: skip
     if not scene.drive.rigid:
         text = (
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "

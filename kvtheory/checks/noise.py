@@ -24,8 +24,8 @@ relative to it, in 1/sqrt(n)."""
 SURE = 4.5
 """Standard deviations that a normal error exceeds once in 150,000."""
 RARE_FLIPS, NORMAL_RARE = 0.95, 1.96
-"""Quantile by which noise is told that flips the last digit of fewer than half of the rows; and magnitude of a
-standard normal variate there."""
+"""Quantile by which noise is told that flips the last digit of fewer than half of the rows; and the magnitude
+that a standard normal variate has there."""
 FEW_DIGITS = (2, 3, 4, 5, 6)
 """Digits to which a column may be rounded; more do not matter."""
 SEVERAL, ON_GRID, DISTINCT = 4, 1e-3, 1e-9

@@ -36,6 +36,8 @@ class Rule(NamedTuple):
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
     sine: bool = False  # friction is that of the sine of the slope
+    arc: bool = False  # pressure acts on the length of the surface
+    circle: bool = False  # the profile is a circle, not its parabola
     front: float = 1.0  # weight of elements before the lowest point
     back: float = 1.0  # weight of those behind it
     lost: float = 0.0  # part of the half length without elements at the leading edge
@@ -68,12 +70,12 @@ POINTS, HALVINGS = 24, 24
 """Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
 SHALLOWEST, DEEPEST = 1e-3, 4.0
 """Ends of that interval, in static depths."""
-STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "sine", "front", "back",
-          "lost", "flat")  # fmt: skip
+STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "sine", "arc", "circle", "front",
+          "back", "lost", "flat")  # fmt: skip
 EVEN = "depth", "normal_force", "peak_pressure"
 """Fields of a rule that affect steady sliding; and the curves that do not change sign with the velocity."""
-SLOWEST, TINY = 1e-9, 1e-300
-"""Lowest speed on arms, in a_0/tau; and the divisor if the force vanishes."""
+SLOWEST, TINY, STEEPEST = 1e-9, 1e-300, 1e-2
+"""Lowest speed on arms, in a_0/tau; the divisor if the force vanishes; and least 1 - (x/R)^2 of a circle."""
 IMPLICIT = 0.52
 """Weight of the end of a step; slightly more than the trapezoidal rule, for damping."""
 
@@ -152,8 +154,11 @@ class Elements:
         depth, rate, moved, speed = (each[:, None, None] for each in state)
         rule, having, R = self.rule, self.having, self.scene.indenter.radius  # type: ignore[union-attr]
         x = self.places[near] + moved
-        slope = x / R
+        slope, k = x / R, having.circle
         g = depth - self.heights - 0.5 * x * slope
+        cosine = np.sqrt(np.maximum(1.0 - slope[k] ** 2, STEEPEST))
+        g[k] += 0.5 * x[k] * slope[k] - R * (1.0 - cosine)
+        slope[k] /= cosine
         rise = rule.depth_rate * rate - rule.slide_rate * slope * speed
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         inclined = np.abs(slope) * self.length
@@ -163,6 +168,8 @@ class Elements:
         for k, weight in ((having.front, rule.front), (having.back, rule.back)):
             counts = (x[k] < 0.0) == (weight is rule.front)
             area[k] *= np.where(counts, weight[k], 1.0)
+        k = having.arc
+        area[k] *= np.sqrt(1.0 + slope[k] ** 2)
         k = having.lost
         reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
         lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
