@@ -245,7 +245,8 @@ def steady_limit(case: Case) -> list[Mean]:
         raise NotMade("steady sliding is unstable on this spring (F22)")
     length = abs(float(steady.trailing_edge - steady.leading_edge))
     passing = length / speed if theory.scene.foundation.arms and speed else 0.0
-    settled = theory.last_change + max(SETTLED * slow, passing)
+    last = max([theory.last_change, *time[np.isnan(case.now["leading_edge"])]])  # flight
+    settled = last + max(SETTLED * slow, passing)
     late = (time > settled) & ~beside_jumps(theory, time, case.resolution.time_step)
     if late.sum() < FEWEST_LATE:
         raise NotMade(f"the data end before {settled * 1e3:.4g} ms, when the transient is over")
