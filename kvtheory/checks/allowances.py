@@ -212,10 +212,8 @@ def _landed(
     for row in lands:  # also where it lands before the next row, or after it
         shift[row - 1 : row + 1] = shift[row]
     *_, low, high = _bands(theory, time, np.maximum.accumulate(shift), rtol)
-    return tuple(
-        {name: f(each[name], other[name]) for name in CURVES}
-        for f, each, other in ((np.fmin, ends[0], low), (np.fmax, ends[1], high))
-    )
+    least = {name: np.fmin(ends[0][name], low[name]) for name in CURVES}
+    return least, {name: np.fmax(ends[1][name], high[name]) for name in CURVES}
 
 
 def _bands(theory: Theory, time: Array, smear: Array, rtol: float) -> tuple[Curves, ...]:

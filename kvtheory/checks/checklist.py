@@ -256,7 +256,7 @@ def steady_limit(case: Case) -> list[Mean]:
     since = f"mean after {case.time[late][0] * 1e3:.4g} ms: {{:.6g}}, theory {{:.6g}}"
     for curve in (name for name in exact if name in case.columns):
         ways = [({curve: 1.0}, case.bands[curve].systematic, since)]
-        if curve in ALONG and "normal_force" in case.columns:
+        if curve in ALONG and speed and "normal_force" in case.columns:
             ways.append((*_without_the_edge(case, curve), f"less F_z a/R, {since}"))
         means = []
         for weights, smooth, words in ways:

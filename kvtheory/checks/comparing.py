@@ -311,17 +311,17 @@ def _words(failed: Sequence[Check], named: Sequence[Explanation], small: bool) -
         text = "Each row is within its allowance, and too little is off to name one fault"
         if named:
             text += f". Each of these would explain it: {'; '.join(each.text for each in named[:SHOWN])}"
-        if (more := len(named) - SHOWN) > 0:
-            text += f"; and {more} other{'s' * (more > 1)}"
+        if (hidden := len(named) - SHOWN) > 0:
+            text += f"; and {hidden} other{'s' * (hidden > 1)}"
         return f"{text}. Failed: {which}."
     if not named:
         return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
     symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
     alike = {WRONG + name for name in first.alike} | {*first.alike}
-    others = [each for each in rest if each.enough and each.name not in alike]
-    tied = [each.text for each in others if first.enough and each.rank > first.rank - TIED]
-    others = [each.text for each in others if each.text not in tied]
+    possible = [each for each in rest if each.enough and each.name not in alike]
+    tied = [each.text for each in possible if first.enough and each.rank > first.rank - TIED]
+    others = [each.text for each in possible if each.text not in tied]
     if tied:
         text = f"{'; or '.join([text, *tied])}: these data do not tell which"
     also = f" Also possible: {'; '.join(others)}." if others else ""

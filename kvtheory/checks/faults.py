@@ -197,7 +197,7 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
                 yield other(f"{which} missing", text, foundation=maxwell(K, left))
     if scene.drive.constant and scene.drive.rigid and scene.start.at_rest:
         text = "the velocity of the data rises to V within {1:.4g} ms: that of the scene jumps at the start"
-        V = scene.drive.velocity
+        V = bench.theory.final_velocity
         yield Hypothesis(
             "drive that starts slowly", text,
             lambda time: bench.against(replace(scene, drive=Drive(history=[(0.0, 0.0), (time, V)]))),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -114,14 +114,15 @@ class Trial(NamedTuple):
 class Average(NamedTuple):
     """A mean of all rows, by curve: its weights, what it is off and allowed, in SI.
 
-    On the rows on which faults are tried it has `shares` of the values between them, and stands for `count`.
+    Of the rows on which faults are tried it has `shares`, with values on lines between them, and stands for
+    `rows` of these.
     """
 
     weights: Mapping[str, float]
     shares: Array
     off: float
     allowed: float
-    count: int
+    rows: int
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,7 @@ class Bench(Case):
         """The largest difference that counts: exact data are far from theory in units of their allowances."""
         off = np.minimum(np.abs(self._gaps((self.columns, self.now))) / sum(self._units), HUGE)
         usual = float(np.quantile(off, SHARE_OF_VALUES, axis=1).max())
-        means = (math.sqrt(mean.count) * abs(mean.off) / mean.allowed for mean in self.means)
+        means = (math.sqrt(mean.rows) * abs(mean.off) / mean.allowed for mean in self.means)
         return min(max(LARGEST, FARTHER * max(usual, *means, 0.0)), HUGE)
 
     def _relative(self, gaps: Array) -> tuple[Array, Array]:
@@ -172,7 +173,7 @@ class Bench(Case):
         if pair is None:
             return np.full(self._units[0].size + len(self.means), self.largest)
         rows, _ = self._relative(self._gaps(pair))
-        of_means = self.off(pair) * [math.sqrt(mean.count) for mean in self.means]
+        of_means = self.off(pair) * [math.sqrt(mean.rows) for mean in self.means]
         return np.clip(np.append(rows, of_means), -self.largest, self.largest)
 
     def allows(self, pair: Pair) -> bool:
@@ -330,7 +331,7 @@ def bench(case: Case, most: int = ROWS) -> Bench:
         np.minimum(first + np.arange(most // 2), count - 1),
     ]))  # fmt: skip
 
-    def shares(of: Array) -> Array:
+    def shares(of: Any) -> Array:
         """Return how much the rows count in a mean, if what is between them is on a line."""
         at = np.interp(np.flatnonzero(of), rows, np.arange(rows.size))
         near = np.floor(at).astype(int)
@@ -347,13 +348,9 @@ def bench(case: Case, most: int = ROWS) -> Bench:
         "edge_force": case.edge_force[rows],
         "means": tuple(
             Average(
-                each.weights,
-                shares(each.rows),
-                each.off(case.columns),
-                each.allowed,
-                int(each.rows[rows].sum()),
+                m.weights, shares(m.rows), m.off(case.columns), m.allowed, int(m.rows[rows].sum())
             )
-            for each in means_of(case)
+            for m in means_of(case)
         ),
     }
     return Bench(**cut)
