@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.noise import SEVERAL, extreme, means, noise, rounded, time_rounding
+from kvtheory.checks.noise import SEVERAL, digits, extreme, means, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.table import SCHEME_ROWS
@@ -49,6 +49,8 @@ BALL_EDGE = 0.02
 """Element of a ball assumed for its edges, in half lengths: its forces need few elements."""
 LARGEST_NOISE = 0.1
 """Largest noise that is allowed for, as a fraction of the curve or of its scale."""
+FORCES = "normal_force", "friction_force"
+"""The columns that no scene gives."""
 RATES = "depth_rate", "sliding_velocity"
 """The curves to which the dampers answer."""
 WHOLE_EDGE = 2.0
@@ -164,18 +166,29 @@ def allowance(
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            rounding = rounded(values, GIVEN_DIGITS * (name in given), grid=name not in EDGES)
+            fewest = GIVEN_DIGITS if name in given else _written(series.columns, name, now[name])
+            rounding = rounded(values, fewest, grid=name not in EDGES)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
             sigma = np.minimum(noise(time, values - now[name], now[name], rounding), loudest)
             if name in EDGES and not fine.spacing_known:
-                calm = ~beside_jumps(theory, time, fine.time_step)
-                jumps = edge_jumps((values - now[name])[calm])
+                jumps = edge_jumps(
+                    (values - now[name])[~beside_jumps(theory, time, fine.time_step)]
+                )
                 jumps = min(jumps, COARSEST_EDGE * theory.static.half_length) - fine.spacing
                 if not theory.scene.indenter.per_width:
                     jumps = max(jumps, BALL_EDGE * theory.static.half_length)
                 smooth[name] = smooth[name] + ELEMENTS_AT_AN_EDGE * max(jumps, 0.0)
         bands[name] = Band(low[name], high[name], smooth[name] + rounding, sigma, rounding)
     return now, bands, force
+
+
+def _written(columns: Curves, name: str, now: Array) -> float:
+    """Return the fewest digits of a column: a constant that is that of theory has as many as the forces."""
+    values = columns[name]
+    if np.ptp(values) > 0.0 or not np.allclose(values, now, rtol=INPUT, atol=0.0):
+        return 0.0
+    others = (digits(columns[other]) for other in FORCES if other in columns)
+    return max(others, default=0.0)
 
 
 def edge_jumps(residual: Array) -> float:

@@ -91,7 +91,7 @@ def noise(time: Array, residual: Array, curve: Array, half: Array | float = 0.0)
     return np.minimum(rare, 2.0 * half) * np.ones_like(residual)
 
 
-def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Array:
+def rounded(values: Array, fewest: float = FEW_DIGITS[0], grid: bool = True) -> Array:
     """Return the rounding error: half the step of a grid that all values lie on, or half their last digit."""
     distinct = np.unique(values[np.isfinite(values)])
     steps = np.diff(distinct)
@@ -106,6 +106,14 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Ar
         if np.nanmax(off, initial=0.0) <= SAME:
             return np.asarray(np.maximum(half, 0.5 * last))
     return np.full_like(values, half)
+
+
+def digits(values: Array) -> float:
+    """Return with how many digits the largest value is written, infinite if with more than count."""
+    largest, half = float(np.nanmax(np.abs(values))), float(rounded(values, grid=False).max())
+    return (
+        math.floor(math.log10(largest)) + 1 - math.log10(2.0 * half) if largest * half else math.inf
+    )
 
 
 def time_rounding(time: Array) -> Array:
