@@ -30,7 +30,7 @@ def run(
     Faults: `slides` or `remembers` false, `hunt` (the damping grows with the compression), `middle` (friction
     by the normal in the middle of the patch), `share` of the contact, `loaded` (arms at the start), `start`
     (factor on the initial depth), `sinks` (factor on delta' in the compression rate), `sine` (of the slope,
-    for its tangent, in friction).
+    for its tangent, in friction), `arc` (pressure along the surface), `circle` (for the parabola).
     """
     slides, remembers = fault.get("slides", True), fault.get("remembers", True)
     K_i, T_i = np.array(arms, dtype=float).reshape(-1, 2).T[:, :, None, None]
@@ -51,8 +51,11 @@ def run(
 
     def press(d, rate, k, v, moving):
         x = X + Y[k]
-        g = d - (x * x + y * y) / (2 * R)
-        rise = fault.get("sinks", 1.0) * rate - slides * x / R * v
+        high, slope = (x * x + y * y) / (2 * R), x / R
+        if fault.get("circle"):
+            high, slope = R - np.sqrt(R * R - x * x), x / np.sqrt(R * R - x * x)
+        g = d - high
+        rise = fault.get("sinks", 1.0) * rate - slides * slope * v
         if arms:
             free = ((gain * u - kept * s).sum(axis=0) / (K + gain.sum())) if moving else u
         else:
@@ -68,8 +71,9 @@ def run(
             new_s, p, stiff = s, np.where(on, K * g + damping * rise, 0.0), damping + K * h / 2
         p, held = np.maximum(p, 0.0), p > 0
         share = fault.get("share", 1.0) * area
+        p_x = p * np.sqrt(1 + slope**2) if fault.get("arc") else p
         ends = x[held.any(axis=0)][[0, -1]] if held.any() else np.full(2, np.nan)
-        F_z, F_x = share * p.sum(), -share * (p * x).sum() / R
+        F_z, F_x = share * p_x.sum(), -share * (p_x * slope).sum()
         F_x = -F_z * ends.mean() / R if fault.get("middle") else F_x
         F_x = -share * (p * np.sin(np.arctan(x / R))).sum() if fault.get("sine") else F_x
         return F_z, F_x, share * (stiff * held).sum(), ends, p.max(), new, new_s

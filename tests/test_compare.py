@@ -262,6 +262,30 @@ def test_a_simulation_in_flight_keeps_the_error_with_which_it_took_off(velocity)
     assert held.verdict == "agrees", held.diagnosis
 
 
+@pytest.mark.parametrize(("scheme", "rows"), [("semi-implicit", 201), ("explicit-euler", 60)])
+def test_a_landing_may_be_early_by_what_the_depth_is_off_and_steady_sliding_comes_after_it(
+    scheme, rows
+):
+    given, how = (
+        kv.Scene(drive=kv.Drive(1.0), run=kv.Run(0.1)),
+        {"per_length": "200 /mm", "scheme": scheme},
+    )
+    run = kv.elements(given, at=np.linspace(0.0, 0.1, rows), certify=False, **how)
+    found = kv.compare(given, {name: getattr(run, name) for name in SCALED}, **how)
+    assert set(failed(found)) <= {"sampling"}
+
+
+def test_noise_below_the_last_digit_of_a_given_depth_agrees():
+    """It flips that digit in a few rows; and a depth is not given with more digits than are written."""
+    given = kv.Scene(support=kv.Fixed(1.429204e-4), run=kv.Run(0.05))
+    exact, rng = kv.transient(given, at="0 ms:50 ms:201", certify=False), np.random.default_rng(0)
+    rows = {name: np.array(getattr(exact, name)) for name in SCALED}
+    for level, digits in ((1e-4, 4), (0.0, 6)):
+        noise = {n: x * (1.0 + level * rng.standard_normal(201)) for n, x in rows.items()}
+        cut = {n: np.array([float(f"{v:.{digits}g}") for v in x]) for n, x in noise.items()}
+        assert failed(kv.compare(given, {**cut, "time": rows["time"]})) == []
+
+
 SEEDS = MANY // 40
 
 

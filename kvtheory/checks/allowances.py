@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.noise import SEVERAL, extreme, means, noise, rounded, time_rounding
+from kvtheory.checks.noise import SEVERAL, digits, extreme, means, noise, rounded, time_rounding
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.fitting.series import Series
 from kvtheory.results.table import SCHEME_ROWS
@@ -49,6 +49,8 @@ BALL_EDGE = 0.02
 """Element of a ball assumed for its edges, in half lengths: its forces need few elements."""
 LARGEST_NOISE = 0.1
 """Largest noise that is allowed for, as a fraction of the curve or of its scale."""
+FORCES = "normal_force", "friction_force"
+"""The columns that no scene gives."""
 RATES = "depth_rate", "sliding_velocity"
 """The curves to which the dampers answer."""
 WHOLE_EDGE = 2.0
@@ -126,7 +128,7 @@ def allowance(
     time, support, C = series.time, theory.scene.support, theory.damping(fine.time_step)
     scheme = SCHEME_ROWS.get(series.scheme or "")
     first_order = scheme is None or scheme.order_in_time <= 1
-    now, before, after, low, high = _bands(theory, time, fine.time_step, rtol)
+    now, before, after, low, high = _bands(theory, time, _smear(time, fine.time_step), rtol)
     share, lagging, late, drift = (np.zeros_like(time) for _ in range(4))
     h, moves = fine.time_step, not theory.scene.held
     if moves:
@@ -157,25 +159,36 @@ def allowance(
         step = fine.time_step * (1.0 if fine.step_known else MARGIN) if first_order else 0.0
         for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
             smooth[name] = smooth[name] + moved
+    low, high = _landed(theory, now, time, smooth["depth"], (low, high), rtol)
     few = np.unique(series.columns.get("sliding_velocity", 0.0)).size < SEVERAL  # as driven
-    calm = ~beside_jumps(theory, time, fine.time_step)
     bands, given = {}, ("velocity", "sliding_velocity")[: 1 + (few or theory.scene.drive.rigid)]
     for name in CURVES:
         rounding = sigma = np.zeros_like(time)
         if name in series.columns:
             values = series.columns[name]
-            fewest, grid = GIVEN_DIGITS if name in given else 0, name not in EDGES  # on elements
-            rounding = rounded(values, fewest, grid)
+            fewest = GIVEN_DIGITS if name in given else _written(series.columns, name, now[name])
+            rounding = rounded(values, fewest, grid=name not in EDGES)
             loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
-            sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
+            sigma = np.minimum(noise(time, values - now[name], now[name], rounding), loudest)
             if name in EDGES and not fine.spacing_known:
-                most = COARSEST_EDGE * theory.static.half_length
-                jumps = min(edge_jumps((values - now[name])[calm]), most) - fine.spacing
+                jumps = edge_jumps(
+                    (values - now[name])[~beside_jumps(theory, time, fine.time_step)]
+                )
+                jumps = min(jumps, COARSEST_EDGE * theory.static.half_length) - fine.spacing
                 if not theory.scene.indenter.per_width:
                     jumps = max(jumps, BALL_EDGE * theory.static.half_length)
                 smooth[name] = smooth[name] + ELEMENTS_AT_AN_EDGE * max(jumps, 0.0)
         bands[name] = Band(low[name], high[name], smooth[name] + rounding, sigma, rounding)
     return now, bands, force
+
+
+def _written(columns: Curves, name: str, now: Array) -> float:
+    """Return the fewest digits of a column: a constant that is that of theory has as many as the forces."""
+    values = columns[name]
+    if np.ptp(values) > 0.0 or not np.allclose(values, now, rtol=INPUT, atol=0.0):
+        return 0.0
+    others = (digits(columns[other]) for other in FORCES if other in columns)
+    return max(others, default=0.0)
 
 
 def edge_jumps(residual: Array) -> float:
@@ -195,9 +208,29 @@ def beside_jumps(theory: Theory, time: Array, step: float) -> Mask:
     return np.asarray((off <= _smear(time, step)[:, None]).any(axis=1))
 
 
-def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
-    """Return theory at the times, a few steps before and after, and its least and greatest values between."""
-    smear = _smear(time, step)
+def _landed(
+    theory: Theory, now: Curves, time: Array, depth: Array, ends: tuple[Curves, Curves], rtol: float
+) -> tuple[Curves, Curves]:
+    """Return the least and greatest values where a landing may come earlier or later.
+
+    It does by the error of the depth over the rate with which the indenter comes down.
+    """
+    flies = np.isnan(now["leading_edge"])
+    down = flies & (now["depth_rate"] > 0.0)
+    lands = np.flatnonzero(down[:-1] & ~flies[1:])
+    if not lands.size:
+        return ends
+    shift = np.zeros_like(time)
+    shift[lands] = depth[lands] / now["depth_rate"][lands]
+    for row in lands:  # also where it lands before the next row, or after it
+        shift[row - 1 : row + 1] = shift[row]
+    *_, low, high = _bands(theory, time, np.maximum.accumulate(shift), rtol)
+    least = {name: np.fmin(ends[0][name], low[name]) for name in CURVES}
+    return least, {name: np.fmax(ends[1][name], high[name]) for name in CURVES}
+
+
+def _bands(theory: Theory, time: Array, smear: Array, rtol: float) -> tuple[Curves, ...]:
+    """Return theory at the times, so long before and after, and its least and greatest values between."""
     jumps = [t for t in theory.jumps if t < time[-1]]
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
     found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks import comparison_case as case_of
-from kvtheory.checks.allowances import ELEMENTS_AT_AN_EDGE
+from kvtheory.checks.allowances import ELEMENTS_AT_AN_EDGE, beside_jumps
 from kvtheory.checks.comparison_case import COARSE, SMALLEST, Case, NotMade, rms
 from kvtheory.checks.noise import SURE, extreme, means, noise
 from kvtheory.checks.theory import Array, Curves
@@ -33,8 +34,10 @@ AVERAGED, FEWEST_MEANS = (1, 4, 16), 12
 """Rows in a mean, and fewest means that are compared together."""
 SETTLED = 7.0
 """Slow time constants from the last change of the drive to steady sliding: e^-7 is below a thousandth."""
-LAST_PART, FEWEST_LATE = 0.75, 3
-"""Part of the series after which the mean is taken for the limit, and the fewest samples for it."""
+FEWEST_LATE = 3
+"""Fewest samples of steady sliding for a mean."""
+ALONG, ARM_OF_BALL = ("friction_force", "spring_force"), 8.0 / (3.0 * math.pi)
+"""The forces along x; and the mean of a(y)^2 over that of a(y), in units of a."""
 PHASE = "phase of the cycle"
 """The check whose failure alone is no evidence against the data: theory cannot predict the phase."""
 LOST = 0.25
@@ -221,7 +224,11 @@ def root_mean_square(case: Case, name: str) -> Measured:
 
 
 def steady_limit(case: Case) -> list[Mean]:
-    """Return means at the end of the data, which exact steady sliding gives; and that of friction before."""
+    """Return the means over the part in which sliding is steady, and what theory gives there.
+
+    Friction is that less F_z a/R, free of the leading edge, if less is allowed for it. Theory by elements is
+    as wrong as it is far from exact steady sliding.
+    """
     theory, time = case.theory, case.time
     if math.isinf(theory.last_change):
         raise NotMade("the drive is a function, which need not settle")
@@ -229,67 +236,90 @@ def steady_limit(case: Case) -> list[Mean]:
         raise NotMade("the indenter coasts")
     if theory.scene.depths and theory.scene.depths[-1][1] <= 0.0:
         raise NotMade("the indenter is withdrawn")
+    steady, speed = theory.steady_state, abs(theory.final_velocity)
     if theory.rates is not None:
         slow = theory.rates.settling
     else:
         slow = theory.scene.foundation.retardation_time if theory.last_change else 0.0
     if math.isinf(slow):
         raise NotMade("steady sliding is unstable on this spring (F22)")
-    settled = theory.last_change + SETTLED * slow
-    late = time > max(settled, LAST_PART * time[-1])
+    length = abs(float(steady.trailing_edge - steady.leading_edge))
+    passing = length / speed if theory.scene.foundation.arms and speed else 0.0
+    last = max([theory.last_change, *time[np.isnan(case.now["leading_edge"])]])  # flight
+    settled = last + max(SETTLED * slow, passing)
+    late = (time > settled) & ~beside_jumps(theory, time, case.resolution.time_step)
     if late.sum() < FEWEST_LATE:
         raise NotMade(f"the data end before {settled * 1e3:.4g} ms, when the transient is over")
-    steady = theory.steady_state
+    found = []
     exact = {"depth": steady.depth, "normal_force": steady.load,
              "friction_force": steady.friction_force, "spring_force": steady.friction_force}  # fmt: skip
-    found = []
+    since = f"mean after {case.time[late][0] * 1e3:.4g} ms: {{:.6g}}, theory {{:.6g}}"
     for curve in (name for name in exact if name in case.columns):
-        left = abs(float(case.now[curve][late].mean()) - exact[curve])
-        random = SURE * rms(case.bands[curve].noise[late]) / math.sqrt(late.sum())
-        smooth = float(case.bands[curve].systematic[late].max()) + SMALLEST * theory.scales[curve]
-        allowed = case.tolerance * (smooth + left + random)
-        found.append(Mean({curve: 1.0}, late, float(exact[curve]), allowed, "{:.6g}, exact {:.6g}"))
-    line = theory.scene.indenter.per_width and not theory.scene.foundation.arms
-    if line and theory.scene.drive.rigid and "friction_force" in case.columns:
-        found.append(_settled_friction(case, time > settled))
+        ways = [({curve: 1.0}, case.bands[curve].systematic, since)]
+        if curve in ALONG and speed and "normal_force" in case.columns:
+            ways.append((*_without_the_edge(case, curve), f"less F_z a/R, {since}"))
+        means = []
+        for weights, smooth, words in ways:
+            data, theirs = (
+                np.sum([by * curves[name] for name, by in weights.items()], axis=0)
+                for curves in (case.columns, case.now)
+            )
+            expected = float(theirs[late].mean())
+            own = abs(expected - sum(by * float(exact[name]) for name, by in weights.items()))
+            sigma = rms(noise(time, data - theirs, case.now[curve])[late])
+            allowed = float(smooth[late].mean()) + SURE * sigma / math.sqrt(late.sum())
+            allowed += own * theory.by_elements + SMALLEST * theory.scales[curve]
+            means.append(Mean(weights, late, expected, case.tolerance * allowed, words))
+        found.append(min(means, key=lambda mean: mean.allowed))
     return found
 
 
-def _settled_friction(case: Case, late: NDArray[np.bool_]) -> Mean:
-    """Return the mean of F_x - F_z a/R of a line contact after the transient, free of the leading edge.
+def _without_the_edge(case: Case, curve: str) -> tuple[dict[str, float], Array]:
+    """Return the weights of F_x - F_z a/R, and its smooth error.
 
-    Elements that lack the force b there lack the friction b a/R. A free indenter then sinks by b/(K A + k_s)
-    (F12), where F_z grows by K A and F_x by C V L/R, L being the length of the contact. Where data are in
+    Elements that lack the force b at the leading edge lack the friction b a/R too. A free indenter then sinks
+    by b/(K_z + k_s), where F_z grows by K_z and F_x by K_x, the slopes of steady sliding. Where data are in
     step with elements, so is delta', by half of what b changes in a step, with a mean slope of a/2R. At the
-    other edge p = 0, and elements change p' x dx, with p' = K sqrt(a^2 + l_r^2)/R.
+    other edge p = 0, and elements change p' x dx, with p' = (K x_TE + C V)/R. The strips of a ball reach
+    as far as a(y), and so does the pressure at their edges: b acts at `ARM_OF_BALL` of a in the mean. Those
+    that are within sqrt(2 dx/a) of the middle, as y/b, enter at once.
     """
-    theory, scene, columns = case.theory, case.theory.scene, case.columns
-    state, R, fine = theory.steady_state, theory.radius, case.resolution
-    K, C = scene.foundation.stiffness, scene.foundation.damping
-    a, l_r = float(state.half_length), float(state.retardation_length)
-    L = abs(float(state.trailing_edge - state.leading_edge))
-    lever = math.copysign(a / R, l_r) if "normal_force" in columns else 0.0
-    weights = {"friction_force": 1.0, **({"normal_force": -lever} if lever else {})}
-    data, theirs = (
-        np.sum([by * curves[n] for n, by in weights.items()], axis=0)
-        for curves in (columns, case.now)
-    )
+    theory, scene, fine = case.theory, case.theory.scene, case.resolution
+    state, R, V = theory.steady_state, theory.radius, abs(theory.final_velocity)
+    normal, a = case.bands["normal_force"], float(state.half_length)
+    edges = float(state.leading_edge), float(state.trailing_edge)
+    L, width = abs(edges[1] - edges[0]), float(theory.width(state.depth))
+    arm = a * (1.0 if scene.indenter.per_width else ARM_OF_BALL)
     off = ELEMENTS_AT_AN_EDGE * fine.spacing
-    arm = off if lever else a
-    if lever and not scene.held:
-        regained = K * abs(l_r) * L / theory.stiffness(state.depth, a, abs(l_r))
-        arm += abs(a - regained) + 0.25 * a * min(fine.time_step * C * L / scene.support.mass, 1.0)
-    friction, normal = case.bands["friction_force"], case.bands["normal_force"]
-    trailing = 0.5 * K * math.hypot(a, l_r) * off * off * L / R
-    smooth = ((normal.systematic - normal.rounding) * arm + trailing) / R
-    smooth = smooth + friction.rounding + abs(lever) * normal.rounding
-    sigma = rms(noise(case.time, data - theirs, case.now["friction_force"])[late])
-    allowed = float(smooth[late].max()) + SURE * sigma / math.sqrt(late.sum())
-    allowed += SMALLEST * theory.scales["friction_force"]
-    what = "less F_z a/R" if lever else "alone"
-    since = f"{case.time[late][0] * 1e3:.4g} ms"
-    words = f"{what}, mean after {since}: {{:.6g}}, theory {{:.6g}}"
-    return Mean(weights, late, float(theirs[late].mean()), case.tolerance * allowed, words)
+    slope = scene.foundation.stiffness * (L - a) + V * theory.damping(L / max(V, off))
+    trailing = 0.5 * width * slope * off * off * L / R
+    off += (a - arm) * math.sqrt(2.0 * fine.spacing / a) * 2.0 / math.pi
+    if not scene.held:
+        (K_z, K_x), k_s = theory.slopes, scene.support.spring
+        off += abs(arm - (R * K_x + arm * k_s) / (K_z + k_s))
+        damping = theory.damping(fine.time_step) * width * L
+        off += 0.25 * a * min(fine.time_step * damping / scene.support.mass, 1.0)
+    smooth = ((normal.systematic - normal.rounding) * off + trailing) / R
+    smooth += case.bands[curve].rounding + arm / R * normal.rounding
+    return {curve: 1.0, "normal_force": -math.copysign(arm / R, theory.final_velocity)}, smooth
+
+
+def column_means(case: Case) -> list[Mean]:
+    """Return the mean of each column of a measured curve."""
+    every, found = np.ones(case.time.size, dtype=bool), []
+    for name in case.names:
+        band = case.bands[name]
+        random = SURE * rms(band.noise) / math.sqrt(case.time.size)
+        allowed = case.tolerance * (rms(band.systematic) + random)
+        found.append(Mean({name: 1.0}, every, float(case.now[name].mean()), allowed))
+    return found
+
+
+def means_of(case: Case) -> Iterator[Mean]:
+    """Yield every mean that is compared with theory."""
+    for means_of in (column_means,) if case.series.curve else (initial_rest, steady_limit):
+        with suppress(NotMade):
+            yield from (each for each in means_of(case) if each.weights.keys() <= {*case.names})
 
 
 def phase(case: Case) -> Measured:

@@ -46,8 +46,8 @@ distant guess tried: counted, not timed, so that a diagnosis is the same on any 
 REFINED, FLEXIBLE = 3, 0.1
 """Number of distant guesses tried; and the part by which a fault with an unknown must fit better than
 one without. A parameter must fit the better, the further it is from its value."""
-NAMED = 0.5
-"""Part of the difference that a fault must explain to be named."""
+NAMED, TIED = 0.5, 0.02
+"""Part of the difference that a fault must explain to be named; and by how much more, to be named alone."""
 SHOWN = 4
 """Most explanations that are kept, and most parameters that are named as indistinguishable."""
 MOST_NAMED = 20
@@ -225,9 +225,11 @@ def diagnose(
     seen = case_of.symptoms(case, failed) if families is FAMILIES else ()
     found = sorted([*seen, *tried], key=_order)
     named = [each for each in found if each.rank >= NAMED or each.enough]
-    text = _words(case, failed, named)
+    if small := all((case.excess(name) <= case.limit(name)).all() for name in case.names):
+        named = [each for each in named if each.enough]
+    text = _words(failed, named, small)
     text += f" Not tried, after {MOST_SOLVED} scenes: {', '.join(skipped)}." if skipped else ""
-    return text, tuple((named or found)[:SHOWN])
+    return text, tuple(named if small else (named or found)[:SHOWN])
 
 
 def _order(each: Explanation) -> float:
@@ -270,7 +272,7 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
 
     def unlikely(trial: Trial) -> float:
         cut_off = trial.enough and trial.hypothesis.name == faults.CUT_OFF
-        if cut_off and np.abs(rows.ratios(trial.hypothesis.pair(0.0))).max() <= 1.0:
+        if cut_off and (pair := trial.hypothesis.pair(0.0)) and rows.allows(pair):
             return 0.0  # a difference within the resolution proves no other fault
         far = abs(trial.value) if trial.hypothesis.powers else 0.0
         left = trial.score * (1.0 + max(far, FLEXIBLE * bool(trial.hypothesis.starts)))
@@ -299,18 +301,29 @@ def _ranked(rows: Bench, trials: Sequence[Trial]) -> list[Explanation]:
     return [each for each in found.values() if each.rank > 0.0]
 
 
-def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) -> str:
-    """Say what explains the disagreement, what else would, and which checks failed."""
+def _words(failed: Sequence[Check], named: Sequence[Explanation], small: bool) -> str:
+    """Say what explains the disagreement, what else would, and which checks failed.
+
+    A `small` difference is within the allowance of each row: how well a fault fits rows tells nothing then.
+    """
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
+    if small and len(named) != 1:
+        text = "Each row is within its allowance, and too little is off to name one fault"
+        if named:
+            text += f". Each of these would explain it: {'; '.join(each.text for each in named[:SHOWN])}"
+        if (hidden := len(named) - SHOWN) > 0:
+            text += f"; and {hidden} other{'s' * (hidden > 1)}"
+        return f"{text}. Failed: {which}."
     if not named:
-        small = all((case.excess(name) <= case.limit(name)).all() for name in case.names)
-        why = "Each row is within its allowance, and their mean too little off to name a fault"
-        none = "No single known fault explains most of the difference"
-        return f"{why if small else none}. Failed: {which}."
+        return f"No single known fault explains most of the difference. Failed: {which}."
     first, *rest = named
     symbol, text = first.name.removeprefix(WRONG), _sentence(first.text)
     alike = {WRONG + name for name in first.alike} | {*first.alike}
-    others = [each.text for each in rest if each.enough and each.name not in alike]
+    possible = [each for each in rest if each.enough and each.name not in alike]
+    tied = [each.text for each in possible if first.enough and each.rank > first.rank - TIED]
+    others = [each.text for each in possible if each.text not in tied]
+    if tied:
+        text = f"{'; or '.join([text, *tied])}: these data do not tell which"
     also = f" Also possible: {'; '.join(others)}." if others else ""
     if not first.enough:
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"

@@ -36,6 +36,7 @@ SHOWS: Mapping[str, Callable[[Scene], bool]] = {
         bool(scene.depths) or not (scene.drive.constant and scene.drive.rigid)
     ),
     "ball": lambda scene: not scene.indenter.per_width,
+    "line": lambda scene: scene.indenter.per_width,
     "": lambda _scene: True,
 }
 """Kinds of scenes in which a mistake can show."""
@@ -78,6 +79,15 @@ MISTAKES = (
     Mistake("friction by the normal in the middle",
             "friction is F_z times the slope in the middle of the contact patch, as for a single contact "
             "point: it is the integral of p h' (Eq. 15)", [Rule(central=True)]),
+    Mistake("sine of the slope in friction",
+            "friction is the integral of the pressure times the sine of the slope: it is that of p h', its "
+            "tangent, as p is a force per area of the plane (Eq. 15)", [Rule(sine=True)]),
+    Mistake("pressure along the surface",
+            "the pressure is summed along the surface, as p sqrt(1 + h'^2) dx: it is a force per area of the "
+            "plane, p dx (Eqs. 14 and 15)", [Rule(arc=True)]),
+    Mistake("circle instead of its parabola",
+            "the profile is a circle, R - sqrt(R^2 - x^2): theory has the parabola x^2/(2 R) in its place "
+            "(Eq. 3), which it is where x is much smaller than R", [Rule(circle=True)], "line"),
     Mistake("tension allowed at the trailing edge",
             "the foundation stays attached where it would pull (no peeling): an element must detach where "
             "its pressure vanishes (Eqs. 23, 24 and 33)", [Rule(tension=True)]),
@@ -164,7 +174,7 @@ def _fitted(
     between = PchipInterpolator(strengths, np.clip(table, -HUGE, HUGE), axis=0)
 
     def make(x: float) -> Pair | None:
-        if not strengths[0] - BEYOND <= x <= strengths[-1] + BEYOND:
+        if not max(strengths[0] - BEYOND, 0.0) <= x <= strengths[-1] + BEYOND:
             return None
         return changed(dict(zip(names, between(x), strict=True)))
 

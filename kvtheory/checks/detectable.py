@@ -5,8 +5,8 @@ of a parameter the change of theory over that of the parameter. All that is comp
 linear in the curves, except root mean squares.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+import math
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from kvtheory.checks.checklist import Mean, balances, initial_rest, lengths, steady_limit
-from kvtheory.checks.comparison_case import Case, NotMade
+from kvtheory.checks.checklist import balances, lengths, means_of
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.faults import FRICTION, parameters_of
 from kvtheory.checks.hypotheses import VELOCITY, Bench, bench, scaled_scene
 from kvtheory.checks.noise import means
@@ -29,33 +29,30 @@ QUANTITIES = {
     "mass": ("M", ("M",)), "velocity": ("V", ("V",)), "radius": ("R", ("R",)),
 }  # fmt: skip
 """Each quantity with its word, and the columns or symbols that stand for it, of which the first counts."""
-STEP, FAR = {False: 0.03, True: 0.2}, 2.0
-"""Change of a parameter for slopes, larger where theory is a simulation by elements; and from how many steps
-on a slope is taken again, at the error that was found."""
+STEP, SMALLEST_STEP = {False: 0.03, True: 0.2}, {False: 1e-6, True: 0.2}
+"""Change of a parameter for slopes, and the smallest one; larger where theory is a simulation by elements."""
+FAR, MOST_STEPS = 2.0, 12
+"""A slope is taken again, so often at most, where the error that is found is so many times the step, or less
+than its part: a force that jumps, as at a landing, is no line."""
 MOST, PRECISE = 1.0, 0.01
 """Largest error that is looked for: as much as the quantity itself; and precision of what is found."""
 
 Bounds = tuple[Callable[[Curves], Array], Array, Array, Array]
 
 
-def detectable(
-    case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]] = (initial_rest, steady_limit)
-) -> tuple[dict[str, float | None], str]:
+def detectable(case: Case) -> tuple[dict[str, float | None], str]:
     """Return the smallest relative error of each quantity that data which agree would have shown, and words.
 
     It is None for a quantity that is not in the data or the scene, or of which no error up to `MOST` shows.
     """
-    rows, bounds = bench(case), _bounds(case, means_of)
+    rows, bounds = bench(case, 2 * case.time.size), _bounds(case)
     powers = {each.symbol: each.powers for each in parameters_of(case.theory.scene)}
     found: dict[str, float | None] = {}
     shown, unseen = [], []
     for name, (word, ways) in QUANTITIES.items():
         x, way = MOST, next((way for way in ways if way in (*case.names, *powers)), None)
         if way in powers:
-            step = STEP[case.theory.by_elements]
-            x = _smallest(case, bounds, _slopes(case, rows, powers[way], step))
-            if FAR * step < x < np.inf:
-                x = _smallest(case, bounds, _slopes(case, rows, powers[way], min(x, MOST)))
+            x = _of_parameter(case, rows, bounds, powers[way])
         elif way:
             x = _smallest(case, bounds, {way: case.columns[way]})
         found[name] = x if x < MOST else None
@@ -68,7 +65,26 @@ def detectable(
     return found, text
 
 
-def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
+def _of_parameter(case: Case, rows: Bench, bounds: Bounds, powers: Mapping[str, float]) -> float:
+    """Return the smallest error of a parameter that shows, between a step that does not and one that does."""
+    step, least = STEP[case.theory.by_elements], SMALLEST_STEP[case.theory.by_elements]
+    hidden, shown, x = 0.0, np.inf, np.inf
+    for _ in range(MOST_STEPS):
+        x = _smallest(case, bounds, _slopes(rows, powers, step))
+        if step / FAR <= x <= FAR * step or (x == shown == np.inf):
+            return x
+        hidden, shown = (step, shown) if x > step else (hidden, step)
+        if shown <= FAR * hidden:
+            return math.sqrt(hidden * shown)
+        last, step = step, min(max(x, least), MOST)
+        if not hidden < step < shown:
+            step = math.sqrt(max(hidden, least) * min(shown, MOST))
+        if step == last:
+            return x
+    return x
+
+
+def _slopes(rows: Bench, powers: Mapping[str, float], step: float) -> dict[str, Array]:
     """Return the slope of each curve by a parameter; a velocity in the data would be as wrong as it is."""
     scene, times = rows.theory.scene, None
     if rows.series.curve and VELOCITY in powers:
@@ -81,11 +97,11 @@ def _slopes(case: Case, rows: Bench, powers: Mapping[str, float], step: float) -
     for name in rows.names:
         change = pair[1][name] - rows.now[name]
         seen = (np.abs(change) > TRIAL_RTOL * rows.theory.scales[name]) & (name not in given)
-        found[name] = np.interp(case.time, rows.time, np.where(seen, change, 0.0) / step)
+        found[name] = np.where(seen, change, 0.0) / step
     return found
 
 
-def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) -> Bounds:
+def _bounds(case: Case) -> Bounds:
     """Return what is linear in the curves, as a function of these; its values, and the least and greatest."""
     parts: list[tuple[Callable[[Curves], Any], Any, Any]] = []
     for name in case.names:
@@ -94,10 +110,7 @@ def _bounds(case: Case, means_of: Sequence[Callable[[Case], Sequence[Mean]]]) ->
             allowed = case.limit(name, n) * case.theory.scales[name]
             averages = partial(lambda curves, name, n: means(curves[name], n), name=name, n=n)
             parts.append((averages, band.low - allowed, band.high + allowed))
-    for of in means_of:
-        with suppress(NotMade):
-            made = (each for each in of(case) if each.weights.keys() <= case.columns.keys())
-            parts += [(each.off, -each.allowed, each.allowed) for each in made]
+    parts += [(each.off, -each.allowed, each.allowed) for each in means_of(case)]
     support, depth_0 = case.theory.scene.support, case.theory.static.depth
     free = not (case.series.curve or case.theory.scene.held)
     if free and {"depth", "normal_force"} <= {*case.names}:

@@ -21,10 +21,9 @@ from kvtheory.checks.hypotheses import (
     fixed,
     power_of_ten,
     scaled_scene,
-    times,
 )  # fmt: skip
 from kvtheory.checks.theory import CURVES, Array
-from kvtheory.scene import Scene
+from kvtheory.scene import Drive, Scene
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
 
 
@@ -107,10 +106,14 @@ MEASURED = "friction_coefficient", "normal_force", "friction_force", "spring_for
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
 """Remote initial guesses for the factor of a parameter: a diameter for a radius, and wrong units; the first
 two alone where theory is a simulation by elements, which takes longer."""
-LARGEST_FACTOR = 2e3
-"""Largest factor of a fitted parameter, up or down: no wrong unit is farther off."""
+LARGEST_FACTOR, SMALLEST_FACTOR = 2e3, 1e-9
+"""Largest factor of a fitted parameter, up or down: no wrong unit is farther off; smallest of a column."""
 DAMPING_SHARES = (0.01, 0.03, 0.1, 0.3, 1.0)
 """Initial guesses for a damper, as fractions of critical damping."""
+LEAST = {"dry friction": 0.0}
+"""Smallest number of what is added to a column, where a smaller one would be unphysical."""
+RAMPS = (0.01, 0.05, 0.2)
+"""Initial guesses for the time in which the velocity rises, in spans of the data."""
 NOTHING = 1e-6
 """Largest value, relative to the scale of a column, that counts as zero."""
 FRICTION = "friction_coefficient", "friction_force", "spring_force"
@@ -192,6 +195,14 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
             if left:
                 text = f"{which} is missing: {K_i:.4g} N/m^3 with {tau_i * 1e3:.4g} ms"
                 yield other(f"{which} missing", text, foundation=maxwell(K, left))
+    if scene.drive.constant and scene.drive.rigid and scene.start.at_rest:
+        text = "the velocity of the data rises to V within {1:.4g} ms: that of the scene jumps at the start"
+        V = bench.theory.final_velocity
+        yield Hypothesis(
+            "drive that starts slowly", text,
+            lambda time: bench.against(replace(scene, drive=Drive(history=[(0.0, 0.0), (time, V)]))),
+            np.log(RAMPS).tolist(), float(bench.time[-1]), log=True,
+        )  # fmt: skip
     if not scene.drive.rigid:
         text = (
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "
@@ -247,11 +258,11 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     """Fit scale, offset and drift of columns, and what may be added to the friction force."""
     theory, columns, now, friction = bench.theory, bench.columns, bench.now, "friction_force"
-    for title, factor, exact, pair in _factors(bench):
+    for title, factor, _, _ in _factors(bench):
         if power_of_ten(factor) in (None, 0) and factor > 0.0:
-            words = title.replace("_", " ")
-            text = f"{words}: {times(1.0 / exact)} theory, while the rest agrees"
-            yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
+            text = f"{title.replace('_', ' ')}: {{2}} theory, while the rest agrees"
+            make = partial(_multiplied, bench, GROUPS[title])
+            yield Hypothesis(f"scale of {title}", text, make, [1.0 / factor], least=SMALLEST_FACTOR)
     share = (bench.time - bench.time[0]) / (bench.time[-1] - bench.time[0])
     added = [
         (title, name, theory.scales[name], by, f"off by {{:.4g}} {theory.units.get(name, '')} {where}")
@@ -280,7 +291,9 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
 
     for title, name, unit, by, words in added:
         text, make = f"{name.replace('_', ' ')}: {words}", partial(without, name=name, by=by)
-        yield Hypothesis(f"{title} of {name}", text, make, [0.0], unit)
+        yield Hypothesis(
+            f"{title} of {name}", text, make, [0.0], unit, least=LEAST.get(title, -math.inf)
+        )
     failing = [n for n in bench.names if (bench.excess(n) > bench.limit(n)).any()]
     digits = {name: np.nan_to_num(bench.bands[name].rounding) for name in failing}
     if any(half.any() for half in digits.values()):
@@ -307,8 +320,13 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
             power = power_of_ten(factor)
             plain = power is None or (power == 0 and factor > 0.0)
             exact = factor if plain else math.copysign(10.0 ** (power or 0), factor)
-            scaled = {name: _scaled(bench, name, exact) for name in group}
-            yield title, factor, exact, ({**bench.columns, **scaled}, bench.now)
+            yield title, factor, exact, _multiplied(bench, group, 1.0 / exact)
+
+
+def _multiplied(bench: Bench, group: Sequence[str], factor: float) -> Pair:
+    """Return the data with the columns of a group divided by a factor that they hold, and theory."""
+    scaled = {name: _scaled(bench, name, 1.0 / factor) for name in group}
+    return {**bench.columns, **scaled}, bench.now
 
 
 def _scaled(bench: Bench, name: str, factor: float) -> Array:

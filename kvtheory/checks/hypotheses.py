@@ -4,11 +4,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.checks.allowances import Band
+from kvtheory.checks.checklist import means_of
 from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.theory import CURVES, TRIAL_RTOL, Array, Curves
 from kvtheory.fitting.least_squares import covariance, descend
@@ -28,6 +29,8 @@ LEFT_OVER = 1.5
 """Factor on the allowance for a fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP, FITTED = 1e-4, 1e-3, 1e-3
 """Precision of a fitted unknown, its step for slopes, and the part of a difference that a fit may leave."""
+MEAN_LEFT = 0.02
+"""Part of what a mean is off that a fault may leave beside its allowance, as few elements simulate faults."""
 FAR, WALKS = 0.7, 4
 """Largest change of a parameter in a descent, as a logarithm, for theory is slow far away; and most descents,
 each from where the one before reached that bound."""
@@ -63,6 +66,7 @@ class Hypothesis(NamedTuple):
     powers: Mapping[str, float] | None = None  # of the quantities that scale with the number
     factor: float | None = None  # reported without an unknown
     last: bool = False  # named after any other fault that is enough, as it fits nearly anything
+    least: float = -math.inf  # of the numbers that are physical
 
     def number(self, x: float) -> float | None:
         """Return what is reported for the unknown."""
@@ -76,8 +80,9 @@ class Hypothesis(NamedTuple):
         return self.text.format(number, number * self.shown, times(number)) + remark
 
     def pair(self, x: float) -> Pair | None:
-        """Return the data and theory for the unknown."""
-        return self.make(self.number(x) or 0.0)
+        """Return the data and theory for the unknown, or None where it is unphysical."""
+        number = self.number(x) or 0.0
+        return self.make(number) if number >= self.least else None
 
 
 def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) -> Hypothesis:
@@ -106,9 +111,25 @@ class Trial(NamedTuple):
     value: float = 0.0
 
 
+class Average(NamedTuple):
+    """A mean of all rows, by curve: its weights, what it is off and allowed, in SI.
+
+    Of the rows on which faults are tried it has `shares`, with values on lines between them, and stands for
+    `rows` of these.
+    """
+
+    weights: Mapping[str, float]
+    shares: Array
+    off: float
+    allowed: float
+    rows: int
+
+
 @dataclass(frozen=True)
 class Bench(Case):
-    """A case reduced to the rows and curves on which faults are tried."""
+    """A case reduced to the rows and curves on which faults are tried, and what means of all rows are off."""
+
+    means: tuple[Average, ...] = ()
 
     @cached_property
     def _units(self) -> tuple[Array, Array]:
@@ -125,14 +146,40 @@ class Bench(Case):
         """The largest difference that counts: exact data are far from theory in units of their allowances."""
         off = np.minimum(np.abs(self._gaps((self.columns, self.now))) / sum(self._units), HUGE)
         usual = float(np.quantile(off, SHARE_OF_VALUES, axis=1).max())
-        return min(max(LARGEST, FARTHER * usual), HUGE)
+        means = (math.sqrt(mean.rows) * abs(mean.off) / mean.allowed for mean in self.means)
+        return min(max(LARGEST, FARTHER * max(usual, *means, 0.0)), HUGE)
+
+    def _relative(self, gaps: Array) -> tuple[Array, Array]:
+        """Return differences relative to the range of theory and what is allowed outside; and their means."""
+        of = dict(zip(self.names, gaps, strict=True))
+        found = [
+            sum(by * (of[name] @ mean.shares) for name, by in mean.weights.items()) / mean.allowed
+            for mean in self.means
+        ]
+        return (gaps / sum(self._units)).reshape(-1), np.array(found)
+
+    @cached_property
+    def _unseen(self) -> Array:
+        """What the means of all rows are off beside those of these rows, over what is allowed."""
+        _, here = self._relative(self._gaps((self.columns, self.now)))
+        return np.array([mean.off / mean.allowed for mean in self.means]) - here
+
+    def off(self, pair: Pair) -> Array:
+        """Return how far means of all rows are off by a pair, over what is allowed."""
+        return np.asarray(self._unseen + self._relative(self._gaps(pair))[1])
 
     def ratios(self, pair: Pair | None) -> Array:
-        """Return the differences relative to the range of theory and what is allowed outside it."""
-        band, limit = self._units
+        """Return all differences relative to what is allowed; a mean counts as the rows it stands for."""
         if pair is None:
-            return np.full(limit.shape, self.largest)
-        return np.clip(self._gaps(pair) / (band + limit), -self.largest, self.largest)
+            return np.full(self._units[0].size + len(self.means), self.largest)
+        rows, _ = self._relative(self._gaps(pair))
+        of_means = self.off(pair) * [math.sqrt(mean.rows) for mean in self.means]
+        return np.clip(np.append(rows, of_means), -self.largest, self.largest)
+
+    def allows(self, pair: Pair) -> bool:
+        """Whether no row and no mean is off by more than is allowed."""
+        rows, _ = self._relative(self._gaps(pair))
+        return bool((np.abs(np.append(rows, self.off(pair))) <= 1.0).all())
 
     @cached_property
     def _noise(self) -> Array:
@@ -158,9 +205,10 @@ class Bench(Case):
         largest = np.quantile(outside, SHARE_OF_VALUES, axis=1).max()
         ratios = self.ratios(pair)
         score = math.sqrt(float(np.mean(ratios * ratios)))
-        return Trial(
-            hypothesis, score, bool(largest <= LEFT_OVER) and self._of_noise(outside * limit), x
-        )
+        left = [1.0 + MEAN_LEFT * abs(mean.off) / mean.allowed for mean in self.means]
+        means = bool((np.abs(self.off(pair)) <= left).all())
+        enough = bool(largest <= LEFT_OVER) and means and self._of_noise(outside * limit)
+        return Trial(hypothesis, score, enough, x)
 
     def _of_noise(self, outside: Array) -> bool:
         """Whether noise explains what lies outside the band and the smooth error, all values together."""
@@ -186,7 +234,7 @@ class Bench(Case):
         def residuals(points: Array) -> Array:
             for x in (x for x in points[:, 0].tolist() if x not in trials):
                 pair = hypothesis.pair(x)
-                trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair).reshape(-1)
+                trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair)
             return np.array([trials[x][1] for x in points[:, 0].tolist()])
 
         residuals(np.array(starts or [0.0])[:, None])
@@ -254,13 +302,13 @@ class Bench(Case):
         powers = {t.hypothesis.name: t.hypothesis.powers for t in trials if t.hypothesis.powers}
         fitted = powers.pop(best.hypothesis.name)
         scene = scaled_scene(self.theory.scene, fitted, math.exp(best.value))
-        here, scale = self.against(scene), self._units[0] + self._units[1]
+        here = self.against(scene)
 
         def slope(powers: Mapping[str, float]) -> Array:
             there = self.against(scaled_scene(scene, powers, math.exp(STEP)))
             if here is None or there is None:
-                return np.zeros(scale.size)
-            return np.asarray((self._gaps((there[1], here[1])) / scale).reshape(-1) / STEP)
+                return np.zeros(self._units[0].size + len(self.means))
+            return np.concatenate(self._relative(self._gaps((there[1], here[1])))) / STEP
 
         own, alike = slope(fitted), []
         for name, other in ((name, slope(each)) for name, each in powers.items()):
@@ -275,13 +323,21 @@ def deviation(*slopes: Array) -> float:
     return math.sqrt(slopes[0].size * float(covariance(np.stack(slopes, axis=1))[0, 0]))
 
 
-def bench(case: Case) -> Bench:
-    """Choose the rows on which faults are tried."""
+def bench(case: Case, most: int = ROWS) -> Bench:
+    """Choose the rows on which faults are tried, at most so many."""
     count, first = case.time.size, int(np.searchsorted(case.time, 0.0))
     rows = np.unique(np.concatenate([
-        np.linspace(0, count - 1, min(count, ROWS // 2)).round().astype(int),
-        np.minimum(first + np.arange(ROWS // 2), count - 1),
+        np.linspace(0, count - 1, min(count, most // 2)).round().astype(int),
+        np.minimum(first + np.arange(most // 2), count - 1),
     ]))  # fmt: skip
+
+    def shares(of: Any) -> Array:
+        """Return how much the rows count in a mean, if what is between them is on a line."""
+        at = np.interp(np.flatnonzero(of), rows, np.arange(rows.size))
+        near = np.floor(at).astype(int)
+        parts = ((near, near + 1.0 - at), (np.minimum(near + 1, rows.size - 1), at - near))
+        return np.asarray(sum(np.bincount(k, by, rows.size) for k, by in parts) / at.size)
+
     drive = "velocity"
     drives = drive in case.names and bool((case.excess(drive) > case.limit(drive)).any())
     cut = {field.name: getattr(case, field.name) for field in fields(case)} | {
@@ -290,6 +346,12 @@ def bench(case: Case) -> Bench:
         "now": {name: values[rows] for name, values in case.now.items()},
         "bands": {n: Band(*(part[rows] for part in band)) for n, band in case.bands.items()},
         "edge_force": case.edge_force[rows],
+        "means": tuple(
+            Average(
+                m.weights, shares(m.rows), m.off(case.columns), m.allowed, int(m.rows[rows].sum())
+            )
+            for m in means_of(case)
+        ),
     }
     return Bench(**cut)
 

@@ -3,7 +3,6 @@
 It is a case whose "time" is the velocity, so that faults are tried as for a time series.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
@@ -16,9 +15,9 @@ from kvtheory.checks import comparing
 from kvtheory.checks.allowances import Band, Resolution
 from kvtheory.checks.checklist import (
     RELATIVE,
-    Mean,
     Measured,
     Row,
+    column_means,
     judge,
     largest,
     root_mean_square,
@@ -27,7 +26,7 @@ from kvtheory.checks.checklist import (
 from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.contact_rules import mistakes
 from kvtheory.checks.detectable import detectable
-from kvtheory.checks.noise import SURE, noise, rounded
+from kvtheory.checks.noise import noise, rounded
 from kvtheory.checks.theory import CURVES, Array, Theory
 from kvtheory.checks.trial_elements import steady_changes
 from kvtheory.fitting.series import Series
@@ -91,7 +90,7 @@ def compare(theory: Theory, series: Series, tolerance: float) -> Comparison:
     )
     text, explanations = comparing.diagnose(case, checks, FAMILIES)
     known = comparing.verdict(checks)
-    limits, shown = ({}, "") if known == "disagrees" else detectable(case, (_means,))
+    limits, shown = ({}, "") if known == "disagrees" else detectable(case)
     text += (STEADY_ONLY if known == "agrees" else "") + shown
     columns = {"velocity": series.time, **{name: series.columns[name] for name in names}}
     return Comparison(
@@ -126,17 +125,6 @@ def _loudest(case: Case) -> tuple[float, float, str]:
     return loud, case.tolerance * LARGEST_SCATTER, ""
 
 
-def _means(case: Case) -> list[Mean]:
-    """Return the mean of each column."""
-    every, found = np.ones(case.time.size, dtype=bool), []
-    for name in case.names:
-        band = case.bands[name]
-        random = SURE * rms(band.noise) / math.sqrt(case.time.size)
-        allowed = case.tolerance * (rms(band.systematic) + random)
-        found.append(Mean({name: 1.0}, every, float(case.now[name].mean()), allowed))
-    return found
-
-
 def _mean(case: Case, name: str) -> Measured:
     """Compare the mean of a column."""
-    return worst_mean(case, lambda case: [each for each in _means(case) if name in each.weights])
+    return worst_mean(case, lambda case: [m for m in column_means(case) if name in m.weights])

@@ -23,7 +23,10 @@ false alarm in a thousand runs of twenty checks. And the uncertainty of a standa
 relative to it, in 1/sqrt(n)."""
 SURE = 4.5
 """Standard deviations that a normal error exceeds once in 150,000."""
-FEW_DIGITS = (2, 3, 4, 5)
+RARE_FLIPS, NORMAL_RARE = 0.95, 1.96
+"""Quantile by which noise is told that flips the last digit of fewer than half of the rows; and the magnitude
+that a standard normal variate has there."""
+FEW_DIGITS = (2, 3, 4, 5, 6)
 """Digits to which a column may be rounded; more do not matter."""
 SEVERAL, ON_GRID, DISTINCT = 4, 1e-3, 1e-9
 """Fewest distinct values that show a grid; accepted distance from it, relative to its step; and smallest
@@ -59,12 +62,13 @@ def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
     return gap / np.sqrt(1.0 + w * w + (1.0 - w) ** 2), known[use + 1]
 
 
-def noise(time: Array, residual: Array, curve: Array) -> Array:
+def noise(time: Array, residual: Array, curve: Array, half: Array | float = 0.0) -> Array:
     """Return sigma of the random part of a residual for each value, from its differences to its neighbours.
 
     The median of magnitudes is robust against jumps. Sigma is modelled as constant, proportional to the
     curve, or mixed; the largest of the most likely (by Laplace's law) and those hardly less likely is used,
-    as few values show the noise where the curve is large.
+    as few values show the noise where the curve is large. Where most values are equal, it is that of those
+    which differ, up to their last digit, of which `half` is given.
     """
     gap, rows = gaps(time, residual)
     size = np.nan_to_num(np.abs(curve))
@@ -81,10 +85,13 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
             sigmas.append((float(np.sum(np.log(inner) + gap / inner)), sigma * shape))
     likeliest = min((unlikely for unlikely, _ in sigmas), default=0.0)
     found = [sigma for unlikely, sigma in sigmas if unlikely <= likeliest + DOUBT]
-    return np.max(found, axis=0) if found else np.zeros_like(residual)
+    if found:
+        return np.asarray(np.max(found, axis=0))
+    rare = float(np.quantile(gap, RARE_FLIPS)) / NORMAL_RARE
+    return np.minimum(rare, 2.0 * half) * np.ones_like(residual)
 
 
-def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Array:
+def rounded(values: Array, fewest: float = FEW_DIGITS[0], grid: bool = True) -> Array:
     """Return the rounding error: half the step of a grid that all values lie on, or half their last digit."""
     distinct = np.unique(values[np.isfinite(values)])
     steps = np.diff(distinct)
@@ -99,6 +106,14 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0], grid: bool = True) -> Ar
         if np.nanmax(off, initial=0.0) <= SAME:
             return np.asarray(np.maximum(half, 0.5 * last))
     return np.full_like(values, half)
+
+
+def digits(values: Array) -> float:
+    """Return with how many digits the largest value is written, infinite if with more than count."""
+    largest, half = float(np.nanmax(np.abs(values))), float(rounded(values, grid=False).max())
+    return (
+        math.floor(math.log10(largest)) + 1 - math.log10(2.0 * half) if largest * half else math.inf
+    )
 
 
 def time_rounding(time: Array) -> Array:

@@ -32,8 +32,8 @@ MOST_RUNS = 10.0
 """Longest series where theory is a simulation by elements, in durations of the run."""
 SHALLOWEST = 1e-3
 """Depth that stands for that of a vanishing contact, in static depths."""
-NO_VELOCITY = 1e-9
-"""Smallest scale of the velocity, in a_0/tau."""
+NO_VELOCITY, SLOPE = 1e-9, 1e-3
+"""Smallest scale of the velocity, in a_0/tau; and change of a depth for slopes, relative to it."""
 
 
 def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
@@ -155,6 +155,17 @@ class Theory:
         support = Fixed(self.scene.depths[-1][1]) if self.scene.depths else self.scene.support
         drive = Drive(self.final_velocity)
         return self.methods.steady(replace(self.scene, support=support, drive=drive, start=REST))
+
+    @cached_property
+    def slopes(self) -> tuple[float, float]:
+        """The slopes of F_z and of the magnitude of F_x by the depth in steady sliding, in N/m per m."""
+        depths = float(self.steady_state.depth) * np.array([1.0 - SLOPE, 1.0 + SLOPE])
+        drive = Drive(self.final_velocity)
+        there = replace(self.scene, support=Fixed(depths), drive=drive, start=REST)
+        state, span = self.methods.steady(there), depths[1] - depths[0]
+        forces = state.load, np.abs(state.friction_force)
+        K_z, K_x = (float(np.diff(force)[0] / span) for force in forces)
+        return K_z, K_x
 
     @cached_property
     def rates(self) -> Rates | None:

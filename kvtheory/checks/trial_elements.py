@@ -35,6 +35,9 @@ class Rule(NamedTuple):
     hunt_crossley: float = 0.0  # factor on the damping C u/delta_0 of the law of Hunt and Crossley
     friction: float = 1.0  # factor on h' V in the pressure from which friction is computed
     central: bool = False  # friction is F_z times the slope in the middle of the patch
+    sine: bool = False  # friction is that of the sine of the slope
+    arc: bool = False  # pressure acts on the length of the surface
+    circle: bool = False  # the profile is a circle, not its parabola
     front: float = 1.0  # weight of elements before the lowest point
     back: float = 1.0  # weight of those behind it
     lost: float = 0.0  # part of the half length without elements at the leading edge
@@ -67,12 +70,12 @@ POINTS, HALVINGS = 24, 24
 """Most velocities at which steady sliding is computed, and halvings of the interval of its depth."""
 SHALLOWEST, DEEPEST = 1e-3, 4.0
 """Ends of that interval, in static depths."""
-STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "front", "back", "lost",
-          "flat")  # fmt: skip
+STEADY = ("slide_rate", "tension", "hunt_crossley", "friction", "central", "sine", "arc", "circle", "front",
+          "back", "lost", "flat")  # fmt: skip
 EVEN = "depth", "normal_force", "peak_pressure"
 """Fields of a rule that affect steady sliding; and the curves that do not change sign with the velocity."""
-SLOWEST, TINY = 1e-9, 1e-300
-"""Lowest speed on arms, in a_0/tau; and the divisor if the force vanishes."""
+SLOWEST, TINY, STEEPEST = 1e-9, 1e-300, 1e-2
+"""Lowest speed on arms, in a_0/tau; the divisor if the force vanishes; and least 1 - (x/R)^2 of a circle."""
 IMPLICIT = 0.52
 """Weight of the end of a step; slightly more than the trapezoidal rule, for damping."""
 
@@ -154,6 +157,11 @@ class Elements:
         at = self.places[near] + (moved[:1] if rigid else moved)
         slope = at / R
         g = depth - self.heights - 0.5 * at * slope
+        if (k := having.circle).size:
+            slope = np.broadcast_to(slope, g.shape).copy()
+            cosine = np.sqrt(np.maximum(1.0 - slope[k] ** 2, STEEPEST))
+            g[k] += R * (0.5 * slope[k] ** 2 - (1.0 - cosine))
+            slope[k] /= cosine
         rise = rule.depth_rate * rate - rule.slide_rate * speed * slope
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         inclined = np.abs(slope) * self.length
@@ -165,6 +173,8 @@ class Elements:
             if k.size:
                 counts = (x[k] < 0.0) == (weight is rule.front)
                 area[k] *= np.where(counts, weight[k], 1.0)
+        if (k := having.arc).size:
+            area[k] *= np.sqrt(1.0 + slopes[k] ** 2)
         if (k := having.lost).size:
             reach = np.sqrt(2.0 * R * np.maximum(depth[k], 0.0))
             lost = (np.abs(x[k]) > (1.0 - rule.lost[k]) * reach) & (x[k] * speed[k] < 0.0)
@@ -186,6 +196,8 @@ class Elements:
         lift = normal
         if rubs.size:
             friction[rubs] = -_total(rubbed)
+        if (k := having.sine).size:
+            friction[k] = -_total(force[k] * slopes[k] / np.sqrt(1.0 + slopes[k] ** 2))
         if (k := having.stale).size:
             missed = rule.stale[k] * (g[k] < self.surface[k][:, :, near])
             lift = normal.copy()
