@@ -55,7 +55,7 @@ SLOW = {
     "plots.failures.draw_stability": lambda *_: Figure(),
     "charts.collection.measure": lambda *_, **__: (),
     "plots.work_precision.save_work_precision": lambda *_: None,
-    "plots.files.save_figure": lambda *_: None,
+    "plots.files.save_picture": lambda *_, **__: None,
 }
 """What takes long, and what stands for it."""
 

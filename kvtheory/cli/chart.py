@@ -179,14 +179,15 @@ def paper_command(name: str) -> None:
     @console.overwrite_option
     def draw(scene: str | None, overrides: Sequence[str], style: Path | None, output: Path) -> None:
         with console.progress_bar(name):
-            from kvtheory.plots.files import read_style, save_figure
+            from kvtheory.plots.files import data_csv, read_style, save_picture
             from kvtheory.scene import load_scene
 
-            own = read_style(style) if style else {}
+            own = read_style(style) if style else None
             figure = import_module(f"kvtheory.plots.paper.{name}")
             data = figure.compute(load_scene(scene, overrides) if scene or overrides else None)
-            save_figure(data, figure.draw, [output], table := output.with_suffix(".csv"), own)
-        click.echo(f"{output}\n{table}")
+            beside = data_csv(output, data.columns)
+            save_picture(lambda: figure.draw(data), output, beside=beside, style=own)
+        click.echo("\n".join(map(str, (output, *beside))))
 
 
 for _name in PAPER:
