@@ -68,8 +68,7 @@ def _article(found: Finding) -> str:
         return figure
 
     entry = found.entry
-    # No two pictures of the page may share an id.
-    picture = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{entry.key}-", inline(draw))
+    picture = inline(draw, f"{entry.key}-")
     numbers = "".join(
         f'<div class="{role}"><span>{look["label"]}</span><b>{_text(shown(found, role))}</b></div>'
         for role, look in LOOKS.items()

@@ -7,6 +7,7 @@ import logging
 import math
 import os
 import platform
+import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -180,13 +181,13 @@ def environment() -> dict[str, str | int]:
     }
 
 
-def inline(draw: Callable[[], Any]) -> str:
-    """Return the figure that `draw` makes as an SVG element."""
+def inline(draw: Callable[[], Any], key: str) -> str:
+    """Return the figure that `draw` makes as an SVG element, whose ids begin with a key of its own."""
     with mpl.rc_context({**STYLE}):
         text = io.StringIO()
         draw().savefig(text, format="svg", metadata={"Date": None})
     drawn = text.getvalue()
-    return drawn[drawn.index("<svg") :]
+    return re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{key}", drawn[drawn.index("<svg") :])
 
 
 def template(name: str) -> str:
