@@ -7,8 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from kvtheory.plots import STYLE
-from kvtheory.plots.files import save_figure
+from kvtheory.plots.files import data_csv, save_picture
 from kvtheory.plots.style import Picture
 
 Columns = Mapping[str, Any]
@@ -24,9 +23,9 @@ def produce(
     data = compute()
     directory.mkdir(parents=True, exist_ok=True)
     paths = [directory / f"{name}.{suffix}" for suffix in FORMATS]
-    table = directory / f"{name}.csv"
-    save_figure(data, draw, paths, table, STYLE)
-    return [*paths, table]
+    beside = data_csv(directory / f"{name}.csv", data.columns)
+    save_picture(lambda: draw(data), *paths, beside=beside)
+    return [*paths, *beside]
 
 
 def run(name: str, compute: Callable[[], Any], draw: Callable[[Any], Figure]) -> None:

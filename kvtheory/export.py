@@ -9,8 +9,6 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-import numpy as np
-
 Columns = Mapping[str, tuple[Any, str]]
 """Values and SI unit of each column by name; `time` first in a time series."""
 SERIES_SUFFIXES = (".csv", ".nc")
@@ -24,6 +22,7 @@ def above(module: str) -> Any:
 
 def save_csv(path: Path, columns: Columns) -> None:
     """Write columns as CSV (RFC 4180) with units in the header; a value that does not exist is empty."""
+    import numpy as np  # after the command has chosen its threads
 
     def write(part: Path) -> None:
         with part.open("w", newline="", encoding="utf-8") as file:
@@ -38,6 +37,8 @@ def save_csv(path: Path, columns: Columns) -> None:
 
 def dataset(columns: Columns, attributes: Mapping[str, str]) -> Any:
     """Return columns as an `xarray.Dataset` with units: over time, or over dimensions without a name."""
+    import numpy as np
+
     data = {}
     for name, (values, unit) in columns.items():
         dims = ["time"] if "time" in columns else [f"dim_{i}" for i in range(np.ndim(values))]

@@ -18,7 +18,7 @@ import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.results import STEADY_UNITS
 from tests import REFUSALS
-from tests.commands import printed, refused, run
+from tests.commands import printed, python, refused, run
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ SLOW = {
     "plots.failures.draw_stability": lambda *_: Figure(),
     "charts.collection.measure": lambda *_, **__: (),
     "plots.work_precision.save_work_precision": lambda *_: None,
-    "plots.files.save_figure": lambda *_: None,
+    "plots.files.save_picture": lambda *_, **__: None,
 }
 """What takes long, and what stands for it."""
 
@@ -523,3 +523,27 @@ def test_an_interrupt_during_the_imports_is_a_message_too():
         env={"PATH": os.defpath, "PYTHONPATH": os.pathsep.join(sys.path)},
     )  # fmt: skip
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "kvtheory: interrupted\n")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("sweep", "--quantity", "depth,,load", "--over", "drive.velocity=1 m/s", "-o", "s.csv"),
+        ("sweep", "--over", "drive.velocity=1 mm/s,,2 mm/s", "-o", "s.csv"),
+        ("solve", "--quantity", "depth,,load"),
+        ("transient", "--at", "1 ms,,2 ms"),
+        ("chart", "failures", "--only", "hop,,gap"),
+        ("chart", "work-precision", "--standard", "hop,,rubber"),
+        ("derive", "--only", "eq27,,F3"),
+        ("fit", "--data", __file__, "--free", "foundation.stiffness,,indenter.radius"),
+    ],
+)
+def test_an_empty_item_of_a_list_is_a_mistake(words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    refused(words, ["item 2 is empty; expected at least one item, and one comma between two"])
+    assert not list(tmp_path.iterdir())
+
+
+def test_nothing_numerical_is_imported_before_a_command_has_chosen_its_threads():
+    code = "import sys, kvtheory.cli.chart; print(sys.modules.keys() & {'numpy', 'scipy'})"
+    assert python("-c", code).strip() == "set()"

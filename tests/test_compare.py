@@ -636,6 +636,10 @@ def test_the_report_can_be_read_on_a_phone(tmp_path, sound):
         browser.screen(390, 844, phone=True)
         browser.open(report)
         assert browser.run("document.documentElement.scrollWidth") == 390
+        assert not browser.run(
+            "[...document.querySelectorAll('body *')].filter(e => e.scrollWidth > e.clientWidth + 1 &&"
+            " e.tagName !== 'PRE' && getComputedStyle(e).overflowX !== 'visible').length"
+        )
         rows = browser.run(
             "[...document.querySelectorAll('tr')].map(row => [row, ...row.cells]"
             ".map(e => e.getBoundingClientRect()).map(r => [r.left, r.right, r.top, r.bottom]))"

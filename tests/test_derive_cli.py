@@ -87,8 +87,9 @@ def test_a_range_is_of_one_kind_and_both_its_ends_are_known():
     ("arguments", "message"),
     [
         (["--only", "eq333"], "unknown label 'eq333'; the nearest is 'eq33'"),
-        (["--format", ""], "expected at least one name"),
-        (["--format", ","], "expected at least one name"),
+        (["--format", ""], "is empty; expected at least one item"),
+        (["--format", ","], "is empty; expected at least one item"),
+        (["--format", "tex,,html"], "item 2 is empty"),
         (["--format", "pfd"], "unknown format 'pfd'; the nearest is 'pdf'"),
         (["-o", "/proc/nothing/here"], "cannot write to"),
         (["-o", f"{__file__}/out"], "cannot write to"),
@@ -274,6 +275,7 @@ def test_markdown_and_latex_are_tame(tmp_path):
     mine = tmp_path / "中\u202e.toml"
     mine.write_text('V = "v"', encoding="utf-8")
     run("--only", "26,30", "--notation", str(mine), "--format", "md,tex,bib", "-o", str(tmp_path))
+    assert "--only 26,30" in (tmp_path / "derivations.md").read_text()
     text = (tmp_path / "derivations.md").read_text(encoding="utf-8")
     assert not re.search(r"<(?!https://doi)", re.sub("`.*`", "", text))
     assert r"\lt" in text

@@ -6,6 +6,7 @@ import math
 import runpy
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import generators
 import matplotlib as mpl
@@ -19,7 +20,7 @@ from figures import drawing, onset_maps, work_precision
 from figures.__main__ import FIGURES
 from kvtheory.charts import collection, stability
 from kvtheory.charts.work_precision import Effort
-from kvtheory.plots import STYLE, plot_asymptote_errors, plot_steady
+from kvtheory.plots import STYLE, files, plot_asymptote_errors, plot_steady
 from kvtheory.plots.paper import fig5, fig6, table2
 from kvtheory.scene.static_state import StaticState
 from tests.commands import python, refused, run
@@ -30,7 +31,7 @@ BRIEF = (
     (stability, "QUICK_POINTS", (3, 3)),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
     (work_precision, "SCENES", ("table-1",)),
-    (drawing, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
+    (files, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
 )
 """Coarse where it takes minutes. `test_charts_stability` and `test_charts_work_precision` test the charts."""
 KINDS = {"fig3": list(drawing.FORMATS), "stability_map": (), "work_precision": ()}
@@ -47,7 +48,7 @@ def made(site):
         for name in FIGURES:
             script = importlib.import_module(f"figures.{name}")
             data = script.compute()
-            with mpl.rc_context(drawing.STYLE):
+            with mpl.rc_context(files.STYLE):
                 drawn = script.draw(data)
             if name in gallery.DRAWN:
                 drawn.set_layout_engine("none")  # the site does not show it: nothing need fit
@@ -303,12 +304,29 @@ def test_a_figure_in_ones_own_style_with_its_data(tmp_path):
     assert (tmp_path / "t.csv").read_text().startswith("quantity,fixed,dead-weight\n")
     (tmp_path / "t.csv").write_text("a,b\n1,2\n")
     refused(words, ["t.csv", "is not what this command writes"])
-    style.write_text("figure.figsize: 6, 3")
-    refused(
-        (*words[:-1], str(tmp_path / "u.png")),
-        ["the table needs a figure.figsize of", "in at least"],
-    )
-    assert not (tmp_path / "u.png").exists()
+
+
+@pytest.mark.parametrize("width", [3.3, 3.5, 5.0, 7.0])
+def test_a_table_fits_the_column_that_the_style_gives_it(width, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(files, "_save", lambda figure, *_: drawn.append(figure))
+    monkeypatch.setattr(files, "replace_files", lambda writers: next(iter(writers.values()))(None))
+    data, style = table2.compute(OTHER), {"figure.figsize": (width, 3.0)}
+    files.save_picture(lambda: table2.draw(data), Path("x.png"), style=style)
+    (table,) = drawn[0].axes[0].tables
+    assert table.get_window_extent().width <= width * drawn[0].dpi  # this places its cells
+    cells = [each.get_window_extent() for each in table.get_celld().values()]
+    assert min(each.x0 for each in cells) >= 0.0
+    assert max(each.x1 for each in cells) <= width * drawn[0].dpi
+    assert 5.0 <= table[0, 0].get_fontsize() <= 9.0
+
+
+def test_a_table_that_would_be_illegible_is_refused(tmp_path):
+    style = tmp_path / "mine.mplstyle"
+    style.write_text("figure.figsize: 1.5, 3")
+    words = "chart", "table2", "--style", style, "-o", tmp_path / "u.png"
+    refused(words, ["the table needs a figure.figsize of", "in at least"])
+    assert list(tmp_path.iterdir()) == [style]
 
 
 @pytest.mark.parametrize(
@@ -377,7 +395,7 @@ def test_a_failed_picture_leaves_nothing_behind(tmp_path):
         raise RuntimeError("no ink")
 
     with pytest.raises(RuntimeError, match="no ink"):
-        drawing.produce("broken", lambda: None, draw, tmp_path / "out")
+        drawing.produce("broken", lambda: SimpleNamespace(columns={}), draw, tmp_path / "out")
     assert not list(tmp_path.rglob("*.*"))
 
 

@@ -176,6 +176,14 @@ def test_what_cannot_be_read_is_said_of_the_row_that_matters(tmp_path, name):
         moduli.read(written(tmp_path, text))
 
 
+def test_all_cells_without_a_number_are_reported_together(tmp_path):
+    text = HEAD + "1,2,3\n2,x,y\n3,,1\n1,2,3,4\n"
+    with pytest.raises(kv.SceneError) as caught:
+        moduli.read(written(tmp_path, text))
+    found = [re.search(r": (line \d+)", message)[1] for message in caught.value.problems]
+    assert found == ["line 3", "line 3", "line 4", "line 5"]
+
+
 def test_numbers_above_the_header_are_noted(tmp_path):
     text = "p,q\n1,2\n3,4\n5,6\n\n" + HEAD + PLAIN
     notes = moduli.read(written(tmp_path, text)).notes

@@ -348,6 +348,9 @@ def test_a_pair_of_rates_is_one_motion_in_files_and_pictures(tmp_path):
     upper, lower = some.plot().axes
     assert upper.lines[0].get_ydata() == pytest.approx(some.growth_rate)
     assert lower.lines[0].get_ydata() == pytest.approx(some.growth_frequency)
+    table = kv.stability(over={"drive.velocity": [[0.01, 0.1], [0.2, 0.3]], "drive.stiffness": 1e6})
+    with pytest.raises(ValueError, match=r"drive\.velocity form a table, not a list; draw one row"):
+        table.plot()
     with pytest.raises(ValueError, match="there are no rates to draw"):
         kv.stability(quantity="stable").plot()
 

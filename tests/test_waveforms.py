@@ -149,6 +149,18 @@ def test_a_table_that_is_none_is_refused_in_one_line(tmp_path, text, words):
     assert len(line) < 400
 
 
+def test_mistakes_of_a_table_are_reported_together_under_the_key_of_the_scene(tmp_path):
+    path = tmp_path / "drive.csv"
+    path.write_text("t [ms],V [mm/s]\n0,fast\n1,\n2,3\n")
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(overrides=[f"drive.file={path}"])
+    first, second = caught.value.problems
+    assert first.startswith("drive.file")
+    assert second.startswith("drive.file")
+    assert ': line 2, column "V [mm/s]": "fast" is not a number' in first
+    assert ': line 3, column "V [mm/s]": the cell is empty' in second
+
+
 def test_a_long_swing_is_followed_like_a_short_one():
     wave = kv.Sine(amplitude=0.1, frequency=900.0, mean=0.03)
     motion = kv.Drive(waveform=wave).motion(2.0, 1e-3)

@@ -124,7 +124,14 @@ def steady_methods() -> list[Method]:
         _package("exact, 10 000 at once", None, scenes=MANY),
         _package("quadrature", "quadrature"),
         Method("brentq over quad", "tolerance", TOLERANCES, "evaluations", brentq_over_quad),
-        Method(f"elements, {DEFAULT}", "elements per a_0", DENSITIES, "element updates", _elements),
+        Method(
+            f"elements, {DEFAULT}",
+            "elements per a_0",
+            DENSITIES,
+            "element updates",
+            _elements,
+            growth=0.5,
+        ),
     ]
 
 
@@ -212,18 +219,19 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
 
 def measure(
     jobs: Sequence[Job], *, quick: bool, progress: Progress = silent,
-    announce: Callable[[float], object] = lambda seconds: None,
+    announce: Callable[[str, float], object] = lambda words, seconds: None,
 ) -> list[Chart]:  # fmt: skip
     """Make the charts one after the other, so that nothing disturbs the timings.
 
-    `announce` is given the time (s) that is left, when the cheapest settings of all have been run.
+    `announce` is given words and the time (s) of all, and of what is left after the cheapest settings.
     """
     effort = QUICK if quick else FULL
     measured = [Measurement(problem, methods, effort) for problem, methods in jobs]
+    announce("measuring takes about", sum(each.first_forecast() for each in measured))
     for done, each in enumerate(measured):
         each.begin(_part(progress, 0.3 * done / len(jobs), 0.3 / len(jobs)))
     times = [each.forecast() for each in measured]
-    announce(sum(times))
+    announce("the cheapest settings are done; the others take about", sum(times))
     charts, before, whole = [], 0.3, sum(times) or 1.0  # nothing is left where all timed out
     for each, seconds in zip(measured, times, strict=True):
         share = 0.7 * seconds / whole

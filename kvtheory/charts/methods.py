@@ -20,6 +20,8 @@ from kvtheory.models.slow_manifold.start import start
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
 TWO_STATES = "RK45", "DOP853", "Radau", "BDF", "LSODA"
 """The solvers of SciPy that take the two states."""
+STIFF = {"Radau": 0.22, "BDF": 0.14}
+"""Powers of the tolerance with which a run takes longer, of methods of low order."""
 DENSITIES = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 """Elements per static half length."""
 LINES_RTOL = 1e-6
@@ -38,14 +40,17 @@ def transient_methods() -> dict[str, Method]:
     found = [
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
                _starts_forward),
-        *(Method(f"continuum, {how}", "rtol", TOLERANCES, "evaluations", partial(by_continuum, fast=fast))
+        *(Method(f"continuum, {how}", "rtol", TOLERANCES, "evaluations", partial(by_continuum, fast=fast),
+                 cost=0.05 if fast else None)
           for how, fast in (("interpreted", False), ("compiled", True)) if not fast or available()),
         *(Method(f"two states, {name}", "rtol", TOLERANCES[:-1], "evaluations",
-                 partial(by_two_states, method=name, solve=solve), suits=lambda problem: problem.two_states)
+                 partial(by_two_states, method=name, solve=solve), suits=lambda problem: problem.two_states,
+                 growth=STIFF.get(name, 0.1))
           for name, solve in solvers.items()),
-        Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_from_rest),
+        Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_from_rest,
+               growth=2.8, cost=60.0),
         *(Method(f"elements, {name}", "elements per a_0", DENSITIES, "element updates",
-                 partial(by_elements, scheme=name)) for name in SCHEMES),
+                 partial(by_elements, scheme=name), growth=0.5, cost=0.1) for name in SCHEMES),
     ]  # fmt: skip
     return {method.name: method for method in found}
 

@@ -24,8 +24,8 @@ MISSED, WRONG, TIMED_OUT = "missed event", "wrong but reported success", "timed 
 REASONS = "unstable", "not converged", TIMED_OUT, "refused", MISSED, WRONG
 CHEAPEST = 3
 """Settings of each method, before every nth is taken, by whose times the whole chart is forecast."""
-GROWTH = 0.1
-"""Power of the tolerance with which a run takes longer: explicit methods of high order, stiff ones of low."""
+BRIEFLY = 0.4
+"""Time (s) that the first forecast may take."""
 
 
 class TimedOutError(Exception):
@@ -83,6 +83,8 @@ class Method:
     )
     suits: Callable[[Any], bool] = lambda problem: True
     scenes: int = 1  # solved at once
+    growth: float = 0.1  # power of the parameter with which a run takes longer; measured on Table 1
+    cost: float | None = None  # of the cheapest setting, over the longest of those with None
 
 
 @dataclass(frozen=True)
@@ -167,6 +169,28 @@ class Measurement:
             for m in self.methods
         ]
 
+    def first_forecast(self) -> float:
+        """Return the time (s) of the whole chart, from one run of the cheapest setting of some methods.
+
+        They need no compiling, and are ended after `BRIEFLY` in all. The reference takes about as long as the
+        dearest run.
+        """
+        clock = Clock(BRIEFLY)
+        times = []
+        for method in self.methods:
+            began = clock.elapsed
+            if method.cost is None:
+                with np.errstate(all="ignore"), suppress(*REASON_OF):
+                    method.solve(self.problem, method.values[0], clock)
+            times.append(clock.elapsed - began)
+        longest = max(times, default=0.0)
+        for method, one, seconds in zip(self.methods, self.series, times, strict=True):
+            cheapest = seconds if method.cost is None else method.cost * longest
+            one.points[0].first = min(cheapest, self.effort.longest)
+        expected = self._expected(1)
+        whole = sum(one[0] + sum(one) for one in expected) + max(map(max, expected), default=0.0)
+        return whole + self._repeats(expected)
+
     def begin(self, progress: Progress) -> None:
         """Solve the reference; call each method, which may compile, and run its cheapest settings."""
         self.right = self.problem.reference()
@@ -184,15 +208,24 @@ class Measurement:
 
     def forecast(self) -> float:
         """Return the time (s) that `finish` will take, from the times of the cheapest settings."""
-        effort, left, repeated = self.effort, 0.0, []
-        for one in self.series:
-            expected = expected_times(one, self.begun, effort.longest)
-            left += sum(expected[self.begun :])
-            pairs = zip(one.points, expected, strict=True)
+        expected = self._expected(self.begun)
+        return sum(sum(one[self.begun :]) for one in expected) + self._repeats(expected)
+
+    def _expected(self, known: int) -> list[list[float]]:
+        """Return the time of each setting of each method, of which some are known."""
+        longest = self.effort.longest
+        pairs = zip(self.methods, self.series, strict=True)
+        return [expected_times(method, one, known, longest) for method, one in pairs]
+
+    def _repeats(self, expected: Iterable[Iterable[float]]) -> float:
+        """Return the time (s) of all repeats, from that of each run."""
+        effort, repeated = self.effort, []
+        for one, times in zip(self.series, expected, strict=True):
+            pairs = zip(one.points, times, strict=True)
             repeated += [t for p, t in pairs if 0.0 < t < effort.longest and not p.reason]
         once = sum(repeated)
         again = (effort.repeats - 1) * sum(t for t in repeated if t <= effort.longest / 4.0)
-        return left + once + min(again, max(effort.whole - once, 0.0))
+        return once + min(again, max(effort.whole - once, 0.0))
 
     def finish(self, progress: Progress) -> Chart:
         """Run the other settings, and repeat all that succeeded."""
@@ -233,11 +266,11 @@ class Measurement:
             point.first = clock.elapsed
 
 
-def expected_times(series: Series, known: int, longest: float) -> list[float]:
+def expected_times(method: Method, series: Series, known: int, longest: float) -> list[float]:
     """Return the time of a run of each setting from those of the first `known` ones.
 
-    That of a tolerance grows as its power `GROWTH`, that of elements linearly with the square of their
-    number. A run ends after `longest`, and settings beyond it are not tried.
+    It grows as a power of the parameter; that of elements, if two are known, linearly with the square of
+    their number. A run ends after `longest`, and settings beyond it are not tried.
     """
     knobs, times = [p.knob for p in series.points], [p.first for p in series.points[:known]]
     first, last = times[0], times[-1]
@@ -245,8 +278,8 @@ def expected_times(series: Series, known: int, longest: float) -> list[float]:
         if last >= longest or series.points[known - 1].reason == TIMED_OUT:
             times.append(0.0)
             continue
-        if x < knobs[0]:
-            last = times[known - 1] * (knobs[known - 1] / x) ** GROWTH
+        if x < knobs[0] or known == 1:
+            last = times[known - 1] * max(x / knobs[0], knobs[known - 1] / x) ** method.growth
         else:
             slope = (times[known - 1] - first) / (knobs[known - 1] ** 2 - knobs[0] ** 2)
             last = first + max(slope, 0.0) * (x * x - knobs[0] ** 2)

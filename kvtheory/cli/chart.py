@@ -102,7 +102,7 @@ def work_precision(
 ) -> None:  # fmt: skip
     """Chart the speed of all methods against their accuracy.
 
-    The cheapest settings of all methods are run first; then the time that is left is printed. The error of
+    How long it takes is printed at once, and again when the cheapest settings have been run. The error of
     a run that is added is the largest error of the depth over the run, over the static depth; of a fixed
     indenter, that of the friction force over its largest.
     """
@@ -137,12 +137,11 @@ def work_precision(
         click.echo(f"{one.name}: {references} agree on {what} to {one.floor[error]:.1e}")
 
 
-def _say_time(seconds: float) -> None:
+def _say_time(words: str, seconds: float) -> None:
     """Print how long a chart will take, on a terminal in place of the progress bar, which goes on below."""
     terminal = sys.stderr and sys.stderr.isatty()  # standard error may be closed
     clear = "\r\033[K" if terminal else ""
-    words = f"the cheapest settings are done; the others take about {seconds:.2g} s"
-    click.echo(clear + words, err=True)
+    click.echo(f"{clear}{words} {seconds:.2g} s", err=True)
 
 
 PAPER = {
@@ -179,14 +178,15 @@ def paper_command(name: str) -> None:
     @console.overwrite_option
     def draw(scene: str | None, overrides: Sequence[str], style: Path | None, output: Path) -> None:
         with console.progress_bar(name):
-            from kvtheory.plots.files import read_style, save_figure
+            from kvtheory.plots.files import data_csv, read_style, save_picture
             from kvtheory.scene import load_scene
 
-            own = read_style(style) if style else {}
+            own = read_style(style) if style else None
             figure = import_module(f"kvtheory.plots.paper.{name}")
             data = figure.compute(load_scene(scene, overrides) if scene or overrides else None)
-            save_figure(data, figure.draw, [output], table := output.with_suffix(".csv"), own)
-        click.echo(f"{output}\n{table}")
+            beside = data_csv(output, data.columns)
+            save_picture(lambda: figure.draw(data), output, beside=beside, style=own)
+        click.echo("\n".join(map(str, (output, *beside))))
 
 
 for _name in PAPER:

@@ -14,6 +14,7 @@ import click
 
 from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
+from kvtheory.lists import split
 
 LARGE_ERROR = 0.05
 """Relative to the static state: visible in any plot, and beyond the scatter of a good measurement."""
@@ -41,9 +42,10 @@ def names_option(*names: str, metavar: str = "NAME,...", **how: Any) -> Callable
     """Declare an option of comma-separated names, repeatable: a list, or None where it is not given."""
 
     def listed(context: click.Context, option: click.Parameter, given: tuple[str, ...]) -> Any:
-        if not all(map(split, given)):
-            raise click.BadParameter("expected at least one name", context, option)
-        return [name for each in given for name in split(each)] or None
+        try:
+            return [name for each in given for name in split(each)] or None
+        except ValueError as error:
+            raise click.BadParameter(str(error), context, option) from None
 
     return click.option(*names, metavar=metavar, multiple=True, callback=listed, **how)
 
@@ -126,11 +128,6 @@ def progress_bar(label: str) -> Iterator[Callable[..., Any]]:
     begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else None
     with progress.progress_bar(label, begun) as report:
         yield report
-
-
-def split(text: str) -> list[str]:
-    """Return the items of a comma-separated option."""
-    return [item.strip() for item in text.split(",") if item.strip()]
 
 
 def text(value: Any, unit: str) -> str:

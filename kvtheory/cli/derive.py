@@ -278,7 +278,8 @@ def _command() -> str:
             continue
         for each in value if isinstance(value, tuple) else [value]:
             words += [] if name == "scene" else [options[name]]
-            words += [] if each is True else [str(each)]
+            text = ",".join(each) if isinstance(each, list) else str(each)
+            words += [] if each is True else [text]
     return f"{context.command_path} {shlex.join(words)}".strip()
 
 

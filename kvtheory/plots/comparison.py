@@ -1,6 +1,7 @@
 """A simulation compared with theory: data over theory, residuals, checks, and a page with all of them."""
 
 from collections.abc import Sequence
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -44,10 +45,11 @@ ALLOWANCES = (
     "follows from one element at an edge of the contact (F15), the noise and the rounding of the data.",
 )
 """What a check of a curve over velocity, or of a time series, allows."""
+TITLES = "data over theory", "data minus theory"
 MARGIN = 1.6
 """Limit of the axis of residuals, relative to the band, which leaves space for the legend above it."""
-WIDTH, LONGEST = 7.2, 154
-"""Width of a picture in inches, and most characters of a line of it."""
+WIDTH, HEIGHT, LONGEST = 7.2, 1.9, 154
+"""Width of a picture and height of a row of it in inches, and most characters of a line."""
 
 
 def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> list[Any]:
@@ -99,22 +101,36 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     return artists
 
 
-def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
-    """Return a figure of the curves and, unless left out, the list of checks below them."""
-    rows = sum(name in comparison.series for name in CURVES)
-    height = 1.9 * rows
-    table = 0.17 * (len(comparison.checks) + 3) if checks else 0.0
-    figure = Picture(WIDTH, height + table + 0.4)
-    parts: Any = figure.subfigures(2, 1, height_ratios=[height, table]) if checks else [figure]
-    axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
-    plot_comparison(axes, comparison)
+def draw_comparison(comparison: Comparison) -> Any:
+    """Return a figure of the curves, and the list of checks below them."""
+    rows, table = _rows(comparison), 0.17 * (len(comparison.checks) + 3)
+    figure = Picture(WIDTH, HEIGHT * rows + table + 0.4)
+    parts: Any = figure.subfigures(2, 1, height_ratios=[HEIGHT * rows, table])
+    above, below = parts
+    _draw(above.subplots(rows, 2, sharex=True, squeeze=False), comparison)
     title = f"{Path(comparison.source).name}: {comparison.verdict}"
-    parts[0].suptitle(title, fontsize=10, parse_math=False)
-    axes[0][0].set_title("data over theory", fontsize=9)
-    axes[0][1].set_title("data minus theory", fontsize=9)
-    if checks:
-        _list_checks(parts[1].subplots(), comparison)
+    above.suptitle(title, fontsize=10, parse_math=False)
+    _list_checks(below.subplots(), comparison)
     return figure
+
+
+def _half(comparison: Comparison, which: int) -> Picture:
+    """Return the figure of the curves, or that of the residuals, for a page that may be narrow."""
+    rows = _rows(comparison)
+    halves = [Picture(WIDTH / 2.0, HEIGHT * rows + 0.2) for _ in TITLES]
+    axes = [each.subplots(rows, 1, sharex=True, squeeze=False) for each in halves]
+    _draw(np.hstack(axes), comparison)
+    return halves[which]
+
+
+def _rows(comparison: Comparison) -> int:
+    return sum(name in comparison.series for name in CURVES)
+
+
+def _draw(axes: Any, comparison: Comparison) -> None:
+    plot_comparison(axes, comparison)
+    for ax, title in zip(axes[0], TITLES, strict=True):
+        ax.set_title(title, fontsize=9)
 
 
 def _list_checks(ax: Any, comparison: Comparison) -> None:
@@ -149,7 +165,9 @@ def comparison_report(comparison: Comparison, scene: Scene) -> str:
         sentence=sentence, colour=colour, tint=tint,
         diagnosis=escape(comparison.diagnosis),
         explanations=EXPLANATIONS.format("\n".join(explanations)) if explanations else "",
-        picture=inline(lambda: draw_comparison(comparison, checks=False)),
+        pictures="\n".join(
+            inline(partial(_half, comparison, k), f"half-{k}-") for k in range(len(TITLES))
+        ),
         checks="\n".join(checks),
         allowance=ALLOWANCES["time" in comparison.series],
         scene=escape(to_toml(scene).strip()),

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from matplotlib.patches import Patch
 
 from kvtheory.charts.failures import TEXTS, Finding
 from kvtheory.charts.stability import CLASSES, Map
-from kvtheory.plots.files import inline, save_chart, save_page, template
+from kvtheory.plots.files import data_json, inline, save_page, save_picture, template
 from kvtheory.plots.style import BLACK, BLUE, RED, Picture
 from kvtheory.results.presented import record
 from kvtheory.scene.model import Scene
@@ -67,8 +68,7 @@ def _article(found: Finding) -> str:
         return figure
 
     entry = found.entry
-    # No two pictures of the page may share an id.
-    picture = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{entry.key}-", inline(draw))
+    picture = inline(draw, f"{entry.key}-")
     numbers = "".join(
         f'<div class="{role}"><span>{look["label"]}</span><b>{_text(shown(found, role))}</b></div>'
         for role, look in LOOKS.items()
@@ -153,4 +153,5 @@ def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Pi
 def save_stability(maps: Mapping[str, Sequence[Map]], path: Path) -> None:
     """Draw the maps and write them in the format that `path` ends in, with their data as JSON beside."""
     data = {"maps": record(maps)}
-    save_chart(lambda: draw_stability(maps["velocity"], maps["step"]), data, path)
+    draw = partial(draw_stability, maps["velocity"], maps["step"])
+    save_picture(draw, path, beside=data_json(path, data))

@@ -7,13 +7,15 @@ import logging
 import math
 import os
 import platform
+import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import matplotlib as mpl
@@ -27,51 +29,41 @@ PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
 """The packages whose versions are recorded with a chart."""
 METADATA = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 """No dates, so that the same figure is the same file."""
+LEAST_FONT, CLOSER = 5.0, 1.5
+"""Smallest font, in points, of a table in a small figure; how much closer its rows may be, for their font."""
 LONGEST = 300
 """Characters of a message that are shown: LaTeX adds all of its output."""
+Write = Callable[[Path], Any]
+"""Writes a file."""
 
 
-def save_picture(draw: Callable[[], Any], path: Path) -> None:
-    """Draw a figure in the style of the package and write it in the format of the suffix, or raise."""
-    check_path(path, PICTURES)
-    with mpl.rc_context({**STYLE}):
-        replace_file(path, draw().savefig)
-
-
-def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> None:
-    """Draw and write a picture, and its data as JSON beside it, with machine and versions."""
-    text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
-    replace_files({
-        path: lambda part: save_picture(draw, part),
-        path.with_suffix(".json"): lambda part: save_page(text + "\n", part),
-    })  # fmt: skip
-
-
-def save_figure(
-    data: Any, draw: Callable[[Any], Any], pictures: Sequence[Path], table: Path,
-    style: Any = STYLE,
+def save_picture(
+    draw: Callable[[], Any], *pictures: Path, beside: Mapping[Path, Write] = MappingProxyType({}),
+    style: Any = None,
 ) -> None:  # fmt: skip
-    """Draw a figure and write it in the formats of the suffixes, and the columns of its data as CSV.
+    """Draw a figure, and write it in the formats of the suffixes, with the files `beside` it: all, or none.
 
-    All files are written, or none. A size in the style replaces that of the figure. Where matplotlib fails or
-    warns, of axes without room or of fonts and letters that are missing, `ValueError` is raised.
+    A size in the `style` of a user replaces that of the figure. Where matplotlib fails with that style, or
+    warns of axes without room or of fonts and letters that are missing, `ValueError` is raised.
     """
-    with mpl.rc_context({**STYLE, **style}), warnings.catch_warnings(), _logged() as messages:
-        warnings.simplefilter("error", UserWarning)
-        warnings.simplefilter("error", RuntimeWarning)
+    for path in pictures:
+        check_path(path, PICTURES)
+    own = style or {}
+    with mpl.rc_context({**STYLE, **own}), warnings.catch_warnings(), _logged() as messages:
+        if style:
+            warnings.simplefilter("error", UserWarning)
+            warnings.simplefilter("error", RuntimeWarning)
         try:
-            drawn = draw(data)
-            if "figure.figsize" in style:
-                drawn.set_size_inches(style["figure.figsize"])
+            drawn = draw()
+            drawn.set_size_inches(own.get("figure.figsize", drawn.get_size_inches()))
             if layout := drawn.get_layout_engine():
                 layout.execute(drawn)
-            _check_tables(drawn)
+            _fit_tables(drawn)
             # laid out once, or each format would draw everything twice
             drawn.set_layout_engine(None)
-            writers: dict[Path, Callable[[Path], Any]] = {
-                path: partial(_save, drawn, path.suffix.lower(), messages) for path in pictures
-            }
-            replace_files({**writers, table: lambda part: _write_csv(part, data.columns)})
+            said = messages if style else []
+            writers = {path: partial(_save, drawn, path.suffix.lower(), said) for path in pictures}
+            replace_files({**writers, **beside})
         except (
             ArithmeticError,
             MemoryError,
@@ -80,18 +72,24 @@ def save_figure(
             ValueError,
             Warning,
         ) as error:
-            if not style or STYLE.keys() <= style.keys():  # that of the package
+            if not style:
                 raise
             words = " ".join(str(error).split())[:LONGEST]
             raise ValueError(f"`style`: matplotlib cannot draw with it: {words}") from None
 
 
-def _check_tables(drawn: Any) -> None:
-    """Raise `ValueError` if a table, which no layout makes narrower, is wider than its figure."""
+def _fit_tables(drawn: Any) -> None:
+    """Shrink tables, which no layout does, to the width and height of their axes, or raise `ValueError`."""
     for table in (each for ax in drawn.axes for each in ax.tables):
-        needed = table.get_window_extent().width / drawn.dpi
-        if needed > drawn.get_figwidth():
-            raise ValueError(f"the table needs a figure.figsize of {needed + 0.05:.1f} in at least")
+        size, box, room = table[0, 0].get_fontsize(), table.get_window_extent(), table.axes.bbox
+        wide, high = room.width / box.width, room.height / box.height
+        share = min(wide, CLOSER * high, 1.0)
+        if size * share < LEAST_FONT:
+            least = (each * LEAST_FONT / (size * share) + 0.05 for each in drawn.get_size_inches())
+            message = "the table needs a figure.figsize of {:.1f}, {:.1f} in at least"
+            raise ValueError(message.format(*least))
+        table.set_fontsize(size * share)
+        table.scale(1.0, min(share, high))
 
 
 def _save(drawn: Any, suffix: str, messages: list[str], part: Path) -> None:
@@ -112,13 +110,24 @@ def drawable(text: str) -> bool:
     return all(font.get_char_index(ord(letter)) for letter in text)
 
 
-def _write_csv(path: Path, columns: Mapping[str, Any]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        for row in zip(*(np.asarray(each).tolist() for each in columns.values()), strict=True):
-            missing = (isinstance(cell, float) and math.isnan(cell) for cell in row)
-            writer.writerow("" if no else cell for no, cell in zip(missing, row, strict=True))
+def data_csv(path: Path, columns: Mapping[str, Any]) -> dict[Path, Write]:
+    """Return a CSV beside a picture: its columns by their heads."""
+
+    def write(part: Path) -> None:
+        with part.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            for row in zip(*(np.asarray(each).tolist() for each in columns.values()), strict=True):
+                missing = (isinstance(cell, float) and math.isnan(cell) for cell in row)
+                writer.writerow("" if no else cell for no, cell in zip(missing, row, strict=True))
+
+    return {path.with_suffix(".csv"): write}
+
+
+def data_json(path: Path, data: Mapping[str, Any]) -> dict[Path, Write]:
+    """Return a JSON file beside a picture: its data, with machine and versions."""
+    text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
+    return {path.with_suffix(".json"): lambda part: save_page(text + "\n", part)}
 
 
 @contextmanager
@@ -172,13 +181,13 @@ def environment() -> dict[str, str | int]:
     }
 
 
-def inline(draw: Callable[[], Any]) -> str:
-    """Return the figure that `draw` makes as an SVG element."""
+def inline(draw: Callable[[], Any], key: str) -> str:
+    """Return the figure that `draw` makes as an SVG element, whose ids begin with a key of its own."""
     with mpl.rc_context({**STYLE}):
         text = io.StringIO()
         draw().savefig(text, format="svg", metadata={"Date": None})
     drawn = text.getvalue()
-    return drawn[drawn.index("<svg") :]
+    return re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{key}", drawn[drawn.index("<svg") :])
 
 
 def template(name: str) -> str:

@@ -83,8 +83,9 @@ def plot_over(ax: Any, state: SteadyState | Stability, quantity: str = FIRST, **
             if np.all(rows == rows[0]):  # it does not vary along another axis too
                 along[key] = rows[0]
         if not along:
+            keys = " and ".join(key for key, array in state.over.items() if array.shape[axis] > 1)
             raise ValueError(
-                "two keys vary along the same two dimensions: draw one dimension at a time"
+                f"the values of {keys} form a table, not a list; draw one row at a time"
             )
         key = max(along, key=lambda key: (np.ptp(along[key]) > 0.0, key == VELOCITY))
         sides.append(_side(key, state.units[key], along[key]))

@@ -1,6 +1,7 @@
 """Work-precision charts: time and work over the achieved error, with a strip for failures, the rail."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
 from kvtheory.charts.work_precision import REASONS, Chart
-from kvtheory.plots.files import save_chart
+from kvtheory.plots.files import data_json, save_picture
 from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED, Picture
 
 RESOLVED = 100.0
@@ -116,4 +117,5 @@ def default_errors(charts: Sequence[Chart]) -> list[str]:
 def save_work_precision(charts: Sequence[Chart], path: Path) -> None:
     """Draw the charts and write them in the format that `path` ends in, with their data as JSON beside."""
     data = {"charts": [chart.as_dict() for chart in charts]}
-    save_chart(lambda: draw_work_precision(charts, default_errors(charts)), data, path)
+    draw = partial(draw_work_precision, charts, default_errors(charts))
+    save_picture(draw, path, beside=data_json(path, data))

@@ -14,11 +14,12 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
+from kvtheory.lists import split
 from kvtheory.progress import listening
 from kvtheory.scene.drives import TIME
 from kvtheory.scene.mistakes import SHORT, Problems, SceneError, nearest, problem, shown
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, convert, converted, listed, split
+from kvtheory.scene.quantities import Quantity, convert, converted, listed
 from kvtheory.scene.units import bare, to_si
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -105,9 +106,10 @@ def times(value: Any) -> list[float]:
     """Read times in s: one or several, also as text; report every mistake with its value."""
     problems, found = Problems(), list[float]()
     for one in value if isinstance(value, (list, tuple)) else [value]:
-        for given in split(one) if isinstance(one, str) else [one]:
-            with problems.catching("`at`", given):
-                found += listed(given, TIME).tolist()
+        with problems.catching("`at`", one):
+            for given in split(one) if isinstance(one, str) else [one]:
+                with problems.catching("`at`", given):
+                    found += listed(given, TIME).tolist()
     if not found and not problems:
         problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
     problems.report()

@@ -32,7 +32,7 @@ from kvtheory.scene.layouts import (
     tables,
     undrawn,
 )
-from kvtheory.scene.mistakes import mistake, shown
+from kvtheory.scene.mistakes import Problems, SceneError, mistake, problem, shown
 from kvtheory.scene.tables import EXCEL, number, parts, plain, read_text, sheets, suffixed
 from kvtheory.scene.units import bare, to_si
 
@@ -179,7 +179,8 @@ class Reader:
     `spellings` are the names of each quantity, separated by commas; only names of one letter must have the
     case that is listed: T is a temperature, t a time. `needed` tells from the quantities of a row whether it
     is a header; `example` is one, for messages. Cells of the quantities in `partial` may be empty or not
-    finite; an empty one is NaN. With `in_head`, a temperature may stand in the head of each table.
+    finite; an empty one is NaN. With `in_head`, a temperature may stand in the head of each table. Cells of
+    the quantities in `words` are text, and every line below the header is a row then.
     """
 
     spellings: Mapping[str, str]
@@ -187,6 +188,7 @@ class Reader:
     example: str
     partial: Container[str] = ()
     in_head: bool = False
+    words: Container[str] = ()
 
     @cached_property
     def known(self) -> dict[str, tuple[str, str]]:
@@ -211,9 +213,12 @@ class Reader:
         else:
             message = f"expected a path or a mapping of arrays; got {type(data).__name__}"
             raise TypeError(f"`data`: {message}")
+        problems = Problems()
         for name, column in table.columns.items():
-            if name not in self.partial:
-                table.require(name, np.isfinite(column.values), "is not a finite number")
+            if name not in self.partial and name not in self.words:
+                with problems.catching():
+                    table.require(name, np.isfinite(column.values), "is not a finite number")
+        problems.report()
         return table
 
     def _of_arrays(self, data: Any) -> Table:
@@ -264,7 +269,7 @@ class Reader:
 
     def _of_lines(self, lines: Sequence[str], path: str) -> Table:
         lines = undrawn(lines)
-        layouts, nameless = tables(lines, self._named)
+        layouts, nameless = tables(lines, self._named, words=bool(self.words))
         if nameless is not None:
             message = f"line {nameless + 1} holds numbers, and no row above it names the columns"
             raise ValueError(f"{path}: {message}; expected {self.example}")
@@ -273,7 +278,7 @@ class Reader:
         read, notes = [], self._unread(lines, layouts[0])
         for each in layouts:
             found = self._known(each.heads, path, each.units)
-            values, own = _numbers(path, lines, each, found, self.partial)
+            values, own = self._cells(path, lines, each, found)
             notes += own
             read.append((found, values))
         kinds = {tuple(sorted((n, unit) for n, _, unit in found.values())) for found, _ in read}
@@ -303,6 +308,60 @@ class Reader:
             path, columns, numbers, others, tuple(dict.fromkeys(notes)),
             np.repeat(np.arange(len(sizes)), sizes), layouts[0].line + 1,
         )  # fmt: skip
+
+    def _cells(
+        self, path: str, lines: Sequence[str], own: Layout, found: Known
+    ) -> tuple[dict[str, Any], list[str]]:
+        """Return the known columns, and notes; if the fast reader fails, find every cell without a number."""
+        names, decimal = [name for name, _, _ in found.values()], own.decimal
+        texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in own.rows]
+        mixed = decimal == "," and any("," in lines[k] and "." in lines[k] for k in own.rows)
+        marks = {m for k in own.rows for m in ",." if m in lines[k]} if decimal == "," else set()
+        if not mixed and len(marks) < 2 and own.separator not in SPACES and not self.words:
+            count = len(own.heads) - own.shift
+            if all(text.count(own.separator) < count for text in texts):
+                with suppress(ValueError):
+                    places = [i - own.shift for i in found]
+                    options: Any = {"delimiter": own.separator, "usecols": places, "quotechar": '"'}
+                    columns = np.loadtxt(texts, ndmin=2, **options).T
+                    return dict(zip(names, columns, strict=True)), []
+        notes = [] if self.words else _footer(lines, own, found)
+        values: list[list[Any]] = []
+        seen: dict[str, int] = {}
+        problems = Problems()
+        for k in own.rows:
+            cells = own.cells(lines[k])
+            while len(cells) > len(own.heads) and not cells[-1]:
+                del cells[-1]
+            if len(cells) > len(own.heads):
+                message = f"line {k + 1} has {len(cells)} cells, the header has {len(own.heads)}"
+                message += f", separated by {NAMED.get(own.separator, 'spaces')}"
+                message += "; are there decimal commas? Then use semicolons" * (
+                    own.separator == ","
+                )
+                problems.append(f"{path}: {message}")
+                continue
+            row: list[Any] = []
+            for i, (name, head, _) in found.items():
+                cell = cells[i] if i < len(cells) else ""
+                row.append(cell if name in self.words else number(cell, decimal))
+                if row[-1] is None and not cell and name in self.partial:
+                    row[-1] = math.nan
+                elif row[-1] is None:
+                    hint = "; write the decimal mark as a point" if "," in cell else ""
+                    hint += ", and no thousands separator" if "," in cell and "." in cell else ""
+                    message = (
+                        f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
+                    )
+                    problems.append(f'{path}: line {k + 1}, column "{shown(head)}": {message}')
+                elif name not in self.words:
+                    seen = {mark: k + 1 for mark in ",." if mark in cell} | seen
+            values.append(row)
+        if len(seen) > 1:
+            where = f"a comma in line {seen[',']} and a point in line {seen['.']}"
+            problems.append(f"{path}: the decimal mark is {where}; expected one of them")
+        problems.report()
+        return dict(zip(names, map(np.array, zip(*values, strict=True)), strict=True)), notes
 
     def _unread(self, lines: Sequence[str], first: Layout) -> list[str]:
         """Return a note on rows of numbers above the first header."""
@@ -441,51 +500,6 @@ def _fits(unit: str, si: str) -> bool:
     return False
 
 
-def _numbers(
-    path: str, lines: Sequence[str], own: Layout, found: Known, partial: Container[str]
-) -> tuple[dict[str, Array], list[str]]:
-    """Return the known columns, and notes; if the fast reader fails, find the cell that is no number."""
-    names, decimal = [name for name, _, _ in found.values()], own.decimal
-    texts = [lines[k].replace(",", ".") if decimal == "," else lines[k] for k in own.rows]
-    mixed = decimal == "," and any("," in lines[k] and "." in lines[k] for k in own.rows)
-    marks = {m for k in own.rows for m in ",." if m in lines[k]} if decimal == "," else set()
-    if not mixed and len(marks) < 2 and own.separator not in SPACES:
-        count = len(own.heads) - own.shift
-        if all(text.count(own.separator) < count for text in texts):
-            with suppress(ValueError):
-                places = [i - own.shift for i in found]
-                options: Any = {"delimiter": own.separator, "usecols": places, "quotechar": '"'}
-                return dict(zip(names, np.loadtxt(texts, ndmin=2, **options).T, strict=True)), []
-    notes = _footer(lines, own, found)
-    values: list[list[float]] = []
-    seen: dict[str, int] = {}
-    for k in own.rows:
-        cells = own.cells(lines[k])
-        while len(cells) > len(own.heads) and not cells[-1]:
-            del cells[-1]
-        if len(cells) > len(own.heads):
-            message = f"line {k + 1} has {len(cells)} cells, the header has {len(own.heads)}"
-            message += f", separated by {NAMED.get(own.separator, 'spaces')}"
-            message += "; are there decimal commas? Then use semicolons" * (own.separator == ",")
-            raise ValueError(f"{path}: {message}")
-        row = []
-        for i, (name, head, _) in found.items():
-            cell = cells[i] if i < len(cells) else ""
-            value = math.nan if not cell and name in partial else number(cell, decimal)
-            if value is None:
-                hint = "; write the decimal mark as a point" if "," in cell else ""
-                hint += ", and no thousands separator" if "," in cell and "." in cell else ""
-                message = f'"{shown(cell)}" is not a number{hint}' if cell else "the cell is empty"
-                raise ValueError(f'{path}: line {k + 1}, column "{shown(head)}": {message}')
-            seen |= {mark: k + 1 for mark in ",." if mark in cell}
-            if len(seen) > 1:
-                where = f"a comma in line {seen[',']} and a point in line {seen['.']}"
-                raise ValueError(f"{path}: the decimal mark is {where}; expected one of them")
-            row.append(value)
-        values.append(row)
-    return dict(zip(names, np.array(values).T, strict=True)), notes
-
-
 def _footer(lines: Sequence[str], own: Layout, found: Known) -> list[str]:
     """Leave out the last rows of a table that begin with a word in place of a number, and return notes."""
     notes: list[str] = []
@@ -519,7 +533,8 @@ def _of_key(key: str, path: Path) -> Iterator[None]:
     except OSError as error:
         raise mistake(key, str(path), f"cannot be read: {error.strerror}") from None
     except ValueError as error:
-        raise mistake(key, str(path), str(error).removeprefix(f"{path}: ")) from None
+        found = (each.removeprefix(f"{path}: ") for each in str(error).split("\n"))
+        raise SceneError([problem(key, str(path), each) for each in found]) from None
 
 
 def depths_from(path: Path) -> tuple[tuple[float, float], ...]:

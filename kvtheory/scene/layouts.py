@@ -138,14 +138,22 @@ def _splits(line: str, first: str) -> Iterator[tuple[str, Cells]]:
             yield mark, cells
 
 
-def tables(lines: Sequence[str], names: Names) -> tuple[list[Layout], int | None]:
+def tables(
+    lines: Sequence[str], names: Names, *, words: bool = False
+) -> tuple[list[Layout], int | None]:
     """Return the tables of a file, and the first line of numbers below them that no header names.
 
-    `names` is zero for a row that is no header.
+    `names` is zero for a row that is no header. If cells may be words, every line below the first header is a
+    row of the only table.
     """
     found: list[Layout] = []
     heads = list(_headers(lines, names, commented=False))
     heads = heads or list(_headers(lines, names, commented=True))
+    if words:
+        for own in heads[:1]:
+            rows = [k for k in range(own.line + 1, len(lines)) if not blank(lines[k])]
+            found += [replace(own, rows=rows, units=[])] * bool(rows)
+        return found, None
     above = list(lines[: heads[0].line]) if heads else []
     for k, header in enumerate(heads):
         end = heads[k + 1].line if k + 1 < len(heads) else len(lines)

@@ -70,14 +70,14 @@ class Problems(list[str]):
         self.append(problem(key, given, what))
 
     @contextmanager
-    def catching(self, key: str, given: Any) -> Iterator[None]:
-        """Append a mistake in a given value, instead of raising it."""
+    def catching(self, key: str = "", given: Any = None) -> Iterator[None]:
+        """Append a mistake in a given value, instead of raising it; without a key it names it itself."""
         try:
             yield
         except SceneError as error:
             self += error.problems
         except ValueError as error:
-            self.add(key, given, str(error))
+            self.append(problem(key, given, str(error)) if key else str(error))
 
     def report(self) -> None:
         """Raise `SceneError` if there are any."""

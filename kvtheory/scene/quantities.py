@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kvtheory.lists import split
 from kvtheory.scene.mistakes import Problems, mistake
 from kvtheory.scene.units import WHOLE, bare, expected, is_usual, to_si
 
@@ -295,19 +296,14 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
 
 def listed(value: Any, spec: Quantity) -> NDArray[np.float64]:
     """Return the values in SI of one list: a text with commas and ranges, an array or a list."""
-    if isinstance(value, str) and (items := split(value)):
-        return np.concatenate([item_values(item, spec) for item in items])
+    if isinstance(value, str):
+        return np.concatenate([item_values(item, spec) for item in split(value)])
     array = np.atleast_1d(array_of(value, spec))
     if array.ndim > 1:
         raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
     if array.size == 0:
         raise ValueError("is empty; expected at least one value")
     return array
-
-
-def split(text: str) -> list[str]:
-    """Split a text at its commas."""
-    return [item.strip() for item in text.split(",") if item.strip()]
 
 
 def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:

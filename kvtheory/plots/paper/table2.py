@@ -30,10 +30,9 @@ FORMULAS = {
 
 @dataclass(frozen=True)
 class Data:
-    """The cells of the table: a row of formula and value for each support."""
+    """The cells of the table: for each support a head, and rows of quantity, formula and value."""
 
     cells: list[list[str]]
-    whose: str
     columns: Columns
 
 
@@ -50,9 +49,14 @@ def compute(scene: Scene | None = None) -> Data:
         support: (f"{1e3 * v:.5g} mm/s", rf"{low:.4g} $V$ / mm/s", f"{high:.4g}{powers[support]}")
         for support, (v, low, high) in values.items()
     }
+    whose = "for the scene" if scene else "for Table 1"
     cells = [
-        [row, *(cell for support in FORMULAS for cell in (FORMULAS[support][i], shown[support][i]))]
-        for i, row in enumerate(ROWS)
+        cells
+        for support, formulas in FORMULAS.items()
+        for cells in (
+            [SUPPORTS[support], r"$\alpha = 2\sqrt{2}/3$", whose],
+            *map(list, zip(ROWS, formulas, shown[support], strict=True)),
+        )
     ]
     columns = {
         "quantity": [
@@ -62,19 +66,19 @@ def compute(scene: Scene | None = None) -> Data:
         ],
         **{support: values[support] for support in FORMULAS},
     }
-    return Data(cells, "for the scene" if scene else "for Table 1", columns)
+    return Data(cells, columns)
 
 
 def draw(data: Data) -> Figure:
     """Draw the table."""
-    drawn = Picture(8.4, 1.9)
+    drawn = Picture(5.2, 3.5)
     ax = drawn.subplots()
     ax.axis("off")
-    heads = ["", SUPPORTS["fixed"], data.whose, SUPPORTS["dead-weight"], data.whose]
-    table = ax.table(data.cells, colLabels=heads, loc="center", cellLoc="left", edges="horizontal")
+    table = ax.table(data.cells, loc="center", cellLoc="left", edges="horizontal")
     table.auto_set_font_size(False)
     table.set_fontsize(9)
-    table.auto_set_column_width(range(len(heads)))
+    table.auto_set_column_width(range(len(data.cells[0])))
     table.scale(1.0, 2.1)
-    ax.set_title(r"Steady sliding with its exact coefficients, $\alpha = 2\sqrt{2}/3$")
+    table.set_in_layout(False)  # it is made to fit the figure, not the other way round
+    ax.set_title("Steady sliding with its exact coefficients", wrap=True)
     return drawn
