@@ -157,11 +157,8 @@ class Elements:
         at = self.places[near] + (moved[:1] if rigid else moved)
         slope = at / R
         g = depth - self.heights - 0.5 * at * slope
-        if (k := having.circle).size:
-            slope = np.broadcast_to(slope, g.shape).copy()
-            cosine = np.sqrt(np.maximum(1.0 - slope[k] ** 2, STEEPEST))
-            g[k] += R * (0.5 * slope[k] ** 2 - (1.0 - cosine))
-            slope[k] /= cosine
+        if having.circle.size:
+            g, slope = _under_circle(g, slope, having.circle, R)
         rise = rule.depth_rate * rate - rule.slide_rate * speed * slope
         law = self._arms if self.scene.foundation.arms else self._kelvin_voigt
         inclined = np.abs(slope) * self.length
@@ -302,6 +299,15 @@ class Elements:
 def _total(values: Array) -> Array:
     """Return the sum over the elements, by rule."""
     return values.sum(axis=(1, 2))
+
+
+def _under_circle(g: Array, slope: Array, k: Any, R: float) -> tuple[Array, Array]:
+    """Return overlap and slope where the indenters `k` are circles, not parabolas."""
+    g, slope = g.copy(), np.broadcast_to(slope, g.shape).copy()
+    cosine = np.sqrt(np.maximum(1.0 - slope[k] ** 2, STEEPEST))
+    g[k] += R * (0.5 * slope[k] ** 2 - (1.0 - cosine))
+    slope[k] /= cosine
+    return g, slope
 
 
 def _edges(pressure: Array, x: Array) -> tuple[Array, Array]:
