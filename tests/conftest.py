@@ -29,7 +29,6 @@ FIRST = (
         "derivations",
         "test_compare_faults",
         "test_figures",
-        "test_docs",
         "test_prony_continuum",
     ),
     *("test_cli", "test_compare", "test_fit", "test_energy", "test_planted", "test_explorer"),

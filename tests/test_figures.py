@@ -29,6 +29,7 @@ BRIEF = (
     (onset_maps, "NUMBERS", onset_maps.NUMBERS[::4]),
     (onset_maps, "INERTIAS", onset_maps.INERTIAS[::3]),
     (stability, "QUICK_POINTS", (3, 3)),
+    (stability, "growth", lambda *_, steady: 0.9 if steady else 1.1),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
     (work_precision, "SCENES", ("table-1",)),
     (files, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),

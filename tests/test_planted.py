@@ -1,6 +1,7 @@
 """The engine refuses, with its reason, each false step of `tests/planted.py`, and accepts each true one."""
 
 import pytest
+import sympy as sp
 
 from tests import planted
 
@@ -37,6 +38,13 @@ def test_the_tables_are_long():
 def test_what_no_record_uses_is_refused_by_name(name):
     rows = {row[1]: row[3] for row in planted.rows()}
     assert NAMED in planted.verdict(rows[name])[1]
+
+
+def test_a_refusal_evaluates_no_integral_that_it_prints(monkeypatch):
+    """SymPy orders terms by their values, which takes seconds for an integral that diverges."""
+    rows = {row[1]: row[3] for row in planted.rows()}
+    monkeypatch.setattr(sp.Expr, "__complex__", lambda _: pytest.fail("evaluated"))
+    assert planted.verdict(rows["difference of logarithms"])[0] == "refused"
 
 
 @pytest.mark.parametrize(("step", "expected", "why", "shown"), ROWS)

@@ -80,6 +80,11 @@ class StepError(ValueError):
     """A step that is wrong, or that the engine cannot prove."""
 
 
+def shown(expr: sp.Expr | str | int) -> str:
+    """Print for a message, with terms in any order: SymPy orders them by their values, and integrates."""
+    return str(sp.sstr(expr, order="none"))
+
+
 class Said(NamedTuple):
     """A claim for a message: written out if the message is."""
 
@@ -88,7 +93,7 @@ class Said(NamedTuple):
     rhs: sp.Expr | int
 
     def __str__(self) -> str:
-        return " ".join(map(str, self[:]))
+        return " ".join(map(shown, self[:]))
 
 
 class _OverTimeError(BaseException):
@@ -877,7 +882,9 @@ class Book:
         if rest != 0 and rest.has(sp.Abs):
             rest = difference(rest.replace(sp.Abs, self._signed), sp.S.Zero)
         if rest != 0:
-            raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+            raise StepError(
+                f"{self.label}: {claim} is not an identity: left - right = {shown(rest)}"
+            )
 
     def _parted(self, expr: sp.Expr) -> sp.Expr:
         """Write each integral as the sum of its parts, where these exist."""

@@ -203,12 +203,10 @@ class Bench(Case):
         band, limit = self._units
         outside = np.maximum(np.abs(self._gaps(pair)) - band, 0.0) / limit
         largest = np.quantile(outside, SHARE_OF_VALUES, axis=1).max()
-        ratios = self.ratios(pair)
-        score = math.sqrt(float(np.mean(ratios * ratios)))
         left = [1.0 + MEAN_LEFT * abs(mean.off) / mean.allowed for mean in self.means]
         means = bool((np.abs(self.off(pair)) <= left).all())
         enough = bool(largest <= LEFT_OVER) and means and self._of_noise(outside * limit)
-        return Trial(hypothesis, score, enough, x)
+        return Trial(hypothesis, rms(self.ratios(pair)), enough, x)
 
     def _of_noise(self, outside: Array) -> bool:
         """Whether noise explains what lies outside the band and the smooth error, all values together."""
@@ -229,16 +227,20 @@ class Bench(Case):
     def tried(self, hypothesis: Hypothesis, starts: Sequence[float] | None = None) -> Trial:
         """Return how a hypothesis fits, its unknown fitted from the best of its starts."""
         starts = hypothesis.starts if starts is None else starts
-        trials: dict[float, tuple[Trial, Array]] = {}
+        pairs: dict[float, tuple[float, Array, Pair | None]] = {}
+
+        def score(x: float) -> float:
+            return pairs[x][0]
 
         def residuals(points: Array) -> Array:
-            for x in (x for x in points[:, 0].tolist() if x not in trials):
+            for x in (x for x in points[:, 0].tolist() if x not in pairs):
                 pair = hypothesis.pair(x)
-                trials[x] = self.rated(hypothesis, pair, x), self.ratios(pair)
-            return np.array([trials[x][1] for x in points[:, 0].tolist()])
+                ratios = self.ratios(pair)
+                pairs[x] = math.inf if pair is None else rms(ratios), ratios, pair
+            return np.array([pairs[x][1] for x in points[:, 0].tolist()])
 
         residuals(np.array(starts or [0.0])[:, None])
-        best = min(trials, key=lambda x: trials[x][0].score)
+        best = min(pairs, key=score)
         far = FAR if hypothesis.powers else math.inf
         for _ in range(WALKS if starts else 0):
             found, _ = descend(
@@ -249,7 +251,8 @@ class Bench(Case):
             moved, best = abs(found[0, 0] - best), float(found[0, 0])
             if moved < far:
                 break
-        return min((trial for trial, _ in trials.values()), key=lambda trial: trial.score)
+        best = min(pairs, key=score)
+        return self.rated(hypothesis, pairs[best][2], best)
 
     @cached_property
     def solved(self) -> list[Scene]:

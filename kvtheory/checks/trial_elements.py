@@ -204,7 +204,7 @@ class Elements:
         held = area * (p != 0.0)
 
         stiff = _total(held * np.maximum(damping * rule.depth_rate + h * stiffness, 0.0))
-        drag = 0.0
+        drag: Any = 0.0
         if not rigid:
             drag = np.maximum(damping * rule.slide_rate, 0.0) + h * stiffness
             drag = _total(held * drag * (slope * slope))
