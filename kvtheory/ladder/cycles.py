@@ -67,7 +67,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
         length, rates = 2.0 * Model.of(scene).at_rest.half_length, rates_of(scene)
 
         def solved(count: float, finer: float) -> tuple[Answer, float]:
-            result = models.elements(scene, per_length=count / length, at=[scene.run.duration])
+            result: Any = models.elements(scene, per_length=count / length, at=[scene.run.duration])
             if not result.cycle.settles:
                 if not (result.ripples and scene.drive.ends):
                     need(_unsettled(scene, request, result))

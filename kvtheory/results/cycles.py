@@ -319,7 +319,8 @@ def _measured(states: States, start: float, end: float) -> Array:
 def cycle_statement(safety: float) -> str:
     """Return what the errors of cycles are, with the `safety` of `beside`."""
     return (
-        f"of cycles {DOUBT:g} times the difference of two limits to which the amplitude tends, plus "
+        f"of cycles {DOUBT:g} times the difference of two limits to which the amplitude tends (near the "
+        "onset how much the growths of ripples scatter beside it, over how steeply they fall), plus "
         f"{safety:g} times the difference to the cycles of the other solutions, relative to amplitude, "
         "period, and range of velocity or friction force in a cycle"
     )

@@ -155,7 +155,8 @@ class SprungTransient(Ending, Transient):
 
     The sliding velocity is that of the base under the indenter, V - dx/dt, with x the displacement of the
     indenter; leading and trailing edge follow its sign. `spring_force` is that of spring and damper,
-    k_x x + c_x dx/dt.
+    k_x x + c_x dx/dt. `cycle` is that in which the motion ends; in JSON an object with its quantities by the
+    names that `solve` has, and `relative_error`, None where the motion does not show its end.
     """
 
     sliding_velocity: Value

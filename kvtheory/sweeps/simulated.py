@@ -6,6 +6,7 @@ the edges, so that samples carry no sawtooth; what may lie between two samples c
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -50,7 +51,9 @@ def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measure
             coarse = cycles and model.constants.surface.ball
             spacing = model.at_rest.half_length / (OF_A_BALL if coarse else PER_HALF_LENGTH)
             at = [*times, scene.run.duration, *(_samples(scene, spacing) if sampled else ())]
-            run = simulate(scene, spacing, SCHEMES[DEFAULT], at=at, time_step=None, certify=True)
+            run: Any = simulate(
+                scene, spacing, SCHEMES[DEFAULT], at=at, time_step=None, certify=True
+            )
         except FAILS as error:
             found.reasons[index] = error
             continue

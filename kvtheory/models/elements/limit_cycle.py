@@ -31,6 +31,9 @@ BESIDE = 0.08
 """Share of its amplitude by which runs start below the cycle and above it."""
 FARTHEST, TRIES = 1.5, 6
 """Largest factor from one amplitude to the next, and most of these."""
+WEAK = 0.05
+"""Largest growth of small ripples in a period that is taken from theory: larger, it is far less in error by
+elements, and no such polynomial any more down to small ripples."""
 TINY = 1e-300
 """Replaces amplitudes that are none, where a ripple is rounding."""
 BENT = 0.25
@@ -68,6 +71,8 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
         default=(math.nan, 0.0),
     )
 
+    theory = rate if abs(rate) * given.period <= WEAK else math.nan
+
     def follow(amplitude: float) -> list[Growth]:
         """Return the growths from about this amplitude on: with all elements, and in the coarse runs."""
         nonlocal scale
@@ -91,22 +96,22 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
     if not fainter:
         return _faded([ended], rate, np.zeros(len(ended)))
     known = [ended, follow(HALF * size)]
-    tried = _amplitude([each[0] for each in known], rate)
+    tried = _amplitude([each[0] for each in known], theory)
     for _ in range(TRIES):
         if not tried > 0.0:
             break
         tried = min(max(tried, size / FARTHEST), size * FARTHEST)
         known = [follow(share * tried) for share in (HALF, 1.0 - BESIDE, 1.0 + BESIDE)]
-        size, tried = tried, _amplitude([each[0] for each in known], rate)
+        size, tried = tried, _amplitude([each[0] for each in known], theory)
         low, high = (float(each[0].sizes.mean()) for each in known[1:])
         if low < tried < high:
             ways = [
-                [_cycle(each, g) for each in zip(*known, strict=True)] for g in (rate, math.nan)
+                [_cycle(each, g) for each in zip(*known, strict=True)] for g in (theory, math.nan)
             ]
             cycles = [first.beside(others, SAFETY) for first, *others in ways]
             best = min(cycles, key=lambda each: each.errors[0] if each.settles else math.inf)
             return best if best.settles and best.errors[0] < 1.0 else Cycle(0.0)
-    off = [_fit(each, rate)[-1] - _fit(each, math.nan)[-1] for each in zip(*known, strict=True)]
+    off = [_fit(each, theory)[-1] - _fit(each, math.nan)[-1] for each in zip(*known, strict=True)]
     larger = [each for each in known if each[0].sizes[0] > fainter[-1]]  # the others are rounding
     return _faded([*larger, *map(follow, fainter)], rate, np.nan_to_num(off) * (rate < 0.0))
 
@@ -146,20 +151,23 @@ def _amplitude(runs: Sequence[Growth], rate: float) -> float:
     return math.sqrt(roots[falls].real.min()) if falls.any() else math.nan
 
 
-def _cycle(runs: Sequence[Growth], rate: float) -> Cycle:
+def _cycle(runs: Sequence[Growth], theory: float) -> Cycle:
     """Return the cycle of one of the runs, by its growths from three amplitudes on."""
-    amplitude, powers = _amplitude(runs, rate), _fit(runs, math.nan)
+    amplitude, powers = _amplitude(runs, theory), _fit(runs, math.nan)
     if math.isnan(amplitude):
         return Cycle(0.0)
-    steep = abs(np.polyval(np.polyder(powers), amplitude**2)) * 2.0 * amplitude**2
+    square = amplitude * amplitude
+    steep = 2.0 * square * abs(np.polyval(np.polyder(powers), square))
     scatter = math.sqrt(
-        max(np.square(each.growths - np.polyval(powers, each.sizes**2)).mean() for each in runs)
+        max(np.mean((each.growths - np.polyval(powers, each.sizes**2)) ** 2) for each in runs)
     )
+    # What lies beyond the last power matters where the growth is followed down to small ripples.
+    beyond = 0.0 if math.isnan(theory) else abs(powers[0] * square * square) ** 2 / abs(powers[-1])
     low, high = (each.last.values for each in runs[-2:])
     apart = high[0] - low[0]
     values = low + (high - low) * (amplitude - low[0]) / apart
     change = np.abs(high - low) / apart * amplitude / scale_of(values)
-    doubt, bent = scatter / steep, BENT * (apart / amplitude) ** 2
+    doubt, bent = (scatter + beyond) / steep, BENT * (apart / amplitude) ** 2
     return known_cycle(values, change * (doubt + np.array([0.0, *[bent] * 5])))
 
 

@@ -17,15 +17,15 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
 from kvtheory.scene.indenters import Circle, Indenter, Revolved, Sphere
 from kvtheory.scene.model import Scene
-from kvtheory.scene.start import REST, Start, StartState
+from kvtheory.scene.start import REST, Drawn, Start, StartState
 from kvtheory.scene.static_state import StaticState, out_of_range
 from kvtheory.theory.laws import Element
 
 PER_STRIP = 6.0
 """Width of a strip in elements, on a round ball: then both spacings matter about equally."""
-FEWEST_STRIPS = {True: 16, False: 64}
-"""From the middle plane to the rim at rest, on a rigid drive and on a spring: near the onset of stick-slip
-the growth of a ripple is a small difference, to which the rim matters most."""
+FEWEST_STRIPS = {False: 16, True: 64}
+"""From the middle plane to the rim at rest, and where the growth of a ripple is sought (True): it is a small
+difference, to which the rim matters most."""
 FEWEST = 8
 """Elements in contact at rest, at least: fewer do not resolve the contact."""
 MOST = 2_000_000
@@ -104,7 +104,7 @@ class Model:
         dy = (
             coarser
             * (1.0 + 0.5 * shift)
-            * strip_width(c.surface, depth, dx, FEWEST_STRIPS[drive.rigid])
+            * strip_width(c.surface, depth, dx, FEWEST_STRIPS[isinstance(scene.start, Drawn)])
         )
         c = c._replace(parts=parts, shift=shift, spacing=coarser * dx, across=dy, depth=depth)
         depth = depth if scene.held else sunk_depth(c)
@@ -220,7 +220,7 @@ def sunk_depth(c: Constants, V: float = 0.0) -> float:
             return depth
 
 
-def strip_width(s: Surface, depth: float, dx: float, fewest: int = FEWEST_STRIPS[True]) -> float:
+def strip_width(s: Surface, depth: float, dx: float, fewest: int = FEWEST_STRIPS[False]) -> float:
     """Return the width of a strip of a ball, and 0 of a line contact."""
     right = span(s, depth)[1]
     return s.stretch * min(PER_STRIP * dx, right / fewest) if s.ball else 0.0
