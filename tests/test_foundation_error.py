@@ -229,7 +229,9 @@ def test_a_shape_without_a_contact_at_rest_is_told_of_what_the_command_has():
         lambda: kv.asymptotes(wedge), lambda: kv.steady(wedge),
         lambda: kv.fit(wedge, curve, free=["foundation.modulus"]),
     ):  # fmt: skip
-        with pytest.raises(ValueError, match=r"^steady sliding on independent elements needs the K"):
+        with pytest.raises(
+            ValueError, match=r"^steady sliding on independent elements needs the K"
+        ):
             answer()
     with pytest.raises(ValueError, match=r'^`method` = "quadrature" needs the K'):
         kv.steady(wedge, method="quadrature")
