@@ -174,10 +174,10 @@ def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterato
 def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     """Return the errors of the last of values on three grids or more.
 
-    The larger of the last two changes counts, as one may be small by chance: the ends of the contact
-    jump from cell to cell. Changes that fall by a factor r from grid to grid add up to r/(1 - r) of
-    the last one; r is the smaller of the last two ratios, where there are two. An edge is known to a cell at
-    best, and the ratios of its jumps say nothing.
+    The last change counts, but not less than a third of the one before, as one may be small by chance: the
+    ends of the contact jump from cell to cell. Changes that fall by a factor r from grid to grid add up to
+    r/(1 - r) of the last one; r is the smaller of the last two ratios, where there are two. An edge is known to
+    a cell at best, and the ratios of its jumps say nothing.
     """
     found = {}
     for name, last in known[-1].items():
@@ -185,7 +185,7 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
         if math.isinf(last):
             found[name] = 0.0
             continue
-        error = SAFETY * max(changes[-2:])
+        error = SAFETY * max(changes[-1], changes[-2] / 3.0)
         if name.endswith("edge"):
             found[name] = max(error, cell)
             continue
