@@ -35,7 +35,7 @@ COARSE = 12
 """Cells along the contact on the first grid, at least."""
 FINEST = {True: 4000, False: 300}
 """Cells along the contact from which no finer grid follows: of a line, of a ball."""
-THINNEST = 1.0 / 50.0
+THINNEST = 1.0 / 8.0
 """Least thickness in cells: the influence of a cell much longer than the layer is thick is not resolved."""
 LEVELS = 3
 """Grids from which an error follows."""
@@ -108,12 +108,9 @@ def slide(
             return Sliding(**known[-1], errors=errors, x=x, y=found.grid.y, pressure=pressure)
         share = min(found.cells / FINEST[shape.per_width], 1.0)
         report(share, f"{found.cells:,} cells along the contact")
-    hint = (
-        "an edge presses, where friction falls as V ln(1/V), on cells shorter than what is travelled in the "
-        "longest retardation time"
-        if found.kinked(shape)
-        else "the limits that `asymptotes` has need no grid"
-    )
+    hint = "the limits that `asymptotes` has need no grid"
+    if found.kinked(shape):
+        hint = "an edge presses: slowly, friction falls as V ln(1/V), which takes cells shorter than V tau"
     what = f"{worst} has a relative error of {wrong:.1e}" if errors else "the error is not known"
     raise ToleranceError(f"at {velocity:g} m/s, on the finest grid, {what}, above {rtol:g}; {hint}")
 
@@ -176,8 +173,8 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
 
     The last change counts, but not less than a third of the one before, as one may be small by chance: the
     ends of the contact jump from cell to cell. Changes that fall by a factor r from grid to grid add up to
-    r/(1 - r) of the last one; r is the smaller of the last two ratios, where there are two. An edge is known to
-    a cell at best, and the ratios of its jumps say nothing.
+    r/(1 - r) of the last one; r is the smaller of the last two ratios, where there are two. An edge is known
+    to a cell at best, and the ratios of its jumps say nothing.
     """
     found = {}
     for name, last in known[-1].items():
@@ -207,23 +204,23 @@ def _require(shape: Any, body: Body) -> None:
 
 def half_length(shape: Any, depth: float) -> float:
     """Return |x| where the surface is as high as the depth, on the farther side of the lowest point."""
-    found = []
-    for side in (-1.0, 1.0):
 
-        def above(x: float, side: float = side) -> float:
-            """Return the height over the depth, at most the depth: a steep shape overflows far away."""
-            try:
-                with np.errstate(over="ignore"):
-                    return min(float(shape.height(side * x)) - depth, depth)
-            except OverflowError:
-                return depth
+    def height(x: float) -> float:
+        """Return the height, at most twice the depth: that of a steep shape overflows far away."""
+        try:
+            with np.errstate(over="ignore"):
+                return min(float(shape.height(x)), 2.0 * depth)
+        except OverflowError:
+            return 2.0 * depth
 
-        inner = shape.reach * (1.0 - 1e-12)
-        far = min(depth, inner)
-        while far < inner and above(far) < 0.0:
-            far = min(2.0 * far, inner)
-        found.append(brentq(above, 0.0, far, xtol=1e-300, rtol=1e-6) if above(far) > 0.0 else far)
-    return max(found)
+    def above(x: float) -> float:
+        return min(height(-x), height(x)) - depth
+
+    inner = shape.reach * (1.0 - 1e-12)
+    far = min(depth, inner)
+    while far < inner and above(far) < 0.0:
+        far = min(2.0 * far, inner)
+    return float(brentq(above, 0.0, far, xtol=1e-300, rtol=1e-6)) if above(far) > 0.0 else far
 
 
 def first_grid(shape: Any, body: Body, depth: float) -> Found:
