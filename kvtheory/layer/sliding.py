@@ -12,7 +12,7 @@ last three.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -68,6 +68,13 @@ class Sliding:
     y: Array
     pressure: Array
 
+    def relative_error(self, name: str) -> float:
+        """Return a relative error, of an edge to the length of the contact; what is exact has none."""
+        size = getattr(self, name)
+        if name.endswith("edge"):
+            size = self.trailing_edge - self.leading_edge
+        return self.errors[name] / abs(size) if self.errors[name] else 0.0
+
 
 def slide(
     shape: Any,
@@ -93,34 +100,27 @@ def slide(
     _require(shape, body)
     support = relaxed(shape, body, support, rtol)
     known: list[dict[str, float]] = []
-    wrong, errors = math.inf, dict[str, float]()
+    wrong = "the error is not known"
     for found in levels(shape, body, velocity, support):
+        grid = found.grid
         known.append(found.values(shape, body, velocity))
         if len(known) >= LEVELS:
-            errors = errors_of(known, found.grid.length)
+            errors = errors_of(known, grid.length)
             errors["friction_force"] += SAFETY * found.lag
             errors["friction_coefficient"] += SAFETY * found.lag / known[-1]["load"]
-            relative = {name: relative_error(name, known[-1], errors) for name in names}
-            worst = max(relative, key=relative.__getitem__)
-            wrong = relative[worst]
-        if wrong <= rtol:
-            x, pressure = found.grid.x[:, 0], found.pressure(body)
-            return Sliding(**known[-1], errors=errors, x=x, y=found.grid.y, pressure=pressure)
+            pressure = found.pressure(body)
+            state = Sliding(**known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=pressure)
+            worst = max(names, key=state.relative_error)
+            if state.relative_error(worst) <= rtol:
+                return state
+            wrong = f"{worst} has a relative error of {state.relative_error(worst):.1e}"
         share = min(found.cells / FINEST[shape.per_width], 1.0)
         report(share, f"{found.cells:,} cells along the contact")
     hint = "the limits that `asymptotes` has need no grid"
     if found.kinked(shape):
         hint = "an edge presses: slowly, friction falls as V ln(1/V), which takes cells shorter than V tau"
-    what = f"{worst} has a relative error of {wrong:.1e}" if errors else "the error is not known"
-    raise ToleranceError(f"at {velocity:g} m/s, on the finest grid, {what}, above {rtol:g}; {hint}")
-
-
-def relative_error(name: str, values: Mapping[str, float], errors: Mapping[str, float]) -> float:
-    """Return a relative error, of an edge to the length of the contact; of what is known exactly it is 0."""
-    size = values[name]
-    if name.endswith("edge"):
-        size = values["trailing_edge"] - values["leading_edge"]
-    return errors[name] / abs(size) if errors[name] else 0.0
+    message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
+    raise ToleranceError(f"{message}; {hint}")
 
 
 @lru_cache(maxsize=64)
