@@ -1,6 +1,7 @@
 """The body itself: compliance, memory, contact, and steady sliding on layers and half-spaces."""
 
 import math
+import tracemalloc
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +11,8 @@ from scipy.integrate import quad
 import kvtheory as kv
 from kvtheory.layer import compliance, memory
 from kvtheory.layer.body import Body, Support
+from kvtheory.layer.contact import Contact
+from kvtheory.layer.grid import Found, Grid
 from kvtheory.layer.sliding import SAFETY, errors_of, first_grid, levels, slide
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.foundations import GeneralizedMaxwell
@@ -352,7 +355,7 @@ def test_friction_of_a_wedge_at_low_velocity_is_not_proportional_to_it():
     )
     grown = 4.0 * 0.1**2 / (math.pi * body.compliance) * math.log(2.0)
     assert low - high == pytest.approx(grown, rel=0.03)
-    with pytest.raises(ToleranceError, match=r"friction_force .*an edge presses.* ln\(1/V\)"):
+    with pytest.raises(ToleranceError, match=r"friction_force .*an edge presses: .* ln\(1/V\)"):
         slide(wedge, body, 1e-9, Support(depth=1e-4), 0.5)
 
 
@@ -493,6 +496,19 @@ def test_an_edge_is_known_to_its_jumps_and_other_values_to_what_their_changes_ad
     assert errors_of(known, 0.01)["leading_edge"] == pytest.approx(0.2)
     assert errors_of(known, 0.01)["depth"] > 1.0
     assert errors_of(known, 0.3)["leading_edge"] == 0.3
+
+
+def test_memory_of_the_computer_grows_with_the_cells():
+    """Not with their square, of thousands of cells of a line."""
+    n, body = 2000, rubber(1e-3, 0.3)
+    grid = Grid(1e-6, -n, n, 1, None)
+    pressed = Contact(np.where(abs(grid.x) < 1e-3, 1.0, 0.0), 1e-4)
+    tracemalloc.start()
+    grid.influence(body, 0.05)
+    assert Found(grid, pressed).finer().grid.last < 2 * n
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10e6
 
 
 def test_what_is_refused():

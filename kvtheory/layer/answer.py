@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.layer.body import Body, Support
-from kvtheory.layer.sliding import CONVERGED, Sliding, at_rest, relative_error, slide
+from kvtheory.layer.sliding import CONVERGED, Sliding, at_rest, slide
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Certificate, PressureField, SteadyState, units_for
 from kvtheory.scene.model import Scene
@@ -61,11 +61,11 @@ def solve(
         rows.append(_row(each, found, held))
         fields = [] if size else [_field(found)]
         report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")
-    names = [*WITH_ERROR, "retardation_length", *WITH_ERROR]
-    table = np.array(rows, dtype=float).reshape(len(scenes), len(names)).T
+    known = *WITH_ERROR, "retardation_length"
+    table = np.array(rows, dtype=float).reshape(len(scenes), len(known) + len(WITH_ERROR)).T
     columns = [column.reshape(size) if size else float(column[0]) for column in table]
-    values: dict[str, Any] = dict(zip(names, columns[: -len(WITH_ERROR)], strict=False))
-    errors = dict(zip(WITH_ERROR, columns[-len(WITH_ERROR) :], strict=True))
+    values: dict[str, Any] = dict(zip(known, columns, strict=False))
+    errors = dict(zip(WITH_ERROR, columns[len(known) :], strict=True))
     return SteadyState(
         **values,
         dissipated_in_contact=np.full(size, math.nan) if size else math.nan,
@@ -80,9 +80,9 @@ def solve(
 def _row(scene: Scene, found: Sliding, held: Sliding) -> list[float]:
     """Return the quantities of one scene, and then the relative errors of those `WITH_ERROR`."""
     values = [getattr(found, name) for name in FOUND]
-    errors = [relative_error(name, vars(found), found.errors) for name in FOUND]
+    errors = [found.relative_error(name) for name in FOUND]
     half_length = 0.5 * (held.trailing_edge - held.leading_edge)
-    half_error = sum(relative_error(name, vars(held), held.errors) for name in EDGES)
+    half_error = sum(held.relative_error(name) for name in EDGES)
     retardation_length = abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     return [*values, half_length, retardation_length, *errors, half_error]
 

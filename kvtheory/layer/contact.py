@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct, idct, irfft, next_fast_len, rfft, rfftfreq
-from scipy.signal import lfilter
+from scipy.signal import lfilter, unit_impulse
 from scipy.sparse.linalg import LinearOperator, gmres
 
 Array = NDArray[np.float64]
@@ -97,7 +97,7 @@ class Influence:
         self.transformed, self.loss = self._transformed(influence), loss
         across = np.pi * np.arange(2 * m if self.folded else 1) / (2 * m)
         self.inverse = stiffness(2.0 * np.pi * rfftfreq(self.length)[:, None], across)
-        self.met = rfft(lfilter([1.0], memory, np.eye(n)[0]), self.length)[:, None]
+        self.met = rfft(lfilter([1.0], memory, unit_impulse(n)), self.length)[:, None]
 
     def _transformed(self, influence: Array) -> Array:
         (n, m), middle = self.shape, len(influence) // 2

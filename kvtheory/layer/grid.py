@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import unit_impulse
 
 from kvtheory.layer import compliance, memory
 from kvtheory.layer.body import Body, Support
@@ -85,7 +86,7 @@ class Grid(NamedTuple):
 
         sizes = rounded(n + 1), rounded(2 * m + 1), per_cell
         found = compliance.of_cell(*sizes, shift, H, nu, self.width)
-        loss, remembered = np.zeros_like(found), np.eye(n)[0]
+        loss, remembered = np.zeros_like(found), unit_impulse(n)
         if velocity != 0.0:
             travelled = self.travelled(body, velocity)
             remembered = body.creep.remembered(travelled, n)
@@ -131,7 +132,8 @@ class Found(NamedTuple):
         margin = 2 + int(np.ptp(i)) // 10
         low, high = int(i[0]) - margin, int(i[-1]) + 1 + margin
         rows = 1 if grid.width is None else int(j[-1]) + 1 + margin
-        spread = np.pad(spread, margin)[low + margin : high + margin, margin : margin + rows]
+        around = (margin, margin), (0, max(rows - spread.shape[1], 0))
+        spread = np.pad(spread, around)[low + margin : high + margin, :rows]
         first = 2 * grid.first
         finer = Grid(0.5 * grid.length, first + low, first + high, rows, grid.width)
         return Found(finer, Contact(spread, self.contact.depth))

@@ -12,7 +12,7 @@ last three.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -35,7 +35,7 @@ COARSE = 12
 """Cells along the contact on the first grid, at least."""
 FINEST = {True: 4000, False: 300}
 """Cells along the contact from which no finer grid follows: of a line, of a ball."""
-THINNEST = 1.0 / 50.0
+THINNEST = 1.0 / 8.0
 """Least thickness in cells: the influence of a cell much longer than the layer is thick is not resolved."""
 LEVELS = 3
 """Grids from which an error follows."""
@@ -68,6 +68,13 @@ class Sliding:
     y: Array
     pressure: Array
 
+    def relative_error(self, name: str) -> float:
+        """Return a relative error, of an edge to the length of the contact; what is exact has none."""
+        size = getattr(self, name)
+        if name.endswith("edge"):
+            size = self.trailing_edge - self.leading_edge
+        return self.errors[name] / abs(size) if self.errors[name] else 0.0
+
 
 def slide(
     shape: Any,
@@ -93,37 +100,27 @@ def slide(
     _require(shape, body)
     support = relaxed(shape, body, support, rtol)
     known: list[dict[str, float]] = []
-    wrong, errors = math.inf, dict[str, float]()
+    wrong = "the error is not known"
     for found in levels(shape, body, velocity, support):
+        grid = found.grid
         known.append(found.values(shape, body, velocity))
         if len(known) >= LEVELS:
-            errors = errors_of(known, found.grid.length)
+            errors = errors_of(known, grid.length)
             errors["friction_force"] += SAFETY * found.lag
             errors["friction_coefficient"] += SAFETY * found.lag / known[-1]["load"]
-            relative = {name: relative_error(name, known[-1], errors) for name in names}
-            worst = max(relative, key=relative.__getitem__)
-            wrong = relative[worst]
-        if wrong <= rtol:
-            x, pressure = found.grid.x[:, 0], found.pressure(body)
-            return Sliding(**known[-1], errors=errors, x=x, y=found.grid.y, pressure=pressure)
+            pressure = found.pressure(body)
+            state = Sliding(**known[-1], errors=errors, x=grid.x[:, 0], y=grid.y, pressure=pressure)
+            worst = max(names, key=state.relative_error)
+            if state.relative_error(worst) <= rtol:
+                return state
+            wrong = f"{worst} has a relative error of {state.relative_error(worst):.1e}"
         share = min(found.cells / FINEST[shape.per_width], 1.0)
         report(share, f"{found.cells:,} cells along the contact")
-    hint = (
-        "an edge presses, where friction falls as V ln(1/V), on cells shorter than what is travelled in the "
-        "longest retardation time"
-        if found.kinked(shape)
-        else "the limits that `asymptotes` has need no grid"
-    )
-    what = f"{worst} has a relative error of {wrong:.1e}" if errors else "the error is not known"
-    raise ToleranceError(f"at {velocity:g} m/s, on the finest grid, {what}, above {rtol:g}; {hint}")
-
-
-def relative_error(name: str, values: Mapping[str, float], errors: Mapping[str, float]) -> float:
-    """Return a relative error, of an edge to the length of the contact; of what is known exactly it is 0."""
-    size = values[name]
-    if name.endswith("edge"):
-        size = values["trailing_edge"] - values["leading_edge"]
-    return errors[name] / abs(size) if errors[name] else 0.0
+    hint = "the limits that `asymptotes` has need no grid"
+    if found.kinked(shape):
+        hint = "an edge presses: slowly, friction falls as V ln(1/V), which takes cells shorter than V tau"
+    message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
+    raise ToleranceError(f"{message}; {hint}")
 
 
 @lru_cache(maxsize=64)
@@ -174,10 +171,10 @@ def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterato
 def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     """Return the errors of the last of values on three grids or more.
 
-    The larger of the last two changes counts, as one may be small by chance: the ends of the contact
-    jump from cell to cell. Changes that fall by a factor r from grid to grid add up to r/(1 - r) of
-    the last one; r is the smaller of the last two ratios, where there are two. An edge is known to a cell at
-    best, and the ratios of its jumps say nothing.
+    The last change counts, but not less than a third of the one before, as one may be small by chance: the
+    ends of the contact jump from cell to cell. Changes that fall by a factor r from grid to grid add up to
+    r/(1 - r) of the last one; r is the smaller of the last two ratios, where there are two. An edge is known
+    to a cell at best, and the ratios of its jumps say nothing.
     """
     found = {}
     for name, last in known[-1].items():
@@ -185,7 +182,7 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
         if math.isinf(last):
             found[name] = 0.0
             continue
-        error = SAFETY * max(changes[-2:])
+        error = SAFETY * max(changes[-1], changes[-2] / 3.0)
         if name.endswith("edge"):
             found[name] = max(error, cell)
             continue
@@ -207,23 +204,23 @@ def _require(shape: Any, body: Body) -> None:
 
 def half_length(shape: Any, depth: float) -> float:
     """Return |x| where the surface is as high as the depth, on the farther side of the lowest point."""
-    found = []
-    for side in (-1.0, 1.0):
 
-        def above(x: float, side: float = side) -> float:
-            """Return the height over the depth, at most the depth: a steep shape overflows far away."""
-            try:
-                with np.errstate(over="ignore"):
-                    return min(float(shape.height(side * x)) - depth, depth)
-            except OverflowError:
-                return depth
+    def height(x: float) -> float:
+        """Return the height, at most twice the depth: that of a steep shape overflows far away."""
+        try:
+            with np.errstate(over="ignore"):
+                return min(float(shape.height(x)), 2.0 * depth)
+        except OverflowError:
+            return 2.0 * depth
 
-        inner = shape.reach * (1.0 - 1e-12)
-        far = min(depth, inner)
-        while far < inner and above(far) < 0.0:
-            far = min(2.0 * far, inner)
-        found.append(brentq(above, 0.0, far, xtol=1e-300, rtol=1e-6) if above(far) > 0.0 else far)
-    return max(found)
+    def above(x: float) -> float:
+        return min(height(-x), height(x)) - depth
+
+    inner = shape.reach * (1.0 - 1e-12)
+    far = min(depth, inner)
+    while far < inner and above(far) < 0.0:
+        far = min(2.0 * far, inner)
+    return float(brentq(above, 0.0, far, xtol=1e-300, rtol=1e-6)) if above(far) > 0.0 else far
 
 
 def first_grid(shape: Any, body: Body, depth: float) -> Found:
