@@ -228,7 +228,7 @@ EDITS = {
     "offset of depth": lambda s, f: {**s, "depth": s["depth"] + (f - 1.0) * s["depth"][0]},
     "drift of friction_force": lambda s, f: {**s, FORCES[1]: s[FORCES[1]] + (f - 1.0) * s[FORCES[0]][0]
                                              * s["time"] / s["time"][-1]},
-    "dry friction of friction_force": lambda s, f: {**s, FORCES[1]: s[FORCES[1]] - (f - 1.0)
+    "dry friction of friction_force": lambda s, f: {**s, FORCES[1]: s[FORCES[1]] - abs(f - 1.0)
                                                     * np.sign(s["leading_edge"]) * s[FORCES[0]]},
     "delay of both forces": lambda s, f: late(s, abs(f - 1.0) * 0.2 * s["time"][-1], FORCES),
     "low pass of both forces": lambda s, f: filtered(s, abs(f - 1.0) * 0.2 * s["time"][-1], FORCES),

@@ -257,7 +257,8 @@ def steady_limit(case: Case) -> list[Mean]:
     for curve in (name for name in exact if name in case.columns):
         ways = [({curve: 1.0}, case.bands[curve].systematic, since)]
         if curve in ALONG and speed and "normal_force" in case.columns:
-            ways.append((*_without_the_edge(case, curve), f"less F_z a/R, {since}"))
+            part = "" if theory.scene.indenter.per_width else f"{ARM_OF_BALL:.2g} "
+            ways.append((*_without_the_edge(case, curve), f"less {part}F_z a/R, {since}"))
         means = []
         for weights, smooth, words in ways:
             data, theirs = (

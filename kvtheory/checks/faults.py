@@ -195,9 +195,9 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
             if left:
                 text = f"{which} is missing: {K_i:.4g} N/m^3 with {tau_i * 1e3:.4g} ms"
                 yield other(f"{which} missing", text, foundation=maxwell(K, left))
-    if scene.drive.constant and scene.drive.rigid and scene.start.at_rest:
+    V, jumps = bench.theory.final_velocity, scene.drive.constant and scene.drive.rigid
+    if jumps and V and scene.start.at_rest and not bench.series.curve:
         text = "the velocity of the data rises to V within {1:.4g} ms: that of the scene jumps at the start"
-        V = bench.theory.final_velocity
         yield Hypothesis(
             "drive that starts slowly", text,
             lambda time: bench.against(replace(scene, drive=Drive(history=[(0.0, 0.0), (time, V)]))),

@@ -111,9 +111,9 @@ def rounded(values: Array, fewest: float = FEW_DIGITS[0], grid: bool = True) -> 
 def digits(values: Array) -> float:
     """Return with how many digits the largest value is written, infinite if with more than count."""
     largest, half = float(np.nanmax(np.abs(values))), float(rounded(values, grid=False).max())
-    return (
-        math.floor(math.log10(largest)) + 1 - math.log10(2.0 * half) if largest * half else math.inf
-    )
+    if not largest * half:
+        return math.inf
+    return math.floor(math.log10(largest)) + 1 - round(math.log10(2.0 * half))
 
 
 def time_rounding(time: Array) -> Array:
