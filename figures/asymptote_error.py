@@ -11,7 +11,7 @@ from kvtheory.plots import BLACK, BLUE, RED, plot_asymptote_errors
 
 RATIOS = np.geomspace(1e-4, 1e4, 241)
 TOLERANCE = 0.05
-PANELS = {"fixed": "FI model (fixed indenter)", "dead-weight": "MI model (dead weight)"}
+PANELS = {"fixed": "FI: fixed indenter", "dead-weight": "MI: dead weight"}
 STYLES = {
     "L1": {"color": BLUE, "linestyle": "-", "label": "$L_1$, Eq. 42"},
     "L2": {"color": RED, "linestyle": "--", "label": "$L_2$, Eq. 45 or 46"},

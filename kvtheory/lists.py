@@ -9,6 +9,6 @@ def split(text: str) -> list[str]:
     """
     items = [item.strip() for item in text.split(",")]
     if not all(items):
-        where = "is empty" if not any(items) else f"item {items.index('') + 1} is empty"
-        raise ValueError(f"{where}; expected at least one item, and one comma between two")
+        where = f"item {items.index('') + 1} of the list" if any(items) else "the list"
+        raise ValueError(f"{where} is empty; expected at least one item, and one comma between two")
     return items

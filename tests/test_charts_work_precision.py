@@ -346,11 +346,11 @@ def test_runs_of_several_scenes_cannot_be_added(tmp_path):
 
 def test_added_methods_have_marks_of_their_own():
     chart = make_chart(problem("table-1"), [METHODS["slow manifold"]], effort=BRIEF)
-    runs = {f"mine {k}": [(1.0 + k, 1e-3)] for k in range(len(MARKS))}
+    runs = {rf"mine $\oo$ {k}": [(1.0 + k, 1e-3)] for k in range(len(MARKS))}
     chart = with_runs(chart, runs, "depth, maximum")
     lines = draw_work_precision([chart], ["depth, maximum"]).axes[0].get_lines()
     looks = {line.get_label(): (line.get_color(), line.get_marker()) for line in lines}
-    found = [looks[name] for name in runs]
+    found = [looks[name.replace("$", r"\$")] for name in runs]  # no mathematics
     assert len({*found, *LOOKS.values()}) == len(found) + len(LOOKS)
 
 

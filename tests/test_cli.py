@@ -513,6 +513,7 @@ def stopped(name, *rest, **how):
         raise KeyboardInterrupt
     return genuine(name, *rest, **how)
 builtins.__import__ = stopped
+sys.argv = ["kvtheory", "steady"]
 entry.command()
 """
 
@@ -540,7 +541,10 @@ def test_an_interrupt_during_the_imports_is_a_message_too():
 )
 def test_an_empty_item_of_a_list_is_a_mistake(words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    refused(words, ["item 2 is empty; expected at least one item, and one comma between two"])
+    refused(
+        words,
+        ["item 2 of the list is empty; expected at least one item, and one comma between two"],
+    )
     assert not list(tmp_path.iterdir())
 
 

@@ -89,7 +89,7 @@ def test_a_range_is_of_one_kind_and_both_its_ends_are_known():
         (["--only", "eq333"], "unknown label 'eq333'; the nearest is 'eq33'"),
         (["--format", ""], "is empty; expected at least one item"),
         (["--format", ","], "is empty; expected at least one item"),
-        (["--format", "tex,,html"], "item 2 is empty"),
+        (["--format", "tex,,html"], "item 2 of the list is empty"),
         (["--format", "pfd"], "unknown format 'pfd'; the nearest is 'pdf'"),
         (["-o", "/proc/nothing/here"], "cannot write to"),
         (["-o", f"{__file__}/out"], "cannot write to"),

@@ -322,6 +322,20 @@ def test_a_table_fits_the_column_that_the_style_gives_it(width, monkeypatch):
     assert 5.0 <= table[0, 0].get_fontsize() <= 9.0
 
 
+def test_the_font_size_of_a_style_is_that_of_all_letters(monkeypatch):
+    sizes = []
+    monkeypatch.setattr(files, "replace_files", lambda _: None)
+    data = table2.compute(OTHER)
+
+    def draw():
+        sizes.append([mpl.rcParams[key] for key in ("axes.titlesize", "legend.fontsize")])
+        return table2.draw(data)
+
+    for style in ({"font.size": 4.5}, {"font.size": 4.5, "axes.titlesize": 7.0}):
+        files.save_picture(draw, Path("x.png"), style=style)
+    assert sizes == [[STYLE["axes.titlesize"] / 2.0, STYLE["legend.fontsize"] / 2.0], [7.0, 4.0]]
+
+
 def test_a_table_that_would_be_illegible_is_refused(tmp_path):
     style = tmp_path / "mine.mplstyle"
     style.write_text("figure.figsize: 1.5, 3")

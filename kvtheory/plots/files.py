@@ -33,6 +33,8 @@ LEAST_FONT, CLOSER = 5.0, 1.5
 """Smallest font, in points, of a table in a small figure; how much closer its rows may be, for their font."""
 LONGEST = 300
 """Characters of a message that are shown: LaTeX adds all of its output."""
+LETTERS = "labelsize", "titlesize", "fontsize"
+"""Ends of the names of settings that follow the font size."""
 Write = Callable[[Path], Any]
 """Writes a file."""
 
@@ -43,13 +45,20 @@ def save_picture(
 ) -> None:  # fmt: skip
     """Draw a figure, and write it in the formats of the suffixes, with the files `beside` it: all, or none.
 
-    A size in the `style` of a user replaces that of the figure. Where matplotlib fails with that style, or
-    warns of axes without room or of fonts and letters that are missing, `ValueError` is raised.
+    A size in the `style` of a user replaces that of the figure, and `font.size` is that of all letters. Where
+    matplotlib fails with that style, or warns of axes without room or of fonts and letters that are missing,
+    `ValueError` is raised.
     """
     for path in pictures:
         check_path(path, PICTURES)
     own = style or {}
-    with mpl.rc_context({**STYLE, **own}), warnings.catch_warnings(), _logged() as messages:
+    larger = own.get("font.size", STYLE["font.size"]) / STYLE["font.size"]
+    sizes = {key: larger * STYLE[key] for key in STYLE if key.endswith(LETTERS)}
+    with (
+        mpl.rc_context({**STYLE, **sizes, **own}),
+        warnings.catch_warnings(),
+        _logged() as messages,
+    ):
         if style:
             warnings.simplefilter("error", UserWarning)
             warnings.simplefilter("error", RuntimeWarning)

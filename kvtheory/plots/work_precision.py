@@ -59,7 +59,7 @@ def plot_work_precision(
                 good.append(p)
         model = series.kind == "model"
         artists += ax.plot(
-            x, y, ":" if model else "-", linewidth=1.0, label=series.method,
+            x, y, ":" if model else "-", linewidth=1.0, label=series.method.replace("$", r"\$"),
             markerfacecolor="white" if model else colour, **style,
         )  # fmt: skip
         for p, a, b in zip(good, x, y, strict=True):

@@ -14,7 +14,7 @@ from kvtheory.scene.capabilities import (
 from kvtheory.scene.start import REST
 from kvtheory.scene.static_state import StaticState
 
-SUPPORTS = {"fixed": "FI model (fixed indenter)", "dead-weight": "MI model (dead weight)"}
+SUPPORTS = {"fixed": "FI: fixed indenter", "dead-weight": "MI: dead weight"}
 WHAT = "a figure of the paper"
 Columns = Mapping[str, Any]
 """The data of a figure: columns by their heads."""

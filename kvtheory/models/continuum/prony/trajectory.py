@@ -212,10 +212,12 @@ class Trajectory(Finished):
     def _profile(self, task: int, xi: Array, s: float) -> Array:
         now, profile = self.states([s], peaks=False), np.zeros(1 + xi.size)
         given = 0, np.append(self.clock(s), xi)
-        if self.compiled:
-            KERNEL(task, self.run, *given, now, profile)
-        else:
-            evaluation.perform(task, self.run, *given, named(now), profile)
+        fast = self.compiled or (KERNEL.worthwhile() and prepared(self.arrays))
+        with nullcontext() if fast else KERNEL.interpreting():
+            if fast:
+                KERNEL(task, self.arrays, *given, now, profile)
+            else:
+                evaluation.perform(task, self.run, *given, named(now), profile)
         return profile[1:].reshape(xi.shape)
 
     @cached_property
