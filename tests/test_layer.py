@@ -371,6 +371,14 @@ def test_a_ball_on_a_damper_is_solved_on_fine_grids(H, V, load):
     assert known[-2] == pytest.approx(known[-1], rel=2e-3)
 
 
+def test_cells_on_a_damper_lag_as_a_wave_of_their_length():
+    """Friction, a small part of the moments of the pressure, needs few cells in a thin, slow contact."""
+    shape, body, V = Parabola(radius=R), Body.kelvin_voigt(1e6, 2.8e-4, 0.5, 0.02), 2e-3
+    known = {found.cells: found.friction for found in levels(shape, body, V, Support(depth=1e-4))}
+    coarse, *_, fine = (friction for cells, friction in known.items() if cells > 60)
+    assert coarse == pytest.approx(fine, rel=1e-2)
+
+
 def test_a_ball_on_a_stiff_arm_is_solved_where_it_slides_slowly():
     """Its friction is nearly V tau/R (F28), and needs thousands of cells that were hard to solve for."""
     V = -2e-6

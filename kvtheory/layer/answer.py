@@ -57,7 +57,7 @@ def solve(
         wanted = rtol or RTOL[shape.per_width]
         found = slide(shape, body, velocity, support, wanted, moving or CONVERGED, within)
         rest = (0.5 * wanted, EDGES) if HALF_LENGTH in names else (AT_REST,)
-        held = at_rest(shape, *body[:3], Support(found.depth), *rest)
+        held = at_rest(shape, body[:3], Support(found.depth), *rest)
         rows.append(_row(each, found, held))
         fields = [] if size else [_field(found)]
         report(len(rows) / len(scenes), f"{len(rows):,} of {len(scenes):,} scenes")

@@ -26,6 +26,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Stiffness = Callable[[Array, Array], Array]
 
 STEPS, RESTARTS = 40, 10
 """Steps of GMRES between restarts, and restarts; 5 to 30 steps in all are usual."""
@@ -64,11 +65,8 @@ class Contact(NamedTuple):
 
     def rise(self) -> float:
         """Return the sum over both edges of all rows of d(p^2)/dx, x in cells, behind the first cell."""
-        found = 0.0
-        for row in self.pressure.T:
-            first, third = np.pad(row[row > 0.0] ** 2, 3)[[[3, -4], [5, -6]]]
-            found += 0.5 * float(np.sum(np.maximum(third - first, 0.0)))
-        return found
+        rows = (np.pad(row[row > 0.0] ** 2, 3) for row in self.pressure.T)
+        return 0.5 * float(sum(np.maximum(row[[5, -6]] - row[[3, -4]], 0.0).sum() for row in rows))
 
 
 class Influence:
@@ -84,12 +82,7 @@ class Influence:
     """
 
     def __init__(
-        self,
-        influence: Array,
-        loss: Array,
-        m: int,
-        memory: Array,
-        stiffness: Callable[[Array, Array], Array],
+        self, influence: Array, loss: Array, m: int, memory: Array, stiffness: Stiffness
     ) -> None:
         n = len(memory)
         self.shape, self.folded = (n, m), influence.shape[1] > 1

@@ -30,6 +30,7 @@ from kvtheory.progress import Progress, silent
 from kvtheory.results.errors import ToleranceError
 
 Array = NDArray[np.float64]
+Elastic = tuple[float, float, float]
 
 COARSE = 12
 """Cells along the contact on the first grid, at least."""
@@ -125,24 +126,17 @@ def slide(
 
 @lru_cache(maxsize=64)
 def at_rest(
-    shape: Any,
-    modulus: float,
-    thickness: float,
-    poisson_ratio: float,
-    support: Support,
-    rtol: float,
-    names: tuple[str, ...] = CONVERGED,
+    shape: Any, elastic: Elastic, support: Support, rtol: float, names: tuple[str, ...] = CONVERGED
 ) -> Sliding:
-    """Return the contact at rest, which needs no memory, and is kept for other velocities."""
-    body = Body.kelvin_voigt(modulus, thickness, poisson_ratio, 0.0)
-    return slide(shape, body, 0.0, support, rtol, names)
+    """Return the contact at rest, which is kept; `elastic` is the body without its creep."""
+    return slide(shape, Body.kelvin_voigt(*elastic, 0.0), 0.0, support, rtol, names)
 
 
 def relaxed(shape: Any, body: Body, support: Support, rtol: float) -> Support:
     """Return a support whose spring is relaxed at a depth: unless one is given, that at rest."""
     if not support.spring or support.relaxed_depth is not None:
         return support
-    found = at_rest(shape, *body[:3], Support(load=support.load), rtol)
+    found = at_rest(shape, body[:3], Support(load=support.load), rtol)
     return support._replace(relaxed_depth=found.depth)
 
 
@@ -179,16 +173,13 @@ def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
     found = {}
     for name, last in known[-1].items():
         changes = [abs(late[name] - early[name]) for early, late in pairwise(known[-LEVELS - 1 :])]
-        if math.isinf(last):
-            found[name] = 0.0
-            continue
-        error = SAFETY * max(changes[-1], changes[-2] / 3.0)
-        if name.endswith("edge"):
-            found[name] = max(error, cell)
-            continue
         ratios = [late / early if early else 0.0 for early, late in pairwise(changes)]
         ratio = min(*ratios, SLOWEST)
-        found[name] = error * max(1.0, ratio / (1.0 - ratio))
+        error = SAFETY * max(changes[-1], changes[-2] / 3.0)
+        grown = (
+            max(error, cell) if name.endswith("edge") else error * max(1.0, ratio / (1.0 - ratio))
+        )
+        found[name] = 0.0 if math.isinf(last) else grown
     return found
 
 
