@@ -226,7 +226,8 @@ def diagnose(
     found = sorted([*seen, *tried], key=_order)
     named = [each for each in found if each.rank >= NAMED or each.enough]
     if small := all((case.excess(name) <= case.limit(name)).all() for name in case.names):
-        named = [each for each in named if each.enough]
+        seen_by_trials = not bench(case).untouched.enough
+        named = [each for each in named if each.enough and seen_by_trials]
     text = _words(failed, named, small)
     text += f" Not tried, after {MOST_SOLVED} scenes: {', '.join(skipped)}." if skipped else ""
     return text, tuple(named if small else (named or found)[:SHOWN])
