@@ -17,6 +17,7 @@ from kvtheory.checks.faults import parameters_of
 from kvtheory.checks.hypotheses import bench, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.fitting.series import read
+from kvtheory.results.comparison import Check
 from tests import confusion, engine
 
 SCENE, DENSITY = kv.Scene(run=kv.Run(0.15)), "200 /mm"
@@ -192,6 +193,18 @@ def test_what_a_mean_alone_shows_may_be_every_fault_that_brings_it_back(factor):
     else:
         assert found.explanations[0].name == "sine of the slope in friction"
         assert "dry friction of friction_force" not in listed
+
+
+def test_no_fault_is_asserted_for_what_neither_rows_nor_means_show():
+    """As where the balance of impulse fails alone: whatever fits the rows better does not explain that."""
+    data = {**theory(), "friction_force": 0.9992 * theory()["friction_force"]}
+    off = Check("impulse balance", 2.0, 1.0, False, "Eq. 17", "")
+    text, found = comparing.diagnose(cased(data), [off])
+    assert (
+        "too little is off to name one fault. Not proved, but fits better: friction force: 0.999"
+        in text
+    )
+    assert not any(each.enough for each in found)
 
 
 def test_no_unphysical_number_is_tried():

@@ -226,7 +226,10 @@ def diagnose(
     found = sorted([*seen, *tried], key=_order)
     named = [each for each in found if each.rank >= NAMED or each.enough]
     if small := all((case.excess(name) <= case.limit(name)).all() for name in case.names):
-        named = [each for each in named if each.enough]
+        sure = [each for each in named if each.enough]
+        if bench(case).untouched.enough:  # what failed does not show in the trials
+            sure = [each for each in sure if each.explained is None]
+        named = sure or [replace(each, enough=False) for each in named]
     text = _words(failed, named, small)
     text += f" Not tried, after {MOST_SOLVED} scenes: {', '.join(skipped)}." if skipped else ""
     return text, tuple(named if small else (named or found)[:SHOWN])
@@ -307,10 +310,15 @@ def _words(failed: Sequence[Check], named: Sequence[Explanation], small: bool) -
     A `small` difference is within the allowance of each row: how well a fault fits rows tells nothing then.
     """
     which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
-    if small and len(named) != 1:
+    if small and not (len(named) == 1 and named[0].enough):
         text = "Each row is within its allowance, and too little is off to name one fault"
         if named:
-            text += f". Each of these would explain it: {'; '.join(each.text for each in named[:SHOWN])}"
+            how = (
+                "Each of these would explain it"
+                if named[0].enough
+                else "Not proved, but fits better"
+            )
+            text += f". {how}: {'; '.join(each.text for each in named[:SHOWN])}"
         if (hidden := len(named) - SHOWN) > 0:
             text += f"; and {hidden} other{'s' * (hidden > 1)}"
         return f"{text}. Failed: {which}."

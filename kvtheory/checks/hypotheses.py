@@ -192,9 +192,14 @@ class Bench(Case):
         return rms(self._noise / sum(self._units))
 
     @cached_property
+    def untouched(self) -> Trial:
+        """How theory fits the data as they are."""
+        return self.rated(fixed("", "", None), (self.columns, self.now))
+
+    @property
     def start(self) -> float:
         """The score of the data as they are."""
-        return self.rated(fixed("", "", None), (self.columns, self.now)).score
+        return self.untouched.score
 
     def rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float = 0.0) -> Trial:
         """Return how a hypothesis fits with its unknown at x."""
