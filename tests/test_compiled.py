@@ -127,6 +127,24 @@ def test_a_run_asks_for_compiled_kernels_once_it_has_cost_as_much_as_to_load_the
     assert compilation.LOADING / compilation.ENOUGH <= kernel.spent < 1.15 * compilation.LOADING
 
 
+def test_profiles_of_an_interpreted_run_are_compiled_where_that_pays(monkeypatch):
+    pytest.importorskip("numba")
+    drive = BaseMotion.constant(4.0, 0.5)
+    run = trajectory.solve(drive, [(3.0, 0.1)], (3e-3, 0.0), 0.5, 1e-6, fast=False)
+    xi, found, calls = np.linspace(-1.1, 1.1, 9), {}, []
+    compiled_entry = trajectory.KERNEL.__call__
+    monkeypatch.setattr(
+        type(trajectory.KERNEL), "__call__", lambda _, *how: calls.append(1) or compiled_entry(*how)
+    )
+    for pays in (False, True):
+        monkeypatch.setattr(trajectory.KERNEL, "worthwhile", lambda *_, pays=pays: pays)
+        assert not calls
+        found[pays] = run.pressure(xi, 0.2), run.compression(xi, 0.2)
+    assert calls
+    assert np.array_equal(found[False], found[True])
+    assert found[True][0].max() > 0.0
+
+
 def test_interpreted_work_is_counted_and_that_of_compiled_kernels_is_not(monkeypatch):
     monkeypatch.setattr(compiled.KERNEL, "spent", 0.0)
     monkeypatch.setattr(compiled.KERNEL, "compiled", None)

@@ -50,7 +50,7 @@ def transient_methods() -> dict[str, Method]:
         Method("method of lines", "elements", DENSITIES[:5], "element updates", _lines, suits=_from_rest,
                growth=2.8, cost=60.0),
         *(Method(f"elements, {name}", "elements per a_0", DENSITIES, "element updates",
-                 partial(by_elements, scheme=name), growth=0.5, cost=0.1) for name in SCHEMES),
+                 partial(by_elements, scheme=name), growth=0.5, cost=0.05) for name in SCHEMES),
     ]  # fmt: skip
     return {method.name: method for method in found}
 

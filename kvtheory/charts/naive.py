@@ -5,6 +5,7 @@ a_0, forces by W_0 (f_x by W_0 delta_0/a_0).
 """
 
 import math
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -76,7 +77,8 @@ def solve_by_scipy(
 ) -> tuple[Array, int]:
     """Return the states at the instants and at the end by `solve_ivp`, and the evaluations."""
     tolerances = {"rtol": max(rtol, 3e-14), "atol": 0.01 * rtol}
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of LSODA: its message says the same
         try:
             run = solve_ivp(law, ends, y, method, dense_output=True, **tolerances)
         except (ValueError, OverflowError) as error:  # from numbers that are not finite

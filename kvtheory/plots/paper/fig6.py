@@ -83,7 +83,7 @@ def compute(scene: Scene | None = None) -> Data:
 
 def draw(data: Data) -> Figure:
     """Draw both panels."""
-    drawn = Picture(7.2, 3.4)
+    drawn = Picture(7.2, 3.8)
     for ax, (support, panel) in zip(drawn.subplots(1, 2, sharey=True), PANELS.items(), strict=True):
         ax.loglog(NUMBERS, data.curves[support], color="C1", linewidth=2.0, label="exact")
         ax.loglog(
@@ -105,10 +105,10 @@ def draw(data: Data) -> Figure:
         if support in data.own:
             ax.plot(*data.own[support], "*", color="C4", markersize=11, label="the scene")
     left, right = drawn.axes
-    left.legend(loc="center right", bbox_to_anchor=(1.0, 0.4))
+    drawn.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     right.plot(PEAK_DRIVE_NUMBER, PEAK_FRICTION, "D", color="C3", markersize=6)
     right.annotate(
-        f"maximum {PEAK_FRICTION:.4f}\nat {PEAK_DRIVE_NUMBER:.4f}, $l_\\mathrm{{r}} = \\sqrt{{3}}\\,a$",
+        f"maximum {PEAK_FRICTION:.4f}\nat {PEAK_DRIVE_NUMBER:.4f},\n$l_\\mathrm{{r}} = \\sqrt{{3}}\\,a$",
         (PEAK_DRIVE_NUMBER, PEAK_FRICTION), xytext=(2.0, 0.005), color="C3",
         arrowprops={"arrowstyle": "-", "color": "C3"},
     )  # fmt: skip
