@@ -145,8 +145,8 @@ class Ending:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None, as a cycle not reached."""
-        known = self.cycle is not None and self.cycle.settles
-        return {**record(self), "cycle": self.cycle.as_dict() if known else None}
+        cycle = self.cycle
+        return {**record(self), "cycle": cycle.as_dict() if cycle and cycle.settles else None}
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -162,7 +162,6 @@ class SprungTransient(Ending, Transient):
     sliding_velocity: Value
     spring_force: Value
     units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
-
     ended: Callable[[Cycle], Cycle] | None = field(default=None, repr=False, compare=False)
     """Of a cycle, itself; of steady sliding that is unstable, an unknown end."""
 

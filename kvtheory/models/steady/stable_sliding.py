@@ -63,8 +63,8 @@ def rates_of(scene: Scene) -> Any:
 
 def ended(scene: Scene, found: Cycle) -> Cycle:
     """Return how a motion ends, unknown if in steady sliding that is unstable: its ripple is still small."""
-    unstable = found.amplitude == 0.0 and lasts(scene) is not None and not lasts(scene)
-    return Cycle(0.0) if unstable else found
+    known = lasts(scene) if found.amplitude == 0.0 else None
+    return found if known is None or known else Cycle(0.0)
 
 
 def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
