@@ -29,8 +29,8 @@ HALF, FAINTER = 0.5, (0.2, 0.05)
 """Amplitudes of other runs as shares: of the cycle, for its fit; of the first ripple, if it fades."""
 BESIDE = 0.08
 """Share of its amplitude by which runs start below the cycle and above it."""
-FARTHEST, TRIES = 1.5, 6
-"""Largest factor from one amplitude to the next, and most of these."""
+FARTHEST, TRIES = 1.5, 3
+"""Largest factor from one amplitude to the next, and most of these: each costs three runs."""
 WEAK = 0.05
 """Largest growth of small ripples in a period that is taken from theory: larger, it is far less in error by
 elements, and no such polynomial any more down to small ripples."""
