@@ -14,7 +14,7 @@ from figures.benchmark_engines import judged
     ("name", "verdict", "words"),
     [
         ("start", "agrees", "All"),
-        ("steady", "disagrees", "The data fit tau = 20.09 ms rather than 20 ms"),
+        ("steady", "disagrees", "The data fit tau = 20.1 ms rather than 20 ms"),
         ("Hunt-Crossley", "disagrees", "The damping grows with the compression"),
         ("MuJoCo", "disagrees", "Friction coefficient: zero throughout"),
         ("reversal", "disagrees", "The indenter meets an undeformed foundation"),

@@ -180,7 +180,9 @@ def test_solve_climbs_to_the_layer_where_the_foundation_is_not_enough():
     assert "independent elements" in loose.certificate.statement
     strict = kv.solve(LINE, quantity=MU, rtol=error * 0.99)
     assert strict.model == "layer"
-    assert strict.friction_coefficient == kv.steady(LINE, method="layer").friction_coefficient
+    finer = kv.steady(LINE, method="layer")  # to 0.1 %
+    both = sum(found.certificate.relative_error[MU] for found in (strict, finer))
+    assert strict.friction_coefficient == pytest.approx(finer.friction_coefficient, rel=both)
     reasons = {step.rung: step.outcome for step in strict.climb}
     assert f"{MU} on independent elements is within {error:.2g}" in reasons["exact"]
     every = kv.solve(LINE, rtol=1e-3)
@@ -190,8 +192,8 @@ def test_solve_climbs_to_the_layer_where_the_foundation_is_not_enough():
 
 
 def test_solve_says_what_the_layer_does_not_know():
-    with pytest.raises(kv.ToleranceError, match=r"try a tolerance from 1.0e-02; .*within"):
-        kv.solve(BALL, rtol=1e-3)
+    with pytest.raises(kv.ToleranceError, match=r"try a tolerance from 1.0e-04; .*within"):
+        kv.solve(BALL, rtol=1e-5)
     with pytest.raises(kv.ToleranceError, match="dissipated_in_contact on the layer is not known"):
         kv.solve(LINE, quantity="dissipated_in_contact", rtol=0.5)
     thin = replace(LINE, foundation=replace(RUBBER, stiffness_from="thin"))

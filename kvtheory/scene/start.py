@@ -37,9 +37,9 @@ class Start(Part):
     spring is drawn.
 
     >>> Start(gap="5 mm").at(static_depth=1e-4, velocity=0.1)
-    StartState(depth=-0.005, rate=0.0, along_rate=0.0)
+    StartState(depth=-0.005, rate=0.0, along_rate=0.0, along=0.0)
     >>> Start(sliding_velocity="0 m/s").at(static_depth=1e-4, velocity=0.1)
-    StartState(depth=0.0001, rate=0.0, along_rate=0.1)
+    StartState(depth=0.0001, rate=0.0, along_rate=0.1, along=0.0)
     """
 
     gap: Value = quantity(
