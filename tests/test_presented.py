@@ -110,7 +110,7 @@ MU = "friction"
 def test_steady_sliding_is_drawn_over_what_varies(over, axes):
     state = kv.steady(over=over)
     if axes is None:
-        with pytest.raises(ValueError, match="form a table|empty"):
+        with pytest.raises(ValueError, match=r"form a table|empty"):
             state.plot()
         return
     ax = state.plot().axes[0]
