@@ -70,6 +70,6 @@ def panels(
     highest = max(image.get_clim()[1] for image in images)
     for image in images:
         image.set_clim(0.0, highest)
-    axes[1].legend(loc="upper right")
+    drawn.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     drawn.colorbar(images[1], ax=axes, label=label)
     return drawn

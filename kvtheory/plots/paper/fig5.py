@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from kvtheory.api import steady
 from kvtheory.plots.paper.models import SUPPORTS, Columns, sliding
 from kvtheory.plots.result import plot_steady
-from kvtheory.plots.style import LABELS, Picture
+from kvtheory.plots.style import Picture
 from kvtheory.scene import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -71,14 +71,9 @@ def draw(data: Data) -> Figure:
                 )  # fmt: skip
             ax.label_outer()
         column[0].set_title(title)
-    ax = axes[0, 0]
-    depths = np.array([each.depth for each in data.curves.values()]) * LABELS["depth"][1]
-    low, high = depths.min(), depths.max()
-    decades = np.floor(np.log10(low / 3.0)), np.ceil(np.log10(high))  # with space for the legend
-    ax.set_ylim(*(10.0**each for each in decades))
-    handles, labels = ax.get_legend_handles_labels()
-    (point,) = ax.plot([], [], "o", color="C2", fillstyle="none", markersize=4)
-    ax.legend([*handles, point], [*labels, "quadrature"], loc="lower left", ncols=2)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    (point,) = axes[0, 0].plot([], [], "o", color="C2", fillstyle="none", markersize=4)
+    drawn.legend([*handles, point], [*labels, "quadrature"], loc="outside lower center", ncols=2)
     return drawn
 
 
