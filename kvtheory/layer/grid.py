@@ -22,6 +22,8 @@ IN_PHASE = 0.5
 SLOW = 0.5
 """Cells travelled in a retardation time below which friction is its limit at low velocity: what edges add,
 which jump from cell to cell, is larger than what the limit lacks."""
+JUMPY = 2.0
+"""Cells travelled below which these jumps are not small yet, and may be equal on two grids by chance."""
 HALVINGS = 0.5 ** np.arange(1, 100)
 
 
@@ -112,7 +114,8 @@ class Found(NamedTuple):
     At low velocity it is from the limit (F28), which takes p - e, e the average of p over the way l that is
     travelled in a retardation time of share c, as l p'. At each edge, where p is P sqrt(x), this adds
     (pi/8) S P^2 c (1 - c/2) l^2, exactly so on a half-plane with one time, which is taken off. `lag` is what
-    may be wrong with that, an eighth of it without c/2: P is that of a few cells.
+    may be wrong with that, or with what the edges add at somewhat higher velocity, an eighth of it without
+    c/2: P is that of a few cells.
     """
 
     grid: Grid
@@ -153,13 +156,14 @@ class Found(NamedTuple):
             larger = grid._replace(first=grid.first - n, last=grid.last + n, rows=grid.rows + m)
             wider = Contact(np.pad(contact.pressure, ((n, n), (0, m))), depth)
             return Found(larger, wider).settled(shape, body, velocity, support)
-        travelled, lag = grid.travelled(body, velocity), 0.0
+        shares, travelled = body.creep.shares, grid.travelled(body, velocity)
+        edges, lag = 0.125 * math.pi / grid.length * contact.rise(), 0.0
+        if travelled.max() < JUMPY:
+            lag = 0.125 * unit * edges * float(shares @ travelled**2)
         if travelled.max() < SLOW:
             bent = grid.slope(shape, active, 0.5) - grid.slope(shape, active, -0.5)
-            shares, edges = body.creep.shares, 0.125 * math.pi / grid.length * contact.rise()
             lacks = edges * shares * (1.0 - 0.5 * shares) @ travelled**2
             friction = way * float(shares @ travelled * (pressed @ bent) - lacks)
-            lag = 0.125 * unit * edges * float(shares @ travelled**2)
         elif shift:
             friction = -float(pressed @ grid.slope(shape, active))
         else:

@@ -118,6 +118,8 @@ def slide(
         share = min(found.cells / FINEST[shape.per_width], 1.0)
         report(share, f"{found.cells:,} cells along the contact")
     hint = "the limits that `asymptotes` has need no grid"
+    if not body.creep.glassy:
+        hint = "the limit at low velocity that `asymptotes` has needs no grid; arms have one at high too"
     if found.kinked(shape):
         hint = "an edge presses: slowly, friction falls as V ln(1/V), which takes cells shorter than V tau"
     message = f"at {velocity:g} m/s, on the finest grid, {wrong}, above {rtol:g}"
@@ -143,23 +145,25 @@ def relaxed(shape: Any, body: Body, support: Support, rtol: float) -> Support:
 def levels(shape: Any, body: Body, velocity: float, support: Support) -> Iterator[Found]:
     """Yield the contact on grids of cells that become shorter by a factor of two.
 
-    They end with the finest, or before the first, but one, on which the contact is not found.
+    They end with the finest, or before the first on which the contact is not found; if that is the coarsest,
+    `ToleranceError` is raised.
     """
-    if support.depth is None:
-        start = depth_under(shape, body, velocity, support)
-    else:
-        start = first_grid(shape, body, support.depth)
-    cells = 0
+    found, cells = None, 0
     while cells < FINEST[shape.per_width]:
         try:
+            if found:
+                start = found.finer()
+            elif support.depth is None:
+                start = depth_under(shape, body, velocity, support)
+            else:
+                start = first_grid(shape, body, support.depth)
             found = start.settled(shape, body, velocity, support)
-        except ArithmeticError:
-            if not cells:
-                raise
-            return
+        except ArithmeticError as failed:
+            if found:
+                return
+            raise ToleranceError(f"at {velocity:g} m/s, on the first grid, {failed}") from None
         yield found
         cells = found.cells
-        start = found.finer()
 
 
 def errors_of(known: list[dict[str, float]], cell: float) -> dict[str, float]:
