@@ -60,19 +60,24 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 
     def run() -> Answer:
         # They are slow to import.
-        from kvtheory.models.elements.limit_cycle import limit_cycle
+        from kvtheory.models.elements.limit_cycle import MOST_RUNS, limit_cycle
         from kvtheory.models.elements.model import Model
         from kvtheory.models.elements.simulation import SAFETY
 
         length, rates = 2.0 * Model.of(scene).at_rest.half_length, rates_of(scene)
+        near = math.nan
 
         def solved(count: float, finer: float) -> tuple[Answer, float]:
+            nonlocal near
             result: Any = models.elements(scene, per_length=count / length, at=[scene.run.duration])
+            work = result.element_updates
             if not result.cycle.settles:
                 if not (result.ripples and scene.drive.ends):
                     need(_unsettled(scene, request, result))
-                result = replace(result, cycle=limit_cycle(scene, result, rates))
-            return _answer(scene, result, request, SAFETY), result.element_updates
+                found = limit_cycle(scene, result, rates, near, models.progress)
+                result, work = replace(result, cycle=found), work * MOST_RUNS
+                near = found.amplitude or math.nan
+            return _answer(scene, result, request, SAFETY), work
 
         return _known(scene, request, refined(scene, request, solved, gains=GAINS))
 

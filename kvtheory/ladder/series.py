@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.progress import Progress
 from kvtheory.results import (
     TRANSIENT_UNITS,
     Certificate,
@@ -89,12 +90,13 @@ NOT_AT_REST = "the motion does not start at rest"
 
 @dataclass(frozen=True)
 class Models:
-    """The public functions: `kvtheory.steady`, `transient`, `elements` and `fewer_arms`."""
+    """The public functions: `kvtheory.steady`, `transient`, `elements` and `fewer_arms`; and progress."""
 
     steady: Callable[..., SteadyState]
     transient: Callable[..., Transient]
     elements: Callable[..., Simulation]
     fewer_arms: Callable[..., FewerArms]
+    progress: Progress | None = None
 
 
 def rungs(models: Models) -> tuple[Rung, ...]:
