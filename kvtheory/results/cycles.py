@@ -45,8 +45,8 @@ GROWS, NOISE = 1.2, 0.1
 """Factor on the root mean square of the rate from one part to the next from which even such a motion grows,
 and share of that share above which a rate is no noise."""
 FALLEN = 1e-2
-"""Share of its largest value, since the drive keeps its velocity, to which the rate of a motion that is shown to
-fade falls: the end of a ramp sets all motions going, and one that grows is then seen."""
+"""Share to which a rate falls where motions fade, of its largest value since the velocity is kept: the end of
+a ramp sets all of them going, and one that grows is then seen."""
 DRIFTS = 4.0
 """Times the range in that quarter, by which steady sliding may drift further."""
 FEWEST = 8
@@ -183,6 +183,8 @@ def cycle(times: Array, states: States) -> Cycle:
     if math.isnan(limit):
         return Cycle(0.0)
     now = _measured(states, ends[-2], ends[-1])
+    if 2.0 * math.pi * now[0] <= speed * now[1]:  # noise, while the motion still drifts
+        return Cycle(0.0)
     step = now - _measured(states, ends[-2 - stride], ends[-1 - stride])
     change = sizes[-1] - sizes[-1 - stride]
     share = (limit - sizes[-1]) / change if limit != sizes[-1] else 0.0
