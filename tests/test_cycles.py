@@ -120,8 +120,10 @@ def test_a_search_ends_after_so_much_work_and_shows_its_progress(monkeypatch):
         return 1 + sum(b < a for a, b in itertools.pairwise(shares))
 
     assert runs() > MOST_RUNS
-    monkeypatch.setitem(ENOUGH, True, 0.0)
+    monkeypatch.setitem(ENOUGH, True, run.element_updates)
     assert runs() == MOST_RUNS
+    monkeypatch.setitem(ENOUGH, True, 1.0)
+    assert runs() == 1
 
 
 def test_a_search_begins_at_the_amplitude_with_fewer_elements():

@@ -33,9 +33,10 @@ BESIDE = 0.08
 """Share of its amplitude by which runs start below the cycle and above it."""
 FARTHEST, TRIES = 1.5, 3
 """Largest factor from one amplitude to the next, and most of these: each costs three runs."""
-MOST_RUNS, ENOUGH = 4, {True: 1e7, False: 1e8}
+MOST_RUNS, ENOUGH, MUCH = 4, {True: 1e7, False: 1e8}, 10.0
 """Runs of a search, and updates of elements, of a line contact and of a ball, after which it makes no other
-run: so many take about two seconds, and with fewer elements the amplitude is looked for."""
+run: so many take about two seconds, and with fewer elements the amplitude is looked for. After so many times
+as many it ends in any case."""
 WEAK = 0.05
 """Largest growth of small ripples in a period that is taken from theory: larger, it is far less in error by
 elements, and no such polynomial any more down to small ripples."""
@@ -95,7 +96,7 @@ def _search(
     def follow(amplitude: float) -> list[Growth]:
         """Return the growths from about this amplitude on: with all elements, and in the coarse runs."""
         nonlocal scale, runs, work
-        if runs >= MOST_RUNS and work > enough:
+        if work > enough * (1.0 if runs >= MOST_RUNS else MUCH):
             raise ArithmeticError("the search takes too long")
         along = given.centre + amplitude / scale
         start = Drawn(depth=None if scene.held else given.depth, along=along)
