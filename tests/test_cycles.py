@@ -1,5 +1,6 @@
 """The cycle in which a motion on a spring ends: of any shape by elements, its error, and notes before it."""
 
+import itertools
 import math
 import re
 from dataclasses import replace
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements.limit_cycle import limit_cycle
+from kvtheory.models.continuum.prony.trajectory import Trajectory
+from kvtheory.models.elements.limit_cycle import ENOUGH, MOST_RUNS, limit_cycle
 from kvtheory.results.cycles import CYCLE, Cycle, cycle, sampled
 from kvtheory.scene.static_state import StaticState
 from tests.transient_ball import sheet_on_spring
@@ -106,6 +108,32 @@ def test_a_ripple_near_the_onset_is_steady_sliding_only_where_it_fades(share):
         assert (found.amplitude == 0.0) == (share < 1.0)
 
 
+def test_a_search_ends_after_so_much_work_and_shows_its_progress(monkeypatch):
+    scene = LINE.replace({"drive.velocity": 0.09305161908366982 * (1.0 + 1e-4)})
+    run, shares = kv.elements(scene, per_length="60 /mm", at=[1.2]), list[float]()
+    rates = kv.stability(scene).rates
+
+    def runs():
+        shares.clear()
+        found = limit_cycle(scene, run, rates, progress=lambda share, _: shares.append(share))
+        assert found.settles == 0.0
+        return 1 + sum(b < a for a, b in itertools.pairwise(shares))
+
+    assert runs() > MOST_RUNS
+    monkeypatch.setitem(ENOUGH, True, run.element_updates)
+    assert runs() == MOST_RUNS
+    monkeypatch.setitem(ENOUGH, True, 1.0)
+    assert runs() == 1
+
+
+def test_a_search_begins_at_the_amplitude_with_fewer_elements():
+    run = kv.elements(LINE, per_length="60 /mm", at=[1.2])
+    rates, ends = kv.stability(LINE).rates, list[float]()
+    found = limit_cycle(LINE, run, rates, 2.64e-4, lambda share, _: ends.append(share))
+    assert found.amplitude == pytest.approx(2.638309e-4, rel=5e-3)
+    assert 1 + sum(b < a for a, b in itertools.pairwise(ends)) == MOST_RUNS
+
+
 def test_a_run_too_short_for_its_cycle_is_told_how_long_it_would_take():
     with pytest.raises(kv.ToleranceError, match=r"change at 0.386 1/s.* last about 17.9 s"):
         kv.solve(replace(LINE, run=kv.Run("0.15 s")), quantity=AMPLITUDE)
@@ -153,6 +181,38 @@ def test_solve_gives_the_cycle_or_says_why_not():
         kv.solve(BALL, quantity=AMPLITUDE, at="1 ms")
     with pytest.raises(kv.SceneError, match="does not belong to the cycle"):
         kv.solve(BALL, quantity=[AMPLITUDE, "load"])
+
+
+def test_the_cycle_on_rubber_needs_no_peak_pressures(monkeypatch):
+    rubber, asked = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["50 GN/m^3", "100 ms"]]), list[bool]()
+    drive = kv.Drive("50 mm/s", stiffness="1 MN/m^2")
+    run = kv.transient(kv.Scene(foundation=rubber, drive=drive, run=kv.Run("5 ms")), rtol=1e-4)
+    states = Trajectory.states
+
+    def watched(self, s, *, peaks=True):
+        asked.append(peaks)
+        return states(self, s, peaks=peaks)
+
+    monkeypatch.setattr(Trajectory, "states", watched)
+    assert run.cycle.settles == 0.0
+    assert asked
+    assert not any(asked)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "ramp", "after", "steady"),
+    [(0.04, 1.0, 1.0, True), (0.04, 3.0, 0.5, False), (0.1, 10.0, 0.5, False)],
+)
+def test_a_ramp_ends_in_steady_sliding_of_unknown_stability_only_if_the_motion_fades(
+    velocity, ramp, after, steady
+):
+    # At 0.1 m/s it ends in a cycle, to be seen eight seconds later.
+    history = [(0.0, 0.0), (ramp, velocity)]
+    drive = kv.Drive(history=history, stiffness="1 MN/m^2", mass="0.1 kg/mm")
+    scene = kv.Scene(kv.Circle("10 mm"), drive=drive, run=kv.Run(ramp + after))
+    found = kv.elements(scene, per_length="30 /mm", at=[ramp + after])
+    assert (found.cycle.settles, found.cycle.amplitude == 0.0) == (float(steady), steady)
+    assert (found.as_dict()["cycle"] is None) == (not steady)
 
 
 def ripple(t, growth, size=2e-5):

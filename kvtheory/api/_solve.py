@@ -119,7 +119,7 @@ def solve(
         times_of(scene, at)
     problems.report()
     follow, simulate = partial(transient, progress=progress), partial(elements, progress=progress)
-    models = series.Models(steady, follow, simulate, fewer_arms)
+    models = series.Models(steady, follow, simulate, fewer_arms, progress)
     if over_time or of_cycle:
         rungs = (cycles if of_cycle else series).rungs(models)
     else:

@@ -39,8 +39,10 @@ UNSETTLED = (
 
 def rungs(models: Models) -> tuple[Rung, ...]:
     """Return the rungs in order of cost."""
-    table = ("continuum", "a parabola", _continuum), ("elements", "none", _elements)
-    return tuple(Rung(name, assumed, partial(judge, models)) for name, assumed, judge in table)
+    return (
+        Rung("continuum", "a parabola", partial(_continuum, models)),
+        Rung("elements", "none", partial(_elements, models)),
+    )
 
 
 def _continuum(models: Models, scene: Scene, request: Request) -> Offer:
@@ -60,19 +62,24 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 
     def run() -> Answer:
         # They are slow to import.
-        from kvtheory.models.elements.limit_cycle import limit_cycle
+        from kvtheory.models.elements.limit_cycle import MOST_RUNS, limit_cycle
         from kvtheory.models.elements.model import Model
         from kvtheory.models.elements.simulation import SAFETY
 
         length, rates = 2.0 * Model.of(scene).at_rest.half_length, rates_of(scene)
+        near = math.nan
 
         def solved(count: float, finer: float) -> tuple[Answer, float]:
+            nonlocal near
             result: Any = models.elements(scene, per_length=count / length, at=[scene.run.duration])
+            work = result.element_updates
             if not result.cycle.settles:
                 if not (result.ripples and scene.drive.ends):
-                    need(_unsettled(scene, request, result))
-                result = replace(result, cycle=limit_cycle(scene, result, rates))
-            return _answer(scene, result, request, SAFETY), result.element_updates
+                    raise ValueError(_unsettled(scene, request, result))
+                found = limit_cycle(scene, result, rates, near, models.progress)
+                result, work = replace(result, cycle=found), work * MOST_RUNS
+                near = found.amplitude or math.nan
+            return _answer(scene, result, request, SAFETY), work
 
         return _known(scene, request, refined(scene, request, solved, gains=GAINS))
 
@@ -95,16 +102,15 @@ def _answer(scene: Scene, result: Any, request: Request, safety: float) -> Answe
 
 def _known(scene: Scene, request: Request, answer: Answer) -> Answer:
     """Return the answer, or raise ValueError if it is not known how the motion ends."""
-    infinite = math.inf in answer.certificate.relative_error.values()
-    need(_unsettled(scene, request, answer.result) if infinite else "")
+    if math.inf in answer.certificate.relative_error.values():
+        raise ValueError(_unsettled(scene, request, answer.result))
     return answer
 
 
 def _unsettled(scene: Scene, request: Request, result: Any) -> str:
     """Return why it is not known how a motion ends, and how long small ripples take."""
-    reasons, rates = [UNSURE], rates_of(scene)
-    if not result.cycle.settles:
-        reasons = [UNSETTLED, *result.notes]
+    rates = rates_of(scene)
+    reasons = [UNSURE] if result.cycle.settles else [UNSETTLED, *result.notes]
     turning = rates[rates[:, 1] > 0.0] if rates is not None else np.zeros((0, 2))
     if turning.any():
         rate = float(turning[:, 0].max())

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from kvtheory.ladder.climbing import Answer, Offer, Request, Rung, need
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.progress import Progress
 from kvtheory.results import (
     TRANSIENT_UNITS,
     Certificate,
@@ -89,12 +90,13 @@ NOT_AT_REST = "the motion does not start at rest"
 
 @dataclass(frozen=True)
 class Models:
-    """The public functions: `kvtheory.steady`, `transient`, `elements` and `fewer_arms`."""
+    """The public functions: `kvtheory.steady`, `transient`, `elements` and `fewer_arms`; and progress."""
 
     steady: Callable[..., SteadyState]
     transient: Callable[..., Transient]
     elements: Callable[..., Simulation]
     fewer_arms: Callable[..., FewerArms]
+    progress: Progress | None = None
 
 
 def rungs(models: Models) -> tuple[Rung, ...]:
@@ -265,13 +267,12 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
             if before is None:
                 held, effect, message = _with_fewer_arms(models, scene, request, answer, result)
             elif request.times is not None:
-                own, errors = answer.certificate, dict(answer.certificate.relative_error)
-                for name in errors.keys() & measures.keys():
-                    apart = np.abs(np.asarray(answer.values[name]) - before.values[name])
-                    change = float(np.nanmax(apart, initial=0.0)) / measures[name]
-                    errors[name] = max(errors[name], change / finer)
-                statement = f"{own.statement}; {COARSER}"
-                own = Certificate(own.kind, statement, errors, AT_REST)
+                own, apart = answer.certificate, _apart(answer, before, measures)
+                errors = {
+                    name: max(error, apart.get(name, 0.0) / finer)
+                    for name, error in own.relative_error.items()
+                }
+                own = Certificate(own.kind, f"{own.statement}; {COARSER}", errors, AT_REST)
                 answer = answer._replace(certificate=own)
             if message:
                 answer = _widened(answer, message, effect)
@@ -321,19 +322,22 @@ def _with_fewer_arms(
     other = _picked(
         models.elements(fewer.scene, per_length=run.per_length, at=request.times), request
     )
-    change, scale = {}, scales(StaticState.of(scene))
-    for name in (name for name in request.quantities if name in scale):
-        apart = np.abs(np.asarray(answer.values[name]) - other.values[name])
-        change[name] = max(
-            SAFETY_OF_ARMS * float(np.nanmax(apart, initial=0.0)) / scale[name], least
-        )
+    apart = _apart(answer, other, scales(StaticState.of(scene)))
+    change = {name: max(SAFETY_OF_ARMS * each, least) for name, each in apart.items()}
     if max(change.values(), default=0.0) > SAFETY_OF_ARMS * least:
         return scene, {}, ""
-    return (
-        fewer.scene,
-        change,
-        BY_FEWER_ARMS.format(SAFETY_OF_ARMS, len(fewer.arms), arms, SHARE_OF_ARMS),
-    )
+    statement = BY_FEWER_ARMS.format(SAFETY_OF_ARMS, len(fewer.arms), arms, SHARE_OF_ARMS)
+    return fewer.scene, change, statement
+
+
+def _apart(answer: Answer, other: Answer, measures: dict[str, float]) -> dict[str, float]:
+    """Return the largest differences of two answers, of quantities with a measure."""
+    names = [name for name in answer.certificate.relative_error if name in measures]
+    apart = [np.abs(np.asarray(answer.values[name]) - other.values[name]) for name in names]
+    return {
+        name: float(np.nanmax(each, initial=0.0)) / measures[name]
+        for name, each in zip(names, apart, strict=True)
+    }
 
 
 def _series(

@@ -44,6 +44,9 @@ quarter of the motion, given by its two parts."""
 GROWS, NOISE = 1.2, 0.1
 """Factor on the root mean square of the rate from one part to the next from which even such a motion grows,
 and share of that share above which a rate is no noise."""
+FALLEN = 1e-2
+"""Share to which a rate falls where motions fade, of its largest value since the velocity is kept: the end of
+a ramp sets all of them going, and one that grows is then seen."""
 DRIFTS = 4.0
 """Times the range in that quarter, by which steady sliding may drift further."""
 FEWEST = 8
@@ -70,7 +73,8 @@ class Cycle(Recorded):
     `amplitude` is half the travel of the indenter along x; steady sliding has none, and no `period`. The
     others are the extremes of the sliding velocity and of the friction force. `errors` has one for each
     value, relative to the amplitude, the period, and the range of the velocity or force (of steady sliding
-    its size); infinite where they are not known.
+    its size); infinite where they are not known. `fell` is whether the motion was shown to fade to steady
+    sliding, since the drive keeps its velocity.
     """
 
     settles: float
@@ -81,11 +85,12 @@ class Cycle(Recorded):
     largest_friction: float = math.nan
     smallest_friction: float = math.nan
     errors: tuple[float, ...] = (math.nan,) * 6
+    fell: bool = True
 
     @property
     def values(self) -> Array:
         """The six values, in the order of `CYCLE`."""
-        return np.array(astuple(self)[1:-1])
+        return np.array(astuple(self)[1:-2])
 
     @property
     def known(self) -> "Cycle":
@@ -165,15 +170,21 @@ def cycle(times: Array, states: States) -> Cycle:
         ]
         drifts = [DRIFTS * np.ptp(each) / (abs(each[-1]) or 1.0) for each in late]
         slide, force = (each[-1] for each in late)
-        return known_cycle(
+        V = found["sliding_velocity"] + rates
+        changing = np.flatnonzero(np.abs(V - V[-1]) > STEADY * np.abs(V).max())
+        since = np.abs(rates[np.append(changing, -1).max() + 1 :])
+        steady = known_cycle(
             [0.0, math.nan, slide, slide, force, force], [0.0, 0.0, *np.repeat(drifts, 2)]
         )
+        return replace(steady, fell=bool(not speed or second < FALLEN * since.max(initial=0.0)))
     turns, x = _turns(states, times, rates)
     ends, sizes = _cycles(turns, x)
     stride, limit, doubt = _limit(sizes)
     if math.isnan(limit):
         return Cycle(0.0)
     now = _measured(states, ends[-2], ends[-1])
+    if 2.0 * math.pi * now[0] <= speed * now[1]:  # noise, while the motion still drifts
+        return Cycle(0.0)
     step = now - _measured(states, ends[-2 - stride], ends[-1 - stride])
     change = sizes[-1] - sizes[-1 - stride]
     share = (limit - sizes[-1]) / change if limit != sizes[-1] else 0.0

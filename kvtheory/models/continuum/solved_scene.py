@@ -167,7 +167,7 @@ class SolvedScene:
         }  # fmt: skip
 
         def states(time: Array) -> dict[str, Array]:
-            found = motion.states(np.minimum(time / units.time, motion.end))
+            found = motion.states(np.minimum(time / units.time, motion.end), peaks=False)
             return {name: found[name] * own for name, own in scale.items()}
 
         return cycle(np.array(s[:count]) * units.time, states)

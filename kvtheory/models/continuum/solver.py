@@ -174,8 +174,11 @@ class Trajectory(Finished):
             normal_force=float(row["normal_force"]), friction_force=float(row["friction_force"]),
         )  # fmt: skip
 
-    def states(self, s: ArrayLike) -> NDArray[Any]:
-        """Return the states at an array of times as a structured array, see `evaluation.STATE`."""
+    def states(self, s: ArrayLike, *, peaks: bool = True) -> NDArray[Any]:
+        """Return the states at an array of times as a structured array, see `evaluation.STATE`.
+
+        They always have `peaks`, which only on a Prony series are much work.
+        """
         times = np.asarray(s, dtype=float)
         if not ((times >= 0.0) & (times <= self.end)).all():
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")

@@ -10,6 +10,7 @@ is known, and only c and e from elements; of both cycles that with the smaller e
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES
 from kvtheory.models.elements.simulation import SAFETY, simulate
+from kvtheory.progress import Progress
 from kvtheory.results.cycles import Cycle, Ripple, known_cycle, scale_of
 from kvtheory.results.transient import SprungSimulation
 from kvtheory.scene.model import Run, Scene
@@ -31,6 +33,10 @@ BESIDE = 0.08
 """Share of its amplitude by which runs start below the cycle and above it."""
 FARTHEST, TRIES = 1.5, 3
 """Largest factor from one amplitude to the next, and most of these: each costs three runs."""
+MOST_RUNS, ENOUGH, MUCH = 4, {True: 1e7, False: 1e8}, 10.0
+"""Runs of a search, and updates of elements, of a line contact and of a ball, after which it makes no other
+run: so many take about two seconds, and with fewer elements the amplitude is looked for. After so many times
+as many it ends in any case."""
 WEAK = 0.05
 """Largest growth of small ripples in a period that is taken from theory: larger, it is far less in error by
 elements, and no such polynomial any more down to small ripples."""
@@ -54,34 +60,51 @@ class Growth(NamedTuple):
         return cls(np.sqrt(sizes[1:] * sizes[:-1]), np.diff(np.log(sizes)), ripple)
 
 
-def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> Cycle:
+def limit_cycle(
+    scene: Scene, found: SprungSimulation, rates: Array | None, near: float = math.nan,
+    progress: Progress | None = None,
+) -> Cycle:  # fmt: skip
     """Return the cycle to which the ripple at the end of a run tends; unknown if it is not found.
 
-    `rates` are those of small motions by theory, see `Stability`, None if they are not known.
+    `rates` are those of small motions by theory, see `Stability`, None if they are not known; `near` is the
+    amplitude with fewer elements, if known.
     """
     if not found.ripples or scene.depths or not scene.drive.ends:
         return Cycle(0.0)
+    with suppress(ArithmeticError):  # of a run that fails, or is too much work
+        return _search(scene, found, rates, near, progress)
+    return Cycle(0.0)
+
+
+def _search(
+    scene: Scene, found: SprungSimulation, rates: Array | None, near: float,
+    progress: Progress | None,
+) -> Cycle:  # fmt: skip
+    """Look for the cycle of a ripple, or raise ArithmeticError if that is too much work."""
     (given, *_), scale = found.ripples, 1.0
     end, size = PERIODS * given.period, float(given.sizes[-1])
     plain = replace(scene.at(scene.drive.final_velocity), run=Run(end))
+    runs, work, enough = 0, 0, ENOUGH[scene.indenter.per_width]
     turning = rates[rates[:, 1] > 0.0].tolist() if rates is not None else []
     rate, _ = min(
         turning,
         key=lambda pair: abs(pair[1] * given.period - 2.0 * math.pi),
         default=(math.nan, 0.0),
     )
-
     theory = rate if abs(rate) * given.period <= WEAK else math.nan
 
     def follow(amplitude: float) -> list[Growth]:
         """Return the growths from about this amplitude on: with all elements, and in the coarse runs."""
-        nonlocal scale
+        nonlocal scale, runs, work
+        if work > enough * (1.0 if runs >= MOST_RUNS else MUCH):
+            raise ArithmeticError("the search takes too long")
         along = given.centre + amplitude / scale
         start = Drawn(depth=None if scene.held else given.depth, along=along)
         run = simulate(
             replace(plain, start=start), 1.0 / found.per_length, SCHEMES[DEFAULT], at=[end],
-            time_step=None, certify=True,
+            time_step=None, certify=True, progress=progress,
         )  # fmt: skip
+        runs, work = runs + 1, work + run.element_updates
         growths = [Growth.of(each) for each in getattr(run, "ripples", ())]
         if not growths:
             raise ArithmeticError("there is no ripple")
@@ -95,16 +118,17 @@ def limit_cycle(scene: Scene, found: SprungSimulation, rates: Array | None) -> C
     fainter = [share * given.sizes.max() for share in FAINTER if share * given.sizes.max() < size]
     if not fainter:
         return _faded([ended], rate, np.zeros(len(ended)))
+    size = size if math.isnan(near) else near
     known = [ended, follow(HALF * size)]
-    tried = _amplitude([each[0] for each in known], theory)
+    near = _amplitude([each[0] for each in known], theory) if math.isnan(near) else near
     for _ in range(TRIES):
-        if not tried > 0.0:
+        if not near > 0.0:
             break
-        tried = min(max(tried, size / FARTHEST), size * FARTHEST)
-        known = [follow(share * tried) for share in (HALF, 1.0 - BESIDE, 1.0 + BESIDE)]
-        size, tried = tried, _amplitude([each[0] for each in known], theory)
+        near = min(max(near, size / FARTHEST), size * FARTHEST)
+        known = [follow(share * near) for share in (HALF, 1.0 - BESIDE, 1.0 + BESIDE)]
+        size, near = near, _amplitude([each[0] for each in known], theory)
         low, high = (float(each[0].sizes.mean()) for each in known[1:])
-        if low < tried < high:
+        if low < near < high:
             ways = [
                 [_cycle(each, g) for each in zip(*known, strict=True)] for g in (theory, math.nan)
             ]

@@ -62,9 +62,12 @@ def rates_of(scene: Scene) -> Any:
 
 
 def ended(scene: Scene, found: Cycle) -> Cycle:
-    """Return how a motion ends, unknown if in steady sliding that is unstable: its ripple is still small."""
-    known = lasts(scene) if found.amplitude == 0.0 else None
-    return found if known is None or known else Cycle(0.0)
+    """Return how a motion ends, unknown if in steady sliding that is unstable: its ripple is still small.
+
+    So it may be where stability is not known, unless the motion was shown to fade.
+    """
+    known = lasts(scene) if found.amplitude == 0.0 else True
+    return found if (found.fell if known is None else known) else Cycle(0.0)
 
 
 def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
