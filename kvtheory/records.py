@@ -4,7 +4,9 @@ Interpreted, a record is an object with attributes, and many of them are a list;
 arrays. In both, `record.depth` is a field.
 """
 
+from collections.abc import Callable
 from functools import cache
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -24,7 +26,8 @@ def structured(rows: Any, kind: np.dtype[Any]) -> Any:
             return [plain(each) for each in record]
         if not isinstance(record, _Record):
             return record
-        return tuple([plain(getattr(record, name)) for name in record.layout.names or ()])
+        values = record.fields(record)
+        return tuple(map(plain, values)) if record.nested else values
 
     return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
 
@@ -59,6 +62,8 @@ class _Record:
     """An object with the fields of a record."""
 
     layout: np.dtype[Any]
+    fields: Callable[[Any], tuple[Any, ...]]
+    nested: bool
 
     def __reduce__(self) -> Any:
         """Return how it is made again in another process."""
@@ -76,7 +81,8 @@ def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], in
     nested = [(name, kind[name].base, count) for name, (count, *_) in shapes.items()
               if count or kind[name].names]  # fmt: skip
     plain = dict.fromkeys(shapes, 0) | {n: 0.0 for n in shapes if kind[n].kind == "f"}
-    return type("Record", (_Record,), {**plain, "layout": kind}), nested
+    own = {"layout": kind, "fields": attrgetter(*shapes), "nested": bool(nested)}
+    return type("Record", (_Record,), {**plain, **own}), nested
 
 
 def blanks(count: int, kind: np.dtype[Any]) -> list[Any]:

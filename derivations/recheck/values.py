@@ -76,9 +76,6 @@ class Point:
 
     def _value(self, tree: Tree) -> Value:
         op, args = tree.op, tree.args
-        known = getattr(self, f"_{op}", None)
-        if known is not None:
-            return known(*args)
         if op == "+":
             return reduce(add, map(self.value, args))
         if op == "*":
@@ -87,6 +84,9 @@ class Point:
             return powered(self.value(args[0]), self.value(args[1]), self._analytic)
         if op == "symbol":
             return drawn(self.facts.get(args[0], ()), self.draw, *self.ranges.get(tree, ()))
+        known = getattr(self, f"_{op}", None)
+        if known is not None:
+            return known(*args)
         if len(args) != 1:
             raise UnsupportedError(f"the expression {op}")
         return applied(op, self.value(args[0]), self._analytic)

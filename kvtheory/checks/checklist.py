@@ -219,7 +219,10 @@ def largest(case: Case, name: str) -> Measured:
 
 def root_mean_square(case: Case, name: str) -> Measured:
     """Compare all values or means of a curve together: what noise may leave beyond the smooth allowance."""
-    found = [(case.beyond(name, n), case.rms_limit(name, n)) for n in lengths(case)]
+    found = [
+        (case.beyond(name, n)(means(case.columns[name], n)), case.rms_limit(name, n))
+        for n in lengths(case)
+    ]
     return *max(found, key=lambda each: each[0] / each[1]), ""
 
 

@@ -1,7 +1,7 @@
 """A series and its theory, as all checks use them, and the effects of elements and time steps (F15)."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,11 +123,13 @@ class Case:
         """Return the limit in the unit of the curve."""
         return np.asarray(self.limit(name) * self.theory.scales[name])
 
-    def beyond(self, name: str, rows: int) -> float:
-        """Return the root mean square beyond the smooth error too, which leaves noise, as `excess`."""
-        smooth = means(self.bands[name].systematic, rows) / self.theory.scales[name]
-        off = self.excess(name, rows) - self.tolerance * np.nan_to_num(smooth)
-        return rms(np.maximum(off, 0.0))
+    def beyond(self, name: str, rows: int) -> Callable[[Array], float]:
+        """Return the root mean square beyond the smooth error too, which leaves noise, of such means."""
+        band, scale = self.bands[name].averaged(rows), self.theory.scales[name]
+        smooth = self.tolerance * np.nan_to_num(band.systematic / scale)
+        return lambda values: rms(
+            np.maximum(np.nan_to_num(band.excess(values)) / scale - smooth, 0.0)
+        )
 
     def rms_limit(self, name: str, rows: int = 1) -> float:
         """Return the largest value of `beyond` that is due to noise."""

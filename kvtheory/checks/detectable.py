@@ -7,7 +7,6 @@ linear in the curves, except root mean squares.
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Any
@@ -142,15 +141,15 @@ def _smallest(case: Case, bounds: Bounds, slopes: Curves) -> float:
             room = np.where(sign * slope > 0.0, high - here, here - low) / np.abs(slope)
         x = max(float(np.nanmin(room[slope != 0.0], initial=np.inf)), 0.0)
         for name, n in product(slopes, lengths(case)):
-            left = partial(_beyond, case, name, n, sign * slopes[name])
+            left = _beyond(case, name, n, sign * slopes[name])
             if x > 0.0 and left(end := min(x, MOST)) > 0.0:
                 x = float(brentq(left, 0.0, end, rtol=PRECISE))
         found.append(x)
     return sum(found) / 2.0
 
 
-def _beyond(case: Case, name: str, rows: int, slope: Array, x: float) -> float:
-    """Return by which part the root mean square of a curve exceeds its limit with an error."""
-    columns = {**case.columns, name: case.columns[name] + x * slope}
-    shifted = replace(case, series=replace(case.series, columns=columns))
-    return shifted.beyond(name, rows) / case.rms_limit(name, rows) - 1.0
+def _beyond(case: Case, name: str, rows: int, slope: Array) -> Callable[[float], float]:
+    """Return by which part the root mean square of a curve exceeds its limit, as a function of the error."""
+    beyond, limit = case.beyond(name, rows), case.rms_limit(name, rows)
+    here, by = means(case.columns[name], rows), means(slope, rows)
+    return lambda x: beyond(here + x * by) / limit - 1.0

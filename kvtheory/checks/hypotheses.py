@@ -173,14 +173,14 @@ class Bench(Case):
         """Return all differences relative to what is allowed; a mean counts as the rows it stands for."""
         if pair is None:
             return np.full(self._units[0].size + len(self.means), self.largest)
-        rows, _ = self._relative(self._gaps(pair))
-        of_means = self.off(pair) * [math.sqrt(mean.rows) for mean in self.means]
+        rows, means = self._relative(self._gaps(pair))
+        of_means = (self._unseen + means) * [math.sqrt(mean.rows) for mean in self.means]
         return np.clip(np.append(rows, of_means), -self.largest, self.largest)
 
     def allows(self, pair: Pair) -> bool:
         """Whether no row and no mean is off by more than is allowed."""
-        rows, _ = self._relative(self._gaps(pair))
-        return bool((np.abs(np.append(rows, self.off(pair))) <= 1.0).all())
+        rows, means = self._relative(self._gaps(pair))
+        return bool((np.abs(np.append(rows, self._unseen + means)) <= 1.0).all())
 
     @cached_property
     def _noise(self) -> Array:
