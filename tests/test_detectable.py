@@ -249,3 +249,18 @@ def test_a_factor_on_the_depth_rate_alone_is_named_and_measured():
     first = max(found, key=lambda each: each.rank)
     assert (first.name, first.enough) == ("wrong depth term in the compression rate", True)
     assert first.factor == pytest.approx(0.9, abs=0.02)
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_elements_that_enter_without_a_force_are_not_known_from_rows(known):
+    """On arms alone the pressure has no jump at an edge by which rows would show the elements."""
+    arm = kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)])
+    scene = kv.Scene(foundation=arm, drive=kv.Drive(0.1), run=kv.Run(0.1))
+    given = {"per_length": "60 /mm", "scheme": "explicit-euler"}
+    run = kv.elements(scene, at=np.linspace(0.0, 0.1, 101), certify=False, **given)
+    data = {name: getattr(run, name) for name in confusion.FEW}
+    found = kv.compare(scene, data, **(given if known else {}))
+    assert found.verdict == ("agrees" if known else "cannot tell")
+    assert [check.name for check in found.checks if check.ok is False] == ["known time step"] * (
+        not known
+    )

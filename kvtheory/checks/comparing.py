@@ -58,7 +58,7 @@ INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
     SCATTER: "The points scatter too much to test the curve",
     UNKNOWN: "The differences may be the error of a sound method, not a fault: a time step "
-    f"{case_of.LONGER:g} times as long as assumed allows them, of a ball with elements "
+    f"{case_of.LONGER:g} times as long as assumed allows them, on a ball or on arms alone with elements "
     f"{case_of.COARSER:g} times as far apart, and these data do not show theirs",
     PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }

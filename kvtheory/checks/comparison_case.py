@@ -53,10 +53,10 @@ LOUD = 4.0
 """Multiple of the median to which larger differences, which are jumps, are clipped."""
 FEW_ROWS, LONGER = 32, 8.0
 """Rows that do not show the elements of a simulation, and with them its steps; and how much longer than
-assumed these may be where neither user nor rows tell: of a ball none do, as its strips gain elements one by
-one."""
+assumed these may be where neither user nor rows tell: none do of a ball, as its strips gain elements one by
+one, nor without a damper, as elements then enter without a force."""
 COARSER = 2.0
-"""And how much coarser than assumed elements of a ball may be."""
+"""And how much farther apart than assumed elements may be that rows cannot show."""
 SAWTOOTH = "the sawtooth"
 """What the spacing is estimated from, if not from the edges."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
@@ -168,14 +168,16 @@ def make_case(
 
 def with_longer_steps(case: Case) -> Case | None:
     """Return the case of a simulation with longer steps, if the data may be of such a one."""
-    fine, ball = case.resolution, not case.theory.scene.indenter.per_width
+    fine = case.resolution
+    scene = case.theory.scene
+    hidden = not scene.indenter.per_width or not getattr(scene.foundation, "damping", 0.0)
     shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
-    if fine.spacing_known or fine.step_known or (shown and not ball):
+    if fine.spacing_known or fine.step_known or (shown and not hidden):
         return None
     longer, rates = LONGER * fine.time_step, case.theory.rates
     if rates is not None and rates.oscillation:  # which a sound method resolves
         longer = min(longer, max(fine.time_step, UNKNOWN_STEP * abs(rates.oscillation)))
-    coarse = fine._replace(time_step=longer, spacing=(COARSER if ball else 1.0) * fine.spacing)
+    coarse = fine._replace(time_step=longer, spacing=(COARSER if hidden else 1.0) * fine.spacing)
     budget = allowance(case.theory, case.series, coarse, THEORY_RTOL)
     return Case(case.theory, case.series, case.names, coarse, *budget, case.tolerance)
 
