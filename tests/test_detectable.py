@@ -18,6 +18,7 @@ from kvtheory.checks.hypotheses import bench, scaled_scene
 from kvtheory.checks.theory import Theory
 from kvtheory.fitting.series import read
 from kvtheory.results.comparison import Check
+from kvtheory.scene.static_state import StaticState
 from tests import confusion, engine
 
 SCENE, DENSITY = kv.Scene(run=kv.Run(0.15)), "200 /mm"
@@ -264,3 +265,14 @@ def test_elements_that_enter_without_a_force_are_not_known_from_rows(known):
     assert [check.name for check in found.checks if check.ok is False] == ["known time step"] * (
         not known
     )
+
+
+def test_a_smooth_error_that_bends_from_row_to_row_is_no_noise_of_elements():
+    """A ball that bounces on an arm, by a scheme of first order, with nine rows in a period."""
+    arm, drive = kv.GeneralizedMaxwell(1e10, [(1.74e10, 0.06)]), kv.Drive(0.14)
+    scene = kv.Scene(kv.Sphere(0.01), arm, kv.DeadWeight(mass=2.0), drive, kv.Run(0.23))
+    per_length = 60.0 / StaticState.of(scene).half_length
+    given = {"per_length": per_length, "scheme": "semi-implicit"}
+    run = kv.elements(scene, at=np.linspace(0.0, 0.23, 100), certify=False, **given)
+    found = kv.compare(scene, {name: getattr(run, name) for name in confusion.FEW}, **given)
+    assert found.verdict == "agrees", found

@@ -241,6 +241,11 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
     allowed = 2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE
     if common_noise(case) is not None and not of_elements:  # as of a sensor, on top of them
         allowed = max(allowed, LARGEST_UNCORRELATED)
+    rates = case.theory.rates
+    if rates and rates.oscillation:  # second differences of a smooth error that sways with it
+        turn = float(np.median(np.diff(case.time))) / abs(rates.oscillation)
+        sway = float(np.median(case.bands["normal_force"].systematic)) / W
+        allowed += min(turn * turn, 1.0) / math.sqrt(12.0) * sway
     allowed *= case.tolerance
     b = float(np.median(case.edge_force)) / W
     return sigma, allowed, f"{kind}; N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
