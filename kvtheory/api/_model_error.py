@@ -84,11 +84,9 @@ def layer_numbers(
         return {}
     if not scene.drive.ends:
         scene = replace(scene, drive=Drive(velocity=0.0))
-    if (
-        depth is None and foundation.stiffness is None
-    ):  # of a shape whose contact at rest is not known
-        return dict(errors_of(scene) or {})
     if depth is None:
+        if foundation.stiffness is None:  # of a shape whose contact at rest is not known
+            return dict(errors_of(scene) or {})
         depth, half_length = _at_rest(scene)
     found = deformation(scene.indenter, foundation.thickness, depth, half_length)
     if on_body:

@@ -170,7 +170,7 @@ def with_longer_steps(case: Case) -> Case | None:
     """Return the case of a simulation with longer steps, if the data may be of such a one."""
     fine = case.resolution
     scene = case.theory.scene
-    hidden = not scene.indenter.per_width or not getattr(scene.foundation, "damping", 0.0)
+    hidden = not scene.indenter.per_width or not scene.foundation.damping
     shown = bool(fine.spacing_read) or case.time.size > FEW_ROWS
     if fine.spacing_known or fine.step_known or (shown and not hidden):
         return None
